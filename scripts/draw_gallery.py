@@ -61,6 +61,7 @@ class Picture:
     folder: Path  # of the file
     names: dict = field(default_factory=dict)  # of the properties that are shown: their colors
     points: list = field(default_factory=list)  # that the camera sees
+    sun: tuple | None = None  # azimuth and elevation, radians; None: where it always stands
 
     def show(self, model, shapes, shifts=None):
         """Shows a mesh for each block of a model. shifts: (N, 3) how far its compartments are moved."""
@@ -114,11 +115,15 @@ class Picture:
         import bpy
         import numpy as np
         from realmodel.bl import picture
+        from realmodel.bl.viewports import towards
 
         scene = bpy.context.scene
         points = np.concatenate(self.points)
         camera = picture.set_up(scene, points, size)
         aim(camera, points, size, azimuth, elevation, room)
+        if self.sun is not None:
+            sun = next(item for item in scene.objects if item.type == "LIGHT")
+            sun.rotation_euler = towards(*self.sun).to_track_quat("Z", "Y").to_euler()
         picture.set_renderer(scene, file, size, RAYS, SECONDS)
         scene.view_settings.exposure = EXPOSURE
         bpy.ops.render.render(write_still=True)
@@ -330,6 +335,36 @@ def tunnel(folder):
     )
 
 
+def rocks(folder):
+    """Haut-Barr at low sun, its rocks with the looks that suit them."""
+    import math
+
+    import bpy
+    import numpy as np
+    from realmodel.bl import looks, materials
+    from realmodel.core import polygon_mesh
+    from realmodel.core.looks import look_of
+
+    model, picture = sample("haut_barr", folder)
+    picture.show(model, polygon_mesh.of_blocks(model, picture.origin))
+    diagonal = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
+    for material in list(bpy.data.materials):
+        entry = model.project.library.get(material.get(materials.KEY, 0))
+        if entry is not None:
+            looks.apply(material, look_of(entry.rock or "", entry.name), 1.0, entry.id, diagonal)
+    picture.sun = math.radians(222.0), math.radians(24.0)
+    picture.draw(
+        "rocks",
+        171.0,
+        11.0,
+        "Haut-Barr",
+        "Bedding follows the layers as they were deposited: sets and slip faces of sandstone under "
+        "conglomerate.",
+        legend=False,
+        room=(0.0, 0.1),
+    )
+
+
 def stages(folder):
     """A film strip: Haut-Barr after each of its surfaces."""
     import bpy
@@ -358,7 +393,7 @@ def stages(folder):
         write_pixels(np.concatenate(rows), out, 144)
 
 
-SCENES = (faults, intrusion, tunnel, stages)
+SCENES = (rocks, faults, intrusion, tunnel, stages)
 
 
 def in_blender(folder, *names):

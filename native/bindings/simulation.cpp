@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulation_lines, layered_mesh, filled_mesh, clean_cells.
+// simulation_lines, layered_mesh, filled_mesh, clean_cells, describe_cells, ordered_faces.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -14,6 +14,7 @@
 #include "complex_arrays.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/simulation/clean_cells.hpp"
+#include "realmodel/simulation/face_lists.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
 #include "rows.hpp"
@@ -179,6 +180,29 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     return made;
 }
 
+py::tuple describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
+                         const Array<std::int64_t>& begin, const Array<std::int64_t>& sides) {
+    simulation::CellDescriptions found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = simulation::describe_cells({view_of(face_offsets), view_of(face_vertices)},
+                                           view_of(begin), view_of(sides));
+    }
+    return py::make_tuple(to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
+                          to_array(std::move(found.counts)));
+}
+
+py::tuple ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
+                        const Array<std::int64_t>& order, const Array<std::uint8_t>& turned) {
+    simulation::OrderedFaces found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = simulation::ordered_faces({view_of(face_offsets), view_of(face_vertices)},
+                                          view_of(order), view_of(turned));
+    }
+    return py::make_tuple(to_array(std::move(found.offsets)), to_array(std::move(found.vertices)));
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& module) {
@@ -231,6 +255,21 @@ model: dict of the arrays of docs/dev/geometry.md. surface_kind: (S,) int32. Ret
 volumes (B,), volumes_before (B,), cell_origin (C,) int32: the cell that each was; before, after: dicts of
 edges, faces, cells; short_edges, thin_cells: how many had to stay; largest_move: of a vertex.
 Raises InputError kind "bad_index"; Cancelled.)");
+    module.def("describe_cells", &describe_cells, py::arg("face_offsets"), py::arg("face_vertices"),
+               py::arg("begin"), py::arg("sides"),
+               R"(Cells as VTK describes polyhedra.
+
+begin: (C + 1,) int64, where the sides of these cells begin and end; sides: (S,) int64, as cell_sides has
+them. Returns int64 arrays: of each cell how many faces it has, of each of these how many corners, and the
+corners; the vertices of each cell, every one once, ascending; how many these are (C,). Raises InputError
+kind "bad_index".)");
+    module.def("ordered_faces", &ordered_faces, py::arg("face_offsets"), py::arg("face_vertices"),
+               py::arg("order"), py::arg("turned"),
+               R"(Faces in a new order.
+
+order: (N,) int64, numbers of faces; turned: (N,) uint8, whether the face goes the other way round, from the
+same corner on. Returns offsets (N + 1,) and vertices, int32. Raises InputError kinds "bad_index",
+"too_large".)");
 }
 
 }  // namespace realmodel::bindings

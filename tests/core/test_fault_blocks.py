@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import Fault, PointFile, Project, Rock, Surface, build, load_project
+from realmodel.core import Fault, InputRefused, PointFile, Project, Rock, Surface, build, load_project
 from realmodel.core.structures.displacement import displacements
 from realmodel.core.structures.reading import read_structures
 from realmodel.core.work import run
@@ -89,6 +89,23 @@ def test_a_real_reservoir_with_six_faults_that_die_out(tmp_path):
         assert throws[fault, "TopVolantis"].mean() > least  # normal faults of some tens of meters
     for throw in throws.values():
         assert np.abs(throw).max() < 100
+
+
+@pytest.mark.skipif(not (REAL.parent / "california_faults").is_dir(), reason="the real data are not there")
+def test_a_detachment_and_a_fault_of_overlapping_strands(tmp_path, monkeypatch):
+    """A nearly level fault is built. Strands beside one another in one file are refused: what is beyond their
+    border is not known."""
+    names = ("ETRA-NFTS-DTMT-Deep_detachment-CFM5", "SAFS-SAFZ-1812-San_Andreas_fault_rupture-CFM5")
+    monkeypatch.setattr(real_faults, "_CALIFORNIA", names[:1])
+    path = real_faults.california(tmp_path)
+    model = build(load_project(path))
+    checked(path, model, tmp_path)
+    assert (model.face_surface == 3).any()
+    monkeypatch.setattr(real_faults, "_CALIFORNIA", names[1:])
+    with pytest.raises(
+        InputRefused, match=r"border crosses itself near .*make a fault of its own of each part"
+    ):
+        build(load_project(real_faults.california(tmp_path)))
 
 
 @pytest.mark.skipif(not (REAL.parent / "california_faults").is_dir(), reason="the real data are not there")

@@ -149,7 +149,7 @@ def test_every_triangle_of_a_block_has_an_area(model):
         assert_closed(part.triangles)
 
 
-@pytest.mark.parametrize("ending", [".ply", ".stl", ".ts"])
+@pytest.mark.parametrize("ending", [".obj", ".ply", ".stl", ".ts"])
 def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
     surfaces = build_surfaces(model.project)
     surfaces.save(tmp_path / f"s{ending}")
@@ -161,6 +161,19 @@ def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
     read = read_mesh(tmp_path / f"c{ending}")
     a, b, c = (read.vertices[read.triangles] - low).transpose(1, 0, 2)
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
+
+
+def test_surfaces_have_groups_in_obj(model, tmp_path):
+    meshio = pytest.importorskip("meshio", reason=f"meshio is {WHY}")
+    surfaces = build_surfaces(model.project)
+    surfaces.save(tmp_path / "s.obj")
+    text = (tmp_path / "s.obj").read_text()
+    assert [line for line in text.splitlines() if line.startswith("g ")] == ["g S0", "g S1", "g S2", "g S3"]
+    assert "mtl" not in text
+    read = meshio.read(tmp_path / "s.obj")
+    shapes = [surfaces.surface(k) for k in range(4)]
+    assert np.array_equal(read.points, np.concatenate([vertices for vertices, _ in shapes]))
+    assert sum(map(len, read.cells)) == sum(len(triangles) for _, triangles in shapes)
 
 
 def test_surfaces_and_sections_in_glb_and_dxf(model, tmp_path):

@@ -6,6 +6,7 @@ import bpy
 from . import versions
 
 KEY = "realmodel_property"
+COLOR = "Property Color"  # the node of a look (looks.py) that has the color of the property
 NO_PROPERTY = 0
 NEUTRAL_GRAY = "#b3b3b3"
 
@@ -71,5 +72,7 @@ def set_color(material, color):
     material.diffuse_color = rgba
     if material.node_tree:
         for node in material.node_tree.nodes:
-            if node.type == "BSDF_PRINCIPLED" and not node.inputs["Base Color"].is_linked:
+            if node.name == COLOR:
+                node.outputs[0].default_value = rgba
+            elif node.type == "BSDF_PRINCIPLED" and not node.inputs["Base Color"].is_linked:
                 node.inputs["Base Color"].default_value = rgba

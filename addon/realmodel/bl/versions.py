@@ -133,6 +133,11 @@ def marks():
     }
 
 
+def make_glossy(principled):
+    """Give a Principled shader the shine of most rock, water and glass again."""
+    principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.5
+
+
 def make_matt(principled):
     """Take the shine off a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0

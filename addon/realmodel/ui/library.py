@@ -32,6 +32,7 @@ class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
         for key in ("name", "id", "color", "rock", "age", "structure", "density", "description"):
             layout.prop(entry, key)
         layout.operator("realmodel.assign_property", icon="MATERIAL")
+        layout.operator("realmodel.rock_looks", text="Rock Looks...", icon="SHADING_RENDERED")
 
 
 CLASSES = (REALMODEL_PT_library,)

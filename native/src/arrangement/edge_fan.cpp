@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrangement/edge_fan.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <numeric>
 
@@ -10,15 +12,24 @@ namespace realmodel::arrangement {
 
 EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
                    std::span<const HalfPlane> items) {
+    EdgeFan fan;
+    find_fan(points, a, b, items, fan);
+    return fan;
+}
+
+void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
+              std::span<const HalfPlane> items, EdgeFan& fan) {
     assert(!items.empty());
-    // the view in which the first is not seen from its edge
-    std::size_t axis = 0;
-    const auto turn = [&](std::size_t i) {
-        return exact::orient2d(points, axis, a, b, items[i].towards);
+    // in the view in which the first is not seen from its edge
+    const auto turns_as_first = [&](std::size_t i) {
+        const auto turn = [&](std::size_t axis, std::size_t item) {
+            return exact::orient2d(points, axis, a, b, items[item].towards);
+        };
+        std::size_t axis = 0;
+        while (axis < 2 && turn(axis, 0) == 0)
+            ++axis;
+        return turn(axis, i) == turn(axis, 0);
     };
-    while (axis < 2 && turn(0) == 0)
-        ++axis;
-    const int first_turn = turn(0);
     // what is known to lie in one plane needs no arithmetic
     const auto share_plane = [&](std::size_t i, std::size_t j) {
         return items[i].plane >= 0 && items[i].plane == items[j].plane;
@@ -29,30 +40,39 @@ EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exac
                    : exact::orient3d(points, a, b, items[i].towards, items[j].towards);
     };
     // in the direction of the first (0), in the half from there (1), against it (2), in the other
-    std::vector<int> quarter;
+    constexpr std::size_t kFew = 8;
+    std::array<int, kFew> few{};
+    std::vector<int> many(items.size() > kFew ? items.size() : 0);
+    int* const quarter = items.size() > kFew ? many.data() : few.data();
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (const int side = orientation(0, i)) {
-            quarter.push_back(side < 0 ? 1 : 3);
+            quarter[i] = side < 0 ? 1 : 3;
             continue;
         }
         const bool same =
-            share_plane(0, i) ? items[i].direction == items[0].direction : turn(i) == first_turn;
-        quarter.push_back(same ? 0 : 2);
+            share_plane(0, i) ? items[i].direction == items[0].direction : turns_as_first(i);
+        quarter[i] = same ? 0 : 2;
     }
     const auto compare = [&](std::size_t i, std::size_t j) {
         if (quarter[i] != quarter[j]) return quarter[i] - quarter[j];
         return quarter[i] % 2 == 0 ? 0 : orientation(i, j);
     };
-    EdgeFan fan;
     fan.order.resize(items.size());
     std::iota(fan.order.begin(), fan.order.end(), std::size_t{0});
-    std::stable_sort(fan.order.begin(), fan.order.end(),
-                     [&](std::size_t i, std::size_t j) { return compare(i, j) < 0; });
+    if (items.size() > kFew) {
+        std::stable_sort(fan.order.begin(), fan.order.end(),
+                         [&](std::size_t i, std::size_t j) { return compare(i, j) < 0; });
+    } else {  // by insertion, which takes no memory
+        for (std::size_t i = 1; i < items.size(); ++i) {
+            for (std::size_t k = i; k > 0 && compare(fan.order[k], fan.order[k - 1]) < 0; --k)
+                std::swap(fan.order[k], fan.order[k - 1]);
+        }
+    }
+    fan.blade_begins.assign(1, 0);
     for (std::size_t i = 1; i <= fan.order.size(); ++i) {
         if (i == fan.order.size() || compare(fan.order[i - 1], fan.order[i]) != 0)
             fan.blade_begins.push_back(i);
     }
-    return fan;
 }
 
 }  // namespace realmodel::arrangement

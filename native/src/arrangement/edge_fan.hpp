@@ -56,5 +56,8 @@ struct EdgeFan {
 /// The fan around the edge from a to b.
 EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
                    std::span<const HalfPlane> items);
+/// The same in a fan that was another before, whose memory it takes.
+void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
+              std::span<const HalfPlane> items, EdgeFan& fan);
 
 }  // namespace realmodel::arrangement

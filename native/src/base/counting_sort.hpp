@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <span>
@@ -107,6 +108,22 @@ Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const
             made.values[next[chunk][bucket]++] = value;
         });
         next[chunk] = {};
+    });
+    return made;
+}
+
+/// Sorts by buckets, and within a bucket by <, on several threads: of buckets that hold a handful,
+/// in time that is linear. Equal values must be alike, for their order is not kept.
+/// @throws InputError kind too_large, Cancelled
+template <class Value, class Produce>
+Buckets<Value> sorted_in_buckets(std::size_t buckets, std::size_t chunks, const Produce& produce,
+                                 int threads, const Progress* progress) {
+    Buckets<Value> made =
+        bucketize_in_any_order<Value>(buckets, chunks, produce, threads, progress);
+    constexpr std::size_t kBuckets = 1 << 12;  // sorted at a time
+    parallel_ranges(buckets, kBuckets, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+            std::sort(made[b].begin(), made[b].end());
     });
     return made;
 }

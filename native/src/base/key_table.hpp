@@ -51,6 +51,16 @@ public:
             if (here.tag == tag && is_it(here.number)) return {here.number, false};
         }
     }
+    /// The number of the thing with this hash of which `is_it` holds, -1 where there is none.
+    template <class IsIt>
+    std::int32_t find(std::uint32_t tag, const IsIt& is_it) const {
+        if (slots_.empty()) return -1;
+        for (std::size_t slot = tag & mask_;; slot = (slot + 1) & mask_) {
+            const Slot& here = slots_[slot];
+            if (here.number < 0) return -1;
+            if (here.tag == tag && is_it(here.number)) return here.number;
+        }
+    }
     static std::uint32_t hash(std::span<const std::uint64_t> words) {
         std::uint64_t h = 0;
         for (const std::uint64_t word : words) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel_sort.hpp"
+#include "base/counting_sort.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
@@ -50,42 +50,57 @@ void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
                          std::span<const std::uint8_t> reaches, const Progress* progress,
                          const std::function<void(std::int32_t, std::int32_t)>& join) {
     const ComplexView& model = overlay.model();
-    std::vector<std::int32_t> first(model.cell_block.size(), -1);
-    std::vector<EdgeUse> uses;
-    const auto join_around = [&](std::int32_t item, std::size_t face, const auto& loops) {
-        bool reached = false;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = model.cell(face, k);
-            if (cell < 0) continue;
-            if (reaches[index(cell)] != 0) {
-                reached = true;
-                continue;
-            }
-            auto& known = first[index(cell)];
-            if (known < 0) known = item;
-            join(known, item);
-        }
-        if (reached) each_edge(loops, item, [&](const EdgeUse& use) { uses.push_back(use); });
+    const auto regions = static_cast<std::int32_t>(overlay.size());
+    const std::size_t items = overlay.size() + model.face_count();
+    // of an item, -1 where it is none: its face
+    const auto face_of = [&](std::size_t item) {
+        if (item >= overlay.size())
+            return overlay.is_active(item - overlay.size())
+                       ? -1
+                       : static_cast<std::int32_t>(item) - regions;
+        if (overlay.of_cutter(item) || winding.level(item) >= 0) return -1;
+        return static_cast<std::int32_t>(overlay.face_of(item));
     };
-    for (std::size_t r = 0; r < overlay.size(); ++r) {
-        if (!overlay.of_cutter(r) && winding.level(r) < 0)
-            join_around(static_cast<std::int32_t>(r), overlay.face_of(r), overlay.loops(r));
-    }
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        if (!overlay.is_active(f))
-            join_around(static_cast<std::int32_t>(overlay.size() + f), f,
-                        std::array{model.face(f)});
-    }
-    parallel_sort(uses, std::less<>(), overlay.threads(), progress);
-    std::size_t edge = 0;
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        while (edge < winding.edge_count() && winding.edge(edge)[0].edge < uses[begin].edge)
-            ++edge;
-        const bool own =
-            edge < winding.edge_count() && winding.edge(edge)[0].edge == uses[begin].edge;
-        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
-            if (!own) join(uses[begin].item, uses[end].item);
+    std::vector<std::int32_t> first(model.cell_block.size(), -1);
+    for (std::size_t i = 0; i < items; ++i) {
+        const std::int32_t face = face_of(i);
+        for (std::size_t k = 0; face >= 0 && k < 2; ++k) {
+            const std::int32_t cell = model.cell(index(face), k);
+            if (cell < 0 || reaches[index(cell)] != 0) continue;
+            auto& known = first[index(cell)];
+            if (known < 0) known = static_cast<std::int32_t>(i);
+            join(known, static_cast<std::int32_t>(i));
         }
+    }
+    constexpr std::size_t kChunk = 1 << 12;
+    const auto uses = sorted_in_buckets<EdgeUse>(
+        overlay.node_count(), (items + kChunk - 1) / kChunk,
+        [&](std::size_t chunk, const auto& put) {
+            for (std::size_t i = chunk * kChunk; i < std::min(items, (chunk + 1) * kChunk); ++i) {
+                const std::int32_t face = face_of(i);
+                if (face < 0) continue;
+                const std::array own{model.cell(index(face), 0), model.cell(index(face), 1)};
+                if (std::ranges::none_of(own, [&](std::int32_t cell) {
+                        return cell >= 0 && reaches[index(cell)] != 0;
+                    }))
+                    continue;
+                const auto add = [&](const EdgeUse& use) { put(index(use.edge[0]), use); };
+                if (i < overlay.size()) {
+                    each_edge(overlay.loops(i), static_cast<std::int32_t>(i), add);
+                } else {
+                    each_edge(std::array{model.face(index(face))}, static_cast<std::int32_t>(i),
+                              add);
+                }
+            }
+        },
+        overlay.threads(), progress);
+    for (std::size_t begin = 0, end = 0; begin < uses.values.size(); begin = end) {
+        const EdgeUse& one = uses.values[begin];
+        for (end = begin + 1; end < uses.values.size() && uses.values[end].edge == one.edge;)
+            ++end;
+        if (end == begin + 1 || winding.is_edge(one.edge)) continue;
+        for (std::size_t i = begin + 1; i < end; ++i)
+            join(one.item, uses.values[i].item);
     }
 }
 
@@ -114,7 +129,7 @@ std::ptrdiff_t CutterSides::own_uses(std::span<const EdgeUse> uses) const {
 void CutterSides::refuse_borders() const {
     for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
         const auto uses = winding_.edge(e);
-        const auto& windings = winding_.sectors(e).windings;
+        const auto windings = winding_.sectors(e).windings;
         if (own_uses(uses) % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0)
             continue;
         refuse("ends_inside", "the surface does not part the model: it ends inside of it",
@@ -127,8 +142,7 @@ void CutterSides::refuse_borders() const {
 /// that rounding flattened away; of a closed one it need not be said.
 void CutterSides::go_round(std::size_t e) {
     const auto uses = winding_.edge(e);
-    const EdgeFan& fan = winding_.sectors(e).fan;
-    const auto& windings = winding_.sectors(e).windings;
+    const auto [fan, windings] = winding_.sectors(e);
     /// Visits the items of a blade, each with whether it is seen from its side 1.
     const auto each = [&](std::size_t blade, bool ahead, const auto& visit) {
         for (const std::size_t i : fan.blade(blade)) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
-#include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -12,19 +11,38 @@ using arrangement::each_edge;
 
 namespace {
 
-/// A loop from its least node on; of several such beginnings the least.
-std::vector<NodeId> from_least(const std::vector<NodeId>& loop) {
-    const NodeId least = *std::min_element(loop.begin(), loop.end());
-    std::vector<NodeId> best;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        if (loop[i] != least) continue;
-        std::vector<NodeId> rotated(loop);
-        std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(i),
-                    rotated.end());
-        if (best.empty() || rotated < best) best = std::move(rotated);
-    }
-    return best;
+/// The same for loops of the same nodes.
+std::uint32_t hash_of(std::span<const NodeId> loop) {
+    std::uint32_t hash = 0;
+    for (const NodeId node : loop)
+        hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(node)});
+    return hash;
 }
+
+/// 1 where two loops pass the same nodes in the same order, from whichever on; -1 where they do so
+/// against each other; else 0.
+std::int8_t facing_of(std::span<const NodeId> one, std::span<const NodeId> other) {
+    const std::size_t n = one.size();
+    if (other.size() != n) return 0;
+    for (const bool back : {false, true}) {
+        for (std::size_t begin = 0; begin < n; ++begin) {
+            std::size_t i = 0;
+            while (i < n && one[i] == other[(begin + (back ? n - i : i)) % n])
+                ++i;
+            if (i == n) return back ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+std::uint32_t hash_of(const Winding& winding) {
+    std::uint32_t hash = 0;
+    for (const auto& [cell, times] : winding)
+        hash = KeyTable::hash(KeyTable::Key{static_cast<std::int32_t>(hash), cell, times, 0});
+    return hash;
+}
+
+constexpr auto to_number = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
 
 void add(Winding& winding, std::int32_t cell, std::int32_t times) {
     if (cell < 0) return;
@@ -40,10 +58,11 @@ void add(Winding& winding, std::int32_t cell, std::int32_t times) {
 
 CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : overlay_(overlay) {
     number({});
-    find_coinciding();
+    find_coinciding(progress);
     collect_uses(progress);
     find_fans(progress);
     winding_.assign(2 * overlay.size(), -1);
+    std::vector<std::int32_t> open;
     // regions that reach beyond the model first: there is nothing around them
     for (const bool beyond : {true, false}) {
         for (std::size_t r = 0; r < overlay.size(); ++r) {
@@ -61,18 +80,18 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
                 Winding above = around(r, 0);
                 for (const std::int32_t face_region : lying_on_[r])
                     cross(above, index(face_region), level_facing(index(face_region)) > 0 ? 1 : 0);
-                winding_[2 * r + 1] = number(std::move(above));
+                winding_[2 * r + 1] = number(above);
             }
-            std::vector<std::int32_t> open(edges_of_[r]);
+            open.assign(edges_of_[r].begin(), edges_of_[r].end());
             while (!open.empty()) {
                 const auto edge = index(open.back());
                 open.pop_back();
-                if (!sectors_[edge].windings.empty()) continue;
+                if (is_known_[edge] != 0) continue;
                 spread(edge, progress);
                 for (const EdgeUse& use : this->edge(edge)) {
                     if (!overlay.of_cutter(index(use.item))) continue;
                     for (const std::int32_t other : edges_of_[index(use.item)]) {
-                        if (sectors_[index(other)].windings.empty()) open.push_back(other);
+                        if (is_known_[index(other)] == 0) open.push_back(other);
                     }
                 }
             }
@@ -81,98 +100,131 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
 }
 
 bool CutterWinding::is_edge(const std::array<NodeId, 2>& edge) const {
-    std::size_t low = 0, high = edge_count();
-    while (low < high) {
-        const std::size_t middle = (low + high) / 2;
-        if (this->edge(middle)[0].edge < edge) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+    for (std::size_t e = first_edge_[index(edge[0])]; e < first_edge_[index(edge[0]) + 1]; ++e) {
+        if (this->edge(e)[0].edge == edge) return true;
     }
-    return low < edge_count() && this->edge(low)[0].edge == edge;
+    return false;
 }
 
-void CutterWinding::find_coinciding() {
+void CutterWinding::find_coinciding(const Progress* progress) {
     const std::size_t count = overlay_.size();
     counts_.assign(count, 0);
     level_.assign(count, -1);
     level_facing_.assign(count, 0);
-    lying_on_.resize(count);
-    std::map<std::vector<NodeId>, std::pair<std::int32_t, int>> outlines;  // first region, how many
-    const auto find = [&outlines](std::vector<NodeId> outline, std::int8_t& facing) {
-        auto found = outlines.find(from_least(outline));
-        facing = 1;
-        if (found != outlines.end()) return found;
-        std::reverse(outline.begin(), outline.end());
-        facing = -1;
-        return outlines.find(from_least(outline));
+    const auto outline = [this](std::size_t r) -> std::span<const NodeId> {
+        return overlay_.loops(r)[0];
     };
-    std::int8_t facing = 1;
+    KeyTable first;  // of the regions of the surface with one outline
     for (std::size_t r = 0; r < count; ++r) {
         if (!overlay_.of_cutter(r)) continue;
-        const auto& outline = overlay_.loops(r)[0];
-        const auto found = find(outline, facing);
-        if (found != outlines.end()) {
-            ++found->second.second;
-        } else {
-            outlines[from_least(outline)] = {static_cast<std::int32_t>(r), 1};
+        const auto found = first.find_or_add(
+            hash_of(outline(r)), static_cast<std::int32_t>(r),
+            [&](std::int32_t other) { return facing_of(outline(r), outline(index(other))) != 0; });
+        auto& counts = counts_[index(found.number)];
+        if (found.is_new) {
+            counts = 1;
+        } else if (overlay_.surface().is_closed) {
+            counts ^= 1;
         }
     }
-    for (const auto& [outline, first] : outlines)
-        counts_[index(first.first)] =
-            overlay_.surface().is_closed ? static_cast<std::uint8_t>(first.second % 2) : 1;
-    for (std::size_t r = 0; r < count; ++r) {
-        const auto found = find(overlay_.loops(r)[0], facing);
-        if (found == outlines.end() || counts_[index(found->second.first)] == 0) continue;
-        level_[r] = found->second.first;
-        level_facing_[r] = facing;
-        if (!overlay_.of_cutter(r))
-            lying_on_[index(level_[r])].push_back(static_cast<std::int32_t>(r));
-    }
+    parallel_ranges(
+        count, 1 << 12, overlay_.threads(), progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t r = begin; r < end; ++r) {
+                std::int8_t facing = 0;
+                const std::int32_t found = first.find(hash_of(outline(r)), [&](std::int32_t other) {
+                    facing = facing_of(outline(r), outline(index(other)));
+                    return facing != 0;
+                });
+                if (found < 0 || counts_[index(found)] == 0) continue;
+                level_[r] = found;
+                level_facing_[r] = facing;
+            }
+        });
+    lying_on_ = bucketize<std::int32_t>(count, [&](const auto& put) {
+        for (std::size_t r = 0; r < count; ++r) {
+            if (level_[r] >= 0 && !overlay_.of_cutter(r))
+                put(index(level_[r]), static_cast<std::int32_t>(r));
+        }
+    });
 }
 
 void CutterWinding::collect_uses(const Progress* progress) {
-    const std::size_t count = overlay_.size();
-    std::vector<std::array<NodeId, 2>> edges;
+    const std::size_t count = overlay_.size(), nodes = overlay_.node_count();
+    std::vector<std::uint8_t> is_on_surface(nodes, 0);
     for (std::size_t r = 0; r < count; ++r) {
         if (!counts(r)) continue;
-        each_edge(overlay_.loops(r), 0, [&](const EdgeUse& use) { edges.push_back(use.edge); });
-    }
-    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (std::size_t r = 0; r < count; ++r) {
-        if (overlay_.of_cutter(r) && !counts(r)) continue;
-        each_edge(overlay_.loops(r), static_cast<std::int32_t>(r), [&](const EdgeUse& use) {
-            if (std::binary_search(edges.begin(), edges.end(), use.edge)) uses_.push_back(use);
-        });
-    }
-    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
-    edges_of_.resize(count);
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end) {
-            if (counts(index(uses_[end].item)))
-                edges_of_[index(uses_[end].item)].push_back(
-                    static_cast<std::int32_t>(edge_count()));
+        for (const auto& loop : overlay_.loops(r)) {
+            for (const NodeId node : loop)
+                is_on_surface[index(node)] = 1;
         }
-        edge_begins_.push_back(end);
     }
+    // of each edge that may be one of the surface's: all uses
+    constexpr std::size_t kChunk = 1 << 12;
+    auto found = sorted_in_buckets<EdgeUse>(
+        nodes, (count + kChunk - 1) / kChunk,
+        [&](std::size_t chunk, const auto& put) {
+            for (std::size_t r = chunk * kChunk; r < std::min(count, (chunk + 1) * kChunk); ++r) {
+                if (overlay_.of_cutter(r) && !counts(r)) continue;
+                each_edge(overlay_.loops(r), static_cast<std::int32_t>(r), [&](const EdgeUse& use) {
+                    if (is_on_surface[index(use.edge[0])] != 0 &&
+                        is_on_surface[index(use.edge[1])] != 0)
+                        put(index(use.edge[0]), use);
+                });
+            }
+        },
+        overlay_.threads(), progress);
+    uses_ = std::move(found.values);
+    first_edge_.assign(nodes + 1, 0);
+    std::size_t kept = 0;
+    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
+        bool is_own = false;
+        for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end)
+            is_own = is_own || counts(index(uses_[end].item));
+        if (!is_own) continue;
+        ++first_edge_[index(uses_[begin].edge[0]) + 1];
+        for (std::size_t i = begin; i < end; ++i)
+            uses_[kept++] = uses_[i];
+        edge_begins_.push_back(kept);
+    }
+    uses_.resize(kept);
+    for (std::size_t node = 0; node < nodes; ++node)
+        first_edge_[node + 1] += first_edge_[node];
+    edges_of_ = bucketize<std::int32_t>(count, [this](const auto& put) {
+        for (std::size_t e = 0; e < edge_count(); ++e) {
+            for (const EdgeUse& use : edge(e)) {
+                if (counts(index(use.item))) put(index(use.item), static_cast<std::int32_t>(e));
+            }
+        }
+    });
 }
 
 void CutterWinding::find_fans(const Progress* progress) {
-    sectors_.resize(edge_count());
-    parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
-                    [this](std::size_t begin, std::size_t end) {
-                        for (std::size_t e = begin; e < end; ++e)
-                            sectors_[e].fan = overlay_.fan_of(edge(e));
-                    });
+    order_.resize(uses_.size());
+    windings_.assign(uses_.size(), 0);
+    blade_begins_.resize(uses_.size() + edge_count());
+    blades_.resize(edge_count());
+    is_known_.assign(edge_count(), 0);
+    parallel_ranges(
+        edge_count(), 1 << 8, overlay_.threads(), progress,
+        [this](std::size_t begin, std::size_t end) {
+            std::vector<arrangement::HalfPlane> scratch;
+            EdgeFan fan;
+            for (std::size_t e = begin; e < end; ++e) {
+                overlay_.find_fan(edge(e), scratch, fan);
+                std::ranges::transform(fan.order, order_.data() + edge_begins_[e], to_number);
+                std::ranges::transform(fan.blade_begins, blade_begins_.data() + edge_begins_[e] + e,
+                                       to_number);
+                blades_[e] = to_number(fan.blades());
+            }
+        });
 }
 
-std::int32_t CutterWinding::number(Winding&& winding) {
+std::int32_t CutterWinding::number(const Winding& winding) {
     const auto [found, is_new] =
-        number_.try_emplace(std::move(winding), static_cast<std::int32_t>(known_.size()));
-    if (is_new) known_.push_back(found->first);
-    return found->second;
+        number_.find_or_add(hash_of(winding), static_cast<std::int32_t>(known_.size()),
+                            [&](std::int32_t other) { return known_[index(other)] == winding; });
+    if (is_new) known_.push_back(winding);
+    return found;
 }
 
 /// What changes where a face's region is crossed to its side `entered`.
@@ -186,14 +238,14 @@ void CutterWinding::cross(Winding& winding, std::size_t region, std::size_t ente
 void CutterWinding::spread(std::size_t e, Progress* progress) {
     if (progress != nullptr && (e & 0xff) == 0) progress->check();
     const auto uses = edge(e);
-    Sectors& sectors = sectors_[e];
-    const std::size_t blades = sectors.fan.blades();
-    sectors.windings.assign(blades, 0);
+    const Fan fan = sectors(e).fan;
+    const std::size_t blades = fan.blades();
+    is_known_[e] = 1;
     // the blade of a region that is known; a region may come to the edge from both sides
     std::size_t start = blades;
     std::int32_t behind = 0;
     for (std::size_t b = 0; b < blades && start == blades; ++b) {
-        for (const std::size_t i : sectors.fan.blade(b)) {
+        for (const std::size_t i : fan.blade(b)) {
             const auto region = index(uses[i].item);
             if (!overlay_.of_cutter(region) || winding_[2 * region] < 0) continue;
             start = b;
@@ -205,23 +257,23 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
         const std::size_t b = (start + n) % blades;
         std::int32_t ahead = behind;
         bool faces = false;
-        for (const std::size_t i : sectors.fan.blade(b))
+        for (const std::size_t i : fan.blade(b))
             faces = faces || !overlay_.of_cutter(index(uses[i].item));
         if (faces) {
             Winding winding = known_[index(behind)];
-            for (const std::size_t i : sectors.fan.blade(b)) {
+            for (const std::size_t i : fan.blade(b)) {
                 if (!overlay_.of_cutter(index(uses[i].item)))
                     cross(winding, index(uses[i].item), uses[i].ahead());
             }
-            ahead = number(std::move(winding));
+            ahead = number(winding);
         }
-        for (const std::size_t i : sectors.fan.blade(b)) {
+        for (const std::size_t i : fan.blade(b)) {
             const auto region = index(uses[i].item);
             if (!overlay_.of_cutter(region) || winding_[2 * region] >= 0) continue;
             winding_[2 * region + uses[i].behind()] = behind;
             winding_[2 * region + uses[i].ahead()] = ahead;
         }
-        sectors.windings[b] = behind = ahead;
+        windings_[edge_begins_[e] + b] = behind = ahead;
     }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
 #include <vector>
 
+#include "base/counting_sort.hpp"
 #include "cutting/surface_overlay.hpp"
 
 namespace realmodel::cutting {
@@ -46,21 +46,42 @@ public:
     std::span<const EdgeUse> edge(std::size_t i) const {
         return {uses_.data() + edge_begins_[i], edge_begins_[i + 1] - edge_begins_[i]};
     }
+    /// Uses of an edge in the order of their fan, by their places in edge(); where each blade
+    /// begins in it, and the last one ends.
+    class Fan {
+    public:
+        Fan(std::span<const std::uint32_t> order, const std::uint32_t* begins, std::size_t blades)
+            : order_(order), begins_(begins), blades_(blades) {}
+        std::size_t blades() const { return blades_; }
+        std::span<const std::uint32_t> blade(std::size_t i) const {
+            return order_.subspan(begins_[i], begins_[i + 1] - begins_[i]);
+        }
+
+    private:
+        std::span<const std::uint32_t> order_;
+        const std::uint32_t* begins_;
+        std::size_t blades_;
+    };
     /// The fan of an edge, and for each of its blades what is between it and the next.
     struct Sectors {
-        EdgeFan fan;
-        std::vector<std::int32_t> windings;  ///< numbers; 0: no cell is there
+        Fan fan;
+        std::span<const std::int32_t> windings;  ///< numbers; 0: no cell is there
     };
-    const Sectors& sectors(std::size_t edge) const { return sectors_[edge]; }
+    Sectors sectors(std::size_t edge) const {
+        const std::size_t begin = edge_begins_[edge], uses = edge_begins_[edge + 1] - begin;
+        const std::size_t blades = blades_[edge];
+        return {Fan({order_.data() + begin, uses}, blade_begins_.data() + begin + edge, blades),
+                {windings_.data() + begin, is_known_[edge] != 0 ? blades : 0}};
+    }
     /// Whether an edge is one of these.
     bool is_edge(const std::array<NodeId, 2>& edge) const;
 
 private:
-    void find_coinciding();
+    void find_coinciding(const Progress* progress);
     void collect_uses(const Progress* progress);
     void find_fans(const Progress* progress);
     void spread(std::size_t edge, Progress* progress);
-    std::int32_t number(Winding&& winding);
+    std::int32_t number(const Winding& winding);
     void cross(Winding& winding, std::size_t region, std::size_t entered) const;
     Winding cast(std::size_t region);
 
@@ -68,14 +89,19 @@ private:
     std::vector<std::uint8_t> counts_;
     std::vector<std::int32_t> level_;
     std::vector<std::int8_t> level_facing_;
-    std::vector<EdgeUse> uses_;
+    Array<EdgeUse> uses_;
     std::vector<std::size_t> edge_begins_{0};
-    std::vector<Sectors> sectors_;
+    /// Of nodes: the first edge of which they are the lesser node, and at the end how many edges.
+    std::vector<std::uint32_t> first_edge_;
+    // of edges: fans as Fan has them, one blade's end more than uses, and windings of sectors
+    std::vector<std::uint32_t> order_, blade_begins_, blades_;
+    std::vector<std::int32_t> windings_;
+    std::vector<std::uint8_t> is_known_;
     std::vector<std::int32_t> winding_;  ///< of both sides of regions, -1 not yet known
     std::vector<Winding> known_;
-    std::map<Winding, std::int32_t> number_;
-    std::vector<std::vector<std::int32_t>> lying_on_;  ///< faces' regions on each of the surface's
-    std::vector<std::vector<std::int32_t>> edges_of_;  ///< of regions that count
+    KeyTable number_;                 ///< of windings in `known_`
+    Buckets<std::int32_t> lying_on_;  ///< faces' regions on each of the surface's
+    Buckets<std::int32_t> edges_of_;  ///< of regions that count
 };
 
 }  // namespace realmodel::cutting

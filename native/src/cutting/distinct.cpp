@@ -19,7 +19,7 @@ Position free_position_beside(const Position& p, Freedom freedom, Positions& tak
                     if (std::max({std::abs(x), std::abs(y), std::abs(z)}) != reach) continue;
                     const Position to{moved_by_ulps(p[0], x), moved_by_ulps(p[1], y),
                                       moved_by_ulps(p[2], z)};
-                    if (taken.insert(to).second) return to;
+                    if (taken.insert(to)) return to;
                 }
             }
         }

@@ -2,6 +2,7 @@
 #include "cutting/halves.hpp"
 
 #include "base/parallel.hpp"
+#include "cutting/near_part.hpp"
 #include "strata/cells/volumes.hpp"
 
 namespace realmodel::cutting {
@@ -36,8 +37,10 @@ private:
     std::vector<std::int32_t> number_;
 };
 
+/// @param each  each(visit) calls visit(polygon, piece) for all pieces
+template <class Each>
 void assemble(const ComplexView& model, const std::vector<Position>& new_positions,
-              const Pieces& pieces, const std::vector<HalfCell>& cells, std::int8_t half,
+              const Each& each, const std::vector<HalfCell>& cells, std::int8_t half,
               CellComplex& complex, std::vector<std::int32_t>& origin, const Progress* progress) {
     std::vector<std::int32_t> number(cells.size(), -1);
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -48,14 +51,14 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
     }
     Renumbering renumbered(model, new_positions, complex.vertices);
     complex.face_offsets.push_back(0);
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        poll(progress, p);
+    std::size_t visited = 0;
+    each([&](std::span<const NodeId> nodes, const Piece& piece) {
+        poll(progress, visited++);
         std::array<std::int32_t, 2> own{-1, -1};
         for (std::size_t k = 0; k < 2; ++k) {
-            if (pieces[p].parts[k] >= 0) own[k] = number[index(pieces[p].parts[k])];
+            if (piece.parts[k] >= 0) own[k] = number[index(piece.parts[k])];
         }
-        if (own[0] < 0 && own[1] < 0) continue;
-        const auto nodes = pieces.polygons[p];
+        if (own[0] < 0 && own[1] < 0) return;
         const bool reversed = own[0] < 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             complex.face_vertices.push_back(
@@ -63,28 +66,27 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
         }
         complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
         complex.face_cells.push_back(reversed ? std::array{own[1], -1} : own);
-        const bool is_exposed = (own[0] < 0 || own[1] < 0) && pieces[p].cells[1] >= 0;
-        complex.face_surface.push_back(is_exposed || pieces[p].face < 0
-                                           ? kCutFace
-                                           : model.face_surface[index(pieces[p].face)]);
-    }
+        const bool is_exposed = (own[0] < 0 || own[1] < 0) && piece.cells[1] >= 0;
+        complex.face_surface.push_back(
+            is_exposed || piece.face < 0 ? kCutFace : model.face_surface[index(piece.face)]);
+    });
 }
 
-}  // namespace
-
-Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
-                    Progress* progress) {
+/// @param near  the pieces that may be in the section
+template <class Each>
+Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_positions,
+                 const Pieces& near, const Each& each, const std::vector<HalfCell>& half_cells,
+                 int threads, Progress* progress) {
     Cut cut;
     parallel_chunks(3, threads, progress, [&](std::size_t which) {
         if (which == 0) {
-            assemble(model, new_positions, pieces, half_cells, kBelow, cut.below, cut.below_cells,
+            assemble(model, new_positions, each, half_cells, kBelow, cut.below, cut.below_cells,
                      progress);
         } else if (which == 1) {
-            assemble(model, new_positions, pieces, half_cells, kAbove, cut.above, cut.above_cells,
+            assemble(model, new_positions, each, half_cells, kAbove, cut.above, cut.above_cells,
                      progress);
         } else {
-            cut.section = assemble_section(model, new_positions, pieces);
+            cut.section = assemble_section(model, new_positions, near);
         }
     });
     for (CellComplex* half : {&cut.below, &cut.above}) {
@@ -92,6 +94,25 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
         half->volumes = strata::block_volumes(*half, model.blocks, threads, progress);
     }
     return cut;
+}
+
+}  // namespace
+
+Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
+                    const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
+                    Progress* progress) {
+    const auto each = [&pieces](const auto& visit) {
+        for (std::size_t p = 0; p < pieces.size(); ++p)
+            visit(pieces.polygons[p], pieces[p]);
+    };
+    return assemble_all(model, new_positions, pieces, each, half_cells, threads, progress);
+}
+
+Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
+                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
+                    Progress* progress) {
+    const auto each = [&pieces](const auto& visit) { pieces.each(visit); };
+    return assemble_all(model, new_positions, pieces.near(), each, half_cells, threads, progress);
 }
 
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,

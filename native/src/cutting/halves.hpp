@@ -8,10 +8,17 @@
 
 namespace realmodel::cutting {
 
+class WholePieces;
+
 /// Puts both halves and the section together. `positions` are the model's vertices and the new
 /// nodes after them.
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
                     const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
+                    Progress* progress);
+
+/// The same of a model of which a part was cut up.
+Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
+                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
                     Progress* progress);
 
 /// The pieces that lie on the cutter, each as it is seen from above.

@@ -2,6 +2,7 @@
 #include "cutting/near_part.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -11,28 +12,82 @@
 
 namespace realmodel::cutting {
 
-CellBoxes::CellBoxes(const ComplexView& model, const Progress* progress)
-    : boxes(model.cell_count()), vertex(model.cell_count(), -1) {
-    double largest = 0;
-    for (const double x : model.vertices)
-        largest = std::max(largest, std::abs(x));
-    rounding = 4 * kComputedUlps * ulp(largest);
+namespace {
+
+/// How far from a surface a cell may be that is taken to be near.
+double margin_of(const CellBoxes& cells, const NearestSide& surface) {
+    return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+}
+
+}  // namespace
+
+CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces, int threads,
+                     const Progress* progress)
+    : boxes(model.cell_count()) {
+    constexpr std::size_t kChunk = 1 << 14;
+    const std::size_t vertices = model.vertex_count();
+    std::vector<double> largest((vertices + kChunk - 1) / kChunk, 0);
+    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        double& own = largest[begin / kChunk];
+        for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+            own = std::max(own, std::abs(model.vertices[i]));
+    });
+    if (!largest.empty()) rounding = 4 * kComputedUlps * ulp(std::ranges::max(largest));
+    spatial::Box around;
+    for (const NearestSide& surface : surfaces) {
+        spatial::Box box;
+        for (const Position& p : surface.surface().vertices)
+            box.include(p);
+        box.widen(4 * margin_of(*this, surface));
+        around.include(box);
+    }
+    // of vertices and cells: a bit for each side of that box that something of them is within
+    std::vector<std::uint8_t> within(vertices), of_cell(model.cell_count(), 0);
+    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            unsigned bits = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double x = model.vertices[3 * v + k];
+                bits |= (x >= around.low[k] ? 1U : 0U) << (2 * k);
+                bits |= (x <= around.high[k] ? 2U : 0U) << (2 * k);
+            }
+            within[v] = static_cast<std::uint8_t>(bits);
+        }
+    });
+    parallel_ranges(model.face_count(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            std::uint8_t bits = 0;
+                            for (const NodeId v : model.face(f))
+                                bits |= within[index(v)];
+                            for (std::size_t k = 0; k < 2; ++k) {
+                                if (model.cell(f, k) < 0) continue;
+                                const std::atomic_ref own(of_cell[index(model.cell(f, k))]);
+                                if ((own.load(std::memory_order_relaxed) | bits) !=
+                                    own.load(std::memory_order_relaxed))
+                                    own.fetch_or(bits, std::memory_order_relaxed);
+                            }
+                        }
+                    });
+    constexpr std::uint8_t kAll = 63;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
         spatial::Box box;
-        for (const NodeId v : model.face(f))
-            box.include(model.vertex(v));
         for (std::size_t k = 0; k < 2; ++k) {
-            if (model.cell(f, k) < 0) continue;
-            boxes[index(model.cell(f, k))].include(box);
-            vertex[index(model.cell(f, k))] = model.face(f)[0];
+            const std::int32_t cell = model.cell(f, k);
+            if (cell < 0 || of_cell[index(cell)] != kAll) continue;
+            if (box.low[0] > box.high[0]) {
+                for (const NodeId v : model.face(f))
+                    box.include(model.vertex(v));
+            }
+            boxes[index(cell)].include(box);
         }
     }
 }
 
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
                                      int threads, const Progress* progress) {
-    const double margin = 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+    const double margin = margin_of(cells, surface);
     std::vector<std::uint8_t> is_near(cells.boxes.size(), 0);
     parallel_ranges(is_near.size(), 1 << 12, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
@@ -42,8 +97,7 @@ std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& 
     return is_near;
 }
 
-std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CellBoxes& cells,
-                                            const NearestSide& surface,
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
                                             std::span<const std::uint8_t> is_near,
                                             const Progress* progress) {
     DisjointSets joined(model.cell_count());
@@ -53,12 +107,28 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Cell
         if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
             joined.join(model.cell(f, 0), model.cell(f, 1));
     }
-    std::vector<std::int8_t> sides(model.cell_count(), kOn), known(model.cell_count(), kOn);
+    std::vector<std::int8_t> sides(model.cell_count(), kOn);
+    // of the first cell of what is connected: a vertex
+    constexpr NodeId kNotFirst = -2, kNone = -1;
+    std::vector<NodeId> vertex(model.cell_count(), kNotFirst);
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
-        if (!is_far(c) || cells.vertex[index(c)] < 0) continue;
-        auto& own = known[index(joined.find(c))];
-        if (own == kOn) own = surface.side(model.vertex(cells.vertex[index(c)]));
-        sides[index(c)] = own;
+        if (is_far(c) && joined.find(c) == c) vertex[index(c)] = kNone;
+    }
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        poll(progress, f);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::int32_t cell = model.cell(f, k);
+            if (cell >= 0 && vertex[index(cell)] != kNotFirst)
+                vertex[index(cell)] = model.face(f)[0];
+        }
+    }
+    for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
+        if (!is_far(c)) continue;
+        if (vertex[index(c)] == kNotFirst) {
+            sides[index(c)] = sides[index(joined.find(c))];
+        } else if (vertex[index(c)] != kNone) {
+            sides[index(c)] = surface.side(model.vertex(vertex[index(c)]));
+        }
     }
     return sides;
 }
@@ -108,41 +178,32 @@ ComplexView NearPart::view() const {
     return view;
 }
 
-/// Adds a piece in the model's numbers.
-void NearPart::add_piece(const Polygons& polygons, std::size_t p, Piece piece,
-                         Pieces& pieces) const {
-    const auto own = static_cast<NodeId>(vertices_.size());
-    const auto all = static_cast<NodeId>(model_.vertex_count());
-    for (const NodeId node : polygons[p]) {
-        pieces.polygons.nodes.push_back(node < own ? vertices_of_[index(node)] : node - own + all);
-    }
-    pieces.polygons.close();
-    if (piece.face >= 0) piece.face = faces_[index(piece.face)];
-    for (std::int32_t& cell : piece.cells) {
-        if (cell >= 0) cell = cells_[index(cell)];
-    }
-    pieces.origins.push_back(piece);
-}
-
-bool NearPart::put_back(Pieces& pieces, std::vector<HalfCell>& half_cells,
-                        std::span<const std::int8_t> sides) const {
+std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
+                                              std::span<const std::int8_t> sides) const {
+    WholePieces whole;
+    whole.model_ = model_;
+    whole.sides_ = sides;
     // the parts of near cells and the other cells, in the model's order
-    std::vector<HalfCell> all = std::move(half_cells);
-    for (HalfCell& own : all)
-        own.cell = cells_[index(own.cell)];
-    const std::size_t parts = all.size();
-    for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
-        if (number_[index(c)] < 0 && sides[index(c)] != kOn) all.push_back({c, sides[index(c)]});
-    }
-    std::vector<std::int32_t> order(all.size()), number(all.size());
+    const std::vector<HalfCell> parts = std::move(half_cells);
+    std::vector<std::int32_t> order(parts.size()), number(parts.size());
     std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&all](std::int32_t i) { return all[index(i)].cell; });
-    std::vector<std::int32_t> far_part(number_.size(), -1);
+    const auto cell_of = [&](std::int32_t part) { return cells_[index(parts[index(part)].cell)]; };
+    std::ranges::stable_sort(order, {}, cell_of);
+    whole.far_part_.assign(number_.size(), -1);
     half_cells.clear();
-    for (const std::int32_t i : order) {
-        number[index(i)] = checked_number(half_cells.size(), "parts of cells");
-        if (index(i) >= parts) far_part[index(all[index(i)].cell)] = number[index(i)];
-        half_cells.push_back(all[index(i)]);
+    auto next = order.begin();
+    for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
+        for (; next != order.end() && cell_of(*next) == c; ++next) {
+            number[index(*next)] = checked_number(half_cells.size(), "parts of cells");
+            half_cells.push_back(parts[index(*next)]);
+            half_cells.back().cell = c;
+        }
+        if (number_[index(c)] >= 0) {
+            whole.far_part_[index(c)] = WholePieces::kNear;
+        } else if (sides[index(c)] != kOn) {
+            whole.far_part_[index(c)] = checked_number(half_cells.size(), "parts of cells");
+            half_cells.push_back({c, sides[index(c)]});
+        }
     }
     // pieces in the order of the model's faces, then caps
     const Pieces near = std::move(pieces);
@@ -153,50 +214,49 @@ bool NearPart::put_back(Pieces& pieces, std::vector<HalfCell>& half_cells,
         return face < 0 ? INT32_MAX : face;
     };
     std::ranges::stable_sort(of_faces, {}, key);
-    pieces = {};
     auto beside = std::ranges::count_if(
-        beyond_, [&](std::int32_t cell) { return cell >= 0 && far_part[index(cell)] >= 0; });
-    std::size_t next = 0;
-    const auto add_near = [&](std::size_t until) {
-        for (; next < of_faces.size(); ++next) {
-            const auto p = index(of_faces[next]);
-            Piece piece = near[p];
-            if (piece.face >= 0 && index(faces_[index(piece.face)]) > until) break;
-            if (piece.face < 0 && until < model_.face_count()) break;
-            for (std::int32_t& part : piece.parts) {
-                if (part >= 0) part = number[index(part)];
-            }
-            const std::int32_t beyond = piece.face < 0 ? -1 : beyond_[index(piece.face)];
-            if (beyond >= 0 && far_part[index(beyond)] >= 0) {
-                const auto begin = index(face_offsets_[index(piece.face)]);
-                const auto end = index(face_offsets_[index(piece.face) + 1]);
-                if (piece.parts[1] >= 0 ||
-                    !std::ranges::equal(near.polygons[p],
-                                        std::span(face_vertices_).subspan(begin, end - begin)))
-                    return;
-                piece.parts[1] = far_part[index(beyond)];
-                piece.sides[1] = sides[index(beyond)];
-                --beside;
-            }
-            add_piece(near.polygons, p, piece, pieces);
-            if (beyond >= 0) pieces.origins.back().cells[1] = beyond;
+        beyond_, [&](std::int32_t cell) { return cell >= 0 && whole.far_part_[index(cell)] >= 0; });
+    const auto own = static_cast<NodeId>(vertices_.size());
+    const auto all = static_cast<NodeId>(model_.vertex_count());
+    whole.near_.origins.reserve(near.size());
+    whole.near_.polygons.nodes.reserve(near.polygons.nodes.size());
+    whole.near_.polygons.offsets.reserve(near.size() + 1);
+    for (const std::int32_t p : of_faces) {
+        const auto polygon = near.polygons[index(p)];
+        Piece piece = near[index(p)];
+        for (std::int32_t& part : piece.parts) {
+            if (part >= 0) part = number[index(part)];
         }
-    };
-    for (std::size_t f = 0; f < model_.face_count(); ++f) {
-        add_near(f);
-        const std::array<std::int32_t, 2> cells{model_.cell(f, 0), model_.cell(f, 1)};
-        const auto is_near = [this](std::int32_t c) { return c >= 0 && number_[index(c)] >= 0; };
-        if (is_near(cells[0]) || is_near(cells[1])) continue;
-        Piece piece{static_cast<std::int32_t>(f), cells, {kOn, kOn}, false};
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (cells[k] < 0) continue;
-            piece.sides[k] = sides[index(cells[k])];
-            piece.parts[k] = far_part[index(cells[k])];
+        for (std::int32_t& cell : piece.cells) {
+            if (cell >= 0) cell = cells_[index(cell)];
         }
-        if (piece.parts[0] >= 0 || piece.parts[1] >= 0) pieces.add(model_.face(f), piece);
+        if (piece.face >= 0) {
+            const auto face = index(piece.face);
+            piece.face = faces_[face];
+            if (const std::int32_t beyond = beyond_[face]; beyond >= 0) {
+                piece.cells[1] = beyond;
+                if (whole.far_part_[index(beyond)] >= 0) {
+                    const auto begin = index(face_offsets_[face]);
+                    const auto end = index(face_offsets_[face + 1]);
+                    if (piece.parts[1] >= 0 ||
+                        !std::ranges::equal(polygon,
+                                            std::span(face_vertices_).subspan(begin, end - begin)))
+                        return std::nullopt;
+                    piece.parts[1] = whole.far_part_[index(beyond)];
+                    piece.sides[1] = sides[index(beyond)];
+                    --beside;
+                }
+            }
+        }
+        for (const NodeId node : polygon) {
+            whole.near_.polygons.nodes.push_back(node < own ? vertices_of_[index(node)]
+                                                            : node - own + all);
+        }
+        whole.near_.polygons.close();
+        whole.near_.origins.push_back(piece);
     }
-    add_near(model_.face_count());
-    return beside == 0;
+    if (beside != 0) return std::nullopt;
+    return whole;
 }
 
 }  // namespace realmodel::cutting

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,26 @@
 #include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
+
+/// The pieces of a whole model of which a part was cut up: those of that part, and the faces of the
+/// other cells, which stay as they are.
+class WholePieces {
+public:
+    /// Calls visit(polygon, piece) for all of them, in the order of the model's faces; caps last.
+    template <class Visit>
+    void each(const Visit& visit) const;
+    /// Those of the part alone.
+    const Pieces& near() const { return near_; }
+
+private:
+    friend class NearPart;
+    static constexpr std::int32_t kNear = -2;
+
+    ComplexView model_;
+    Pieces near_;
+    std::vector<std::int32_t> far_part_;  ///< of cells: -1 left out, kNear of the part
+    std::span<const std::int8_t> sides_;
+};
 
 /// The cells of a model that a surface may touch, as a model of their own: what is done to them
 /// costs what they are, and the cells beside them stay as they are.
@@ -21,15 +42,13 @@ public:
     /// The model's cell that one of the part is.
     std::int32_t cell(std::int32_t own) const { return cells_[index(own)]; }
     /// Makes pieces of the part's faces, and parts of its cells, those of the whole model, in the
-    /// order of its faces and cells: the other cells and faces are added.
+    /// order of its faces and cells: the other cells are added, and their faces follow from them.
     /// @param sides  of the model's cells that are none of the part's: kOn leaves them out
-    /// @return false where rounding did not leave a face alone that lies beside another cell
-    bool put_back(Pieces& pieces, std::vector<HalfCell>& half_cells,
-                  std::span<const std::int8_t> sides) const;
+    /// @return nothing where rounding did not leave a face alone that lies beside another cell
+    std::optional<WholePieces> put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
+                                        std::span<const std::int8_t> sides) const;
 
 private:
-    void add_piece(const Polygons& polygons, std::size_t p, Piece piece, Pieces& pieces) const;
-
     ComplexView model_;
     std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
     std::vector<Position> vertices_;
@@ -40,25 +59,51 @@ private:
     std::vector<std::int32_t> beyond_;
 };
 
-/// Where the cells of a model are.
+/// Where the cells of a model are that may come near surfaces.
 struct CellBoxes {
-    explicit CellBoxes(const ComplexView& model, const Progress* progress = nullptr);
+    CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces, int threads,
+              const Progress* progress);
 
-    std::vector<spatial::Box> boxes;
-    std::vector<NodeId> vertex;  ///< one of each cell, -1 of those without faces
-    double rounding = 0;         ///< what its vertices may be off by
+    std::vector<spatial::Box> boxes;  ///< empty of cells that are away from all surfaces
+    double rounding = 0;              ///< what vertices may be off by
 };
 
 /// Of cells: 1 where they come near a surface, farther than SurfaceOverlay takes to be near.
+/// @param surface  one of those that the boxes were made for
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
                                      int threads, const Progress* progress);
 
 /// Of cells that are not near a surface, the side of it that they are on; kOn of the others. What
 /// is connected beside the surface is on one side.
 /// @param is_near  of cells, not 0: near, or not asked for
-std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CellBoxes& cells,
-                                            const NearestSide& surface,
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
                                             std::span<const std::uint8_t> is_near,
                                             const Progress* progress);
+
+template <class Visit>
+void WholePieces::each(const Visit& visit) const {
+    std::size_t next = 0;
+    const auto visit_near = [&] {
+        visit(near_.polygons[next], near_[next]);
+        ++next;
+    };
+    for (std::size_t f = 0; f < model_.face_count(); ++f) {
+        while (next < near_.size() && near_[next].face >= 0 && index(near_[next].face) <= f)
+            visit_near();
+        Piece piece{static_cast<std::int32_t>(f),
+                    {model_.cell(f, 0), model_.cell(f, 1)},
+                    {kOn, kOn},
+                    false};
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (piece.cells[k] < 0) continue;
+            piece.parts[k] = far_part_[index(piece.cells[k])];
+            piece.sides[k] = sides_[index(piece.cells[k])];
+        }
+        if (piece.parts[0] == kNear || piece.parts[1] == kNear) continue;
+        if (piece.parts[0] >= 0 || piece.parts[1] >= 0) visit(model_.face(f), piece);
+    }
+    while (next < near_.size())
+        visit_near();
+}
 
 }  // namespace realmodel::cutting

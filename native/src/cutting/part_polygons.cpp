@@ -225,7 +225,7 @@ NodeId PartRounding::add_middle(std::size_t piece) {
         for (std::size_t k = 0; k < 3; ++k)
             middle[k] += (at(node)[k] - first[k]) / static_cast<double>(nodes.size());
     }
-    if (!taken_.insert(middle).second) {
+    if (!taken_.insert(middle)) {
         const std::int32_t face = pieces_[piece].face;
         const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
@@ -354,7 +354,7 @@ NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
     Position middle;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] = at(edge[0])[k] + (at(edge[1])[k] - at(edge[0])[k]) / 2;
-    if (!taken_.insert(middle).second) middle = free_position_beside(middle, Freedom::kAny, taken_);
+    if (!taken_.insert(middle)) middle = free_position_beside(middle, Freedom::kAny, taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }

@@ -7,7 +7,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <unordered_map>
 
 namespace realmodel::cutting {
 
@@ -222,24 +221,33 @@ bool PartRounding::stays_sound(std::int32_t part) const {
 /// they become it.
 /// @return these nodes
 std::vector<NodeId> PartRounding::find_contractions() {
-    std::unordered_map<Position, NodeId, PositionHash>
-        first_at;  // the model's vertex, or the first new node; -1 neither
-    for (const Position& p : new_positions_)
-        first_at.try_emplace(p, -1);
+    const auto is_at = [this](const Position& p) {
+        return [this, &p](std::int32_t i) { return new_positions_[index(i)] == p; };
+    };
+    KeyTable first;  // of the new nodes in one position
+    first.reserve(new_positions_.size());
+    std::vector<NodeId> stands(new_positions_.size());  // for a new node
+    Box box;
+    for (std::size_t i = 0; i < new_positions_.size(); ++i) {
+        const Position& p = new_positions_[i];
+        box.include(p);
+        const auto own = static_cast<std::int32_t>(i);
+        const std::int32_t found = first.find_or_add(hash_of(p), own, is_at(p)).number;
+        stands[i] = static_cast<NodeId>(vertices_.size()) + found;
+    }
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
-        const auto found = first_at.find(vertices_[v]);
-        if (found != first_at.end()) found->second = static_cast<NodeId>(v);
+        if (!box.contains(vertices_[v])) continue;
+        const std::int32_t found = first.find(hash_of(vertices_[v]), is_at(vertices_[v]));
+        if (found >= 0) stands[index(found)] = static_cast<NodeId>(v);
     }
     becomes_.resize(vertices_.size() + new_positions_.size());
     std::iota(becomes_.begin(), becomes_.end(), 0);
     for (std::size_t i = 0; i < new_positions_.size(); ++i) {
-        const auto node = static_cast<NodeId>(vertices_.size() + i);
-        NodeId& first = first_at.find(new_positions_[i])->second;
-        if (first < 0) {
-            first = node;
-        } else {
-            becomes_[index(node)] = first;
-        }
+        const std::size_t node = vertices_.size() + i;
+        // that of the first in its position may be a vertex
+        becomes_[node] = index(stands[i]) < node && index(stands[i]) >= vertices_.size()
+                             ? stands[index(stands[i]) - vertices_.size()]
+                             : stands[i];
     }
     std::vector<NodeId> contracted;
     for (std::size_t node = vertices_.size(); node < becomes_.size(); ++node) {
@@ -401,6 +409,7 @@ void PartRounding::set_apart() {
     Box box;
     for (const Position& p : new_positions_)
         box.include(p);
+    taken_.reserve(2 * new_positions_.size());
     if (!new_positions_.empty()) box.widen(16 * rounding_of(std::array{box.low, box.high}));
     for (const Position& p : vertices_) {
         if (box.contains(p)) taken_.insert(p);
@@ -412,7 +421,7 @@ void PartRounding::set_apart() {
     for (std::size_t i = 0; i < new_positions_.size(); ++i) {
         if (is_used[i] == 0) continue;
         const auto node = static_cast<NodeId>(vertices_.size() + i);
-        if (!taken_.insert(new_positions_[i]).second) move_aside(node);
+        if (!taken_.insert(new_positions_[i])) move_aside(node);
     }
 }
 
@@ -426,7 +435,7 @@ void PartRounding::give_extents() {
             Position to = at(node);
             for (int i = 0; i < 3; ++i) {
                 to[axis] = std::nextafter(to[axis], HUGE_VAL);
-                if (!taken_.insert(to).second) continue;
+                if (!taken_.insert(to)) continue;
                 moving(node) = to;
                 return true;
             }

@@ -29,10 +29,11 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
     SurfaceParts made(overlay, winding, sides, progress);
     if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
     PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches).run();
-    if (!part.put_back(made.pieces, made.half_cells, sides_beside)) return std::nullopt;
+    const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
+    if (!pieces) return std::nullopt;
     if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
-    Cut halves = assemble_halves(model, overlay.new_positions(), made.pieces, made.half_cells,
-                                 threads, progress);
+    Cut halves = assemble_halves(model, overlay.new_positions(), *pieces, made.half_cells, threads,
+                                 progress);
     halves.below_touches = made.touches[0];
     halves.above_touches = made.touches[1];
     return halves;
@@ -42,10 +43,10 @@ Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Pro
     std::vector<std::uint8_t> is_near;
     std::vector<std::int8_t> sides;
     {
-        const CellBoxes cells(model, progress);
         const NearestSide nearest(surface);
+        const CellBoxes cells(model, {&nearest, 1}, threads, progress);
         is_near = cells_near(cells, nearest, threads, progress);
-        sides = sides_of_far_cells(model, cells, nearest, is_near, progress);
+        sides = sides_of_far_cells(model, nearest, is_near, progress);
     }
     if (auto halves = cut(model, surface, is_near, sides, threads, progress))
         return *std::move(halves);

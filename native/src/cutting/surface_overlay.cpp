@@ -368,8 +368,17 @@ SpacePointId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeI
 }
 
 arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
-    const SpacePointId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
     std::vector<arrangement::HalfPlane> items;
+    arrangement::EdgeFan fan;
+    find_fan(uses, items, fan);
+    return fan;
+}
+
+void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
+                              std::vector<arrangement::HalfPlane>& items,
+                              arrangement::EdgeFan& fan) {
+    const SpacePointId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
+    items.clear();
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
         if (item >= size()) {
@@ -381,7 +390,7 @@ arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
                 {arrangement_.left_corner(t, ahead ? a : b, ahead ? b : a), t, use.direction});
         }
     }
-    return fan_around(points_, a, b, items);
+    arrangement::find_fan(points_, a, b, items, fan);
 }
 
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a

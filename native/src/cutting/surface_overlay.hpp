@@ -50,6 +50,7 @@ public:
         const auto vertices = static_cast<NodeId>(model_.vertex_count());
         return node < vertices ? model_.vertex(node) : new_positions_[index(node - vertices)];
     }
+    std::size_t node_count() const { return model_.vertex_count() + new_positions_.size(); }
     std::vector<Position>& new_positions() { return new_positions_; }
     /// A new node, of which no exact point is known.
     NodeId add_node(const Position& p) {
@@ -68,6 +69,9 @@ public:
     }
     /// The fan of an edge's uses by regions and whole faces, in nodes.
     arrangement::EdgeFan fan_of(std::span<const arrangement::EdgeUse> uses);
+    /// The same for many edges one after another, in memory that they share.
+    void find_fan(std::span<const arrangement::EdgeUse> uses,
+                  std::vector<arrangement::HalfPlane>& scratch, arrangement::EdgeFan& fan);
     /// A point within a region, on none of its edges.
     SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.

@@ -3,12 +3,11 @@
 #include "cutting/surface_parts.hpp"
 
 #include <cassert>
-#include <map>
 #include <stdexcept>
 
 #include "arrangement/joined_polygons.hpp"
-#include "base/parallel_sort.hpp"
-#include "cutting/shell.hpp"
+#include "base/counting_sort.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::cutting {
 
@@ -25,7 +24,7 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     make_caps();
     joined_.emplace(slots_.size());
     join_parts(progress);
-    attach_hollows();
+    attach_hollows(progress);
     join_across();
     number_parts();
     if (progress != nullptr) progress->begin(0.77, 0.85, "dividing faces into polygons");
@@ -53,49 +52,53 @@ void SurfaceParts::leave_out(std::size_t face) {
     }
 }
 
-SurfaceParts::Patch& SurfaceParts::add_patch(std::size_t face, std::int8_t half) {
-    Patch& patch = patches_.emplace_back(Patch{static_cast<std::int32_t>(face), {}, {}, {}});
+/// Adds a patch with a slot for each of its face's cells; nothing where it is left out.
+void SurfaceParts::add_patch(Patch&& patch) {
+    const auto face = index(patch.face);
+    if (patch.half == kOn) {
+        leave_out(face);
+        return;
+    }
     for (std::size_t k = 0; k < 2; ++k)
-        patch.slots[k] = add_slot(overlay_.model().cell(face, k), half, k == 0 ? 1 : -1);
-    return patch;
+        patch.slots[k] = add_slot(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1);
+    patches_.push_back(std::move(patch));
 }
 
-void SurfaceParts::use_edge(std::int32_t slot, const EdgeUse& use) {
-    if (slot < 0) return;
-    const Slot& own = slots_[index(slot)];
-    if (sides_.reaches(own.cell)) uses_.push_back({own.cell, own.half, use, slot});
-}
-
+/// Active faces are divided on all threads; patches are numbered in the order of faces.
 void SurfaceParts::make_patches(Progress* progress) {
     const ComplexView& model = overlay_.model();
-    std::vector<std::vector<std::int32_t>> of_face(model.face_count());
-    for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
-            of_face[overlay_.face_of(r)].push_back(static_cast<std::int32_t>(r));
-    }
-    constexpr std::size_t kCounted = 1 << 10;  // faces
-    CountedLoop counted(progress, model.face_count() / kCounted, 1.0);
+    const auto of_face = bucketize<std::int32_t>(model.face_count(), [this](const auto& put) {
+        for (std::size_t r = 0; r < overlay_.size(); ++r) {
+            if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
+                put(overlay_.face_of(r), static_cast<std::int32_t>(r));
+        }
+    });
+    const auto& active = overlay_.active_faces();
+    std::vector<std::vector<Patch>> divided(active.size());
+    constexpr std::size_t kChunk = 1 << 8;
+    parallel_ranges(
+        active.size(), kChunk, overlay_.threads(), progress,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                divided[i] = divide_face(index(active[i]), of_face[index(active[i])]);
+        },
+        1.0);
+    std::size_t next = 0;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
-        if (f % kCounted == kCounted - 1) counted.count();
-        if (overlay_.is_active(f)) {
-            divide_face(f, of_face[f]);
+        if (!overlay_.is_active(f)) {
+            add_patch({static_cast<std::int32_t>(f), sides_.of_face(f), {}, {}, {}});
             continue;
         }
-        const std::int8_t half = sides_.of_face(f);
-        if (half == kOn) {
-            leave_out(f);
-            continue;
-        }
-        for (const std::int32_t slot : add_patch(f, half).slots) {
-            each_edge(std::array{model.face(f)}, static_cast<std::int32_t>(overlay_.size() + f),
-                      [&](const EdgeUse& use) { use_edge(slot, use); });
-        }
+        for (Patch& patch : divided[next])
+            add_patch(std::move(patch));
+        divided[next++] = {};
     }
 }
 
 /// Joins the regions of a face along edges that are none of the surface's.
-void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> regions) {
+std::vector<SurfaceParts::Patch> SurfaceParts::divide_face(
+    std::size_t face, std::span<const std::int32_t> regions) const {
     arrangement::JoinedPolygons joined;
     for (std::size_t i = 0; i < regions.size(); ++i) {
         for (const auto& loop : overlay_.loops(index(regions[i])))
@@ -106,30 +109,85 @@ void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> r
     });
     DisjointSets together(regions.size());
     joined.each_pair([&](std::int32_t i, std::int32_t j) { together.join(i, j); });
-    std::map<std::int32_t, std::size_t> patch_of;  // by the first region of each
+    std::vector<Patch> patches;
+    std::vector<std::int32_t> patch_of(regions.size(), -1);  // by the first region of each
     for (const auto& outline : joined.outlines()) {
         const std::int32_t first = together.find(outline[0].polygon);
-        const std::int8_t half = sides_.of_region(index(regions[index(first)]));
-        if (half == kOn) {
-            leave_out(face);
-            continue;
+        std::int32_t& own = patch_of[index(first)];
+        if (own < 0) {
+            own = static_cast<std::int32_t>(patches.size());
+            patches.push_back({static_cast<std::int32_t>(face),
+                               sides_.of_region(index(regions[index(first)])),
+                               {},
+                               {},
+                               {}});
         }
-        const auto [at, is_new] = patch_of.try_emplace(first, patches_.size());
-        if (is_new) add_patch(face, half);
-        Patch& patch = patches_[at->second];
+        Patch& patch = patches[index(own)];
         auto& loop = patch.loops.emplace_back();
         for (const auto& edge : outline) {
             loop.push_back(edge.from);
-            const EdgeUse use{unordered(edge.from, edge.to), regions[index(edge.polygon)],
-                              static_cast<std::int8_t>(edge.from < edge.to ? 1 : -1)};
-            for (const std::int32_t slot : patch.slots)
-                use_edge(slot, use);
+            patch.beside.push_back(regions[index(edge.polygon)]);
         }
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        const auto at = patch_of.find(together.find(static_cast<std::int32_t>(i)));
-        if (at != patch_of.end()) patches_[at->second].regions.push_back(regions[i]);
+        const std::int32_t own = patch_of[index(together.find(static_cast<std::int32_t>(i)))];
+        if (own >= 0) patches[index(own)].regions.push_back(regions[i]);
     }
+    return patches;
+}
+
+/// Calls visit(use) for all edges of the slots of cells that reach the surface.
+template <class Visit>
+void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
+    for (const std::int32_t slot : patch.slots) {
+        if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) continue;
+        const Slot& own = slots_[index(slot)];
+        if (patch.regions.empty()) {
+            const auto face = index(patch.face);
+            each_edge(std::array{overlay_.model().face(face)},
+                      static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
+                          visit(SlotUse{own.cell, own.half, use, slot});
+                      });
+            continue;
+        }
+        std::size_t edge = 0;
+        each_edge(patch.loops, 0, [&](EdgeUse use) {
+            use.item = patch.beside[edge++];
+            visit(SlotUse{own.cell, own.half, use, slot});
+        });
+    }
+}
+
+template <class Visit>
+void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
+    for (const auto& of_side : caps.slots) {
+        for (const std::int32_t slot : of_side) {
+            const Slot& own = slots_[index(slot)];
+            if (!sides_.reaches(own.cell)) continue;
+            each_edge(overlay_.loops(index(caps.region)), caps.region, [&](const EdgeUse& use) {
+                visit(SlotUse{own.cell, own.half, use, slot});
+            });
+        }
+    }
+}
+
+void SurfaceParts::collect_uses(const Progress* progress) {
+    constexpr std::size_t kChunk = 1 << 10;
+    const std::size_t count = patches_.size() + caps_.size();
+    auto sorted = sorted_in_buckets<SlotUse>(
+        overlay_.model().cell_count(), (count + kChunk - 1) / kChunk,
+        [&](std::size_t chunk, const auto& put) {
+            const auto visit = [&put](const SlotUse& use) { put(index(use.cell), use); };
+            for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+                if (i < patches_.size()) {
+                    each_use(patches_[i], visit);
+                } else {
+                    each_use(caps_[i - patches_.size()], visit);
+                }
+            }
+        },
+        overlay_.threads(), progress);
+    uses_ = std::move(sorted.values);
 }
 
 void SurfaceParts::make_caps() {
@@ -145,10 +203,6 @@ void SurfaceParts::make_caps() {
                     if (slot >= 0) caps.slots[k].push_back(slot);
                 }
             }
-            each_edge(overlay_.loops(r), caps.region, [&](const EdgeUse& use) {
-                for (const std::int32_t slot : caps.slots[k])
-                    use_edge(slot, use);
-            });
         }
         pair_caps(caps);
     }
@@ -190,6 +244,7 @@ void SurfaceParts::join_across() {
                                high = slots_[index(pair[1])].cell;
             if (sides_.separates(index(caps.region), low, high)) return false;
             joined_->join(pair[0], pair[1]);
+            has_joined_across_ = true;
             loses_[index(low)] = loses_[index(high)] = 1;
             return true;
         });
@@ -213,7 +268,7 @@ void SurfaceParts::join_parts(Progress* progress) {
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
-    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    collect_uses(progress);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         poll(progress, begin);
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&
@@ -274,48 +329,71 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 
 /// The wall of a hollow that the surface cuts out of a cell bounds the part around it; what
 /// rounding turned inside out goes with the part beside it.
-void SurfaceParts::attach_hollows() {
-    std::map<std::pair<std::int32_t, std::int8_t>, std::map<std::int32_t, Shell>> shells;
-    std::vector<std::optional<Position>> origin(overlay_.model().cell_block.size());
-    const auto at = [this](NodeId node) { return overlay_.position(node); };
-    const auto add = [&](std::int32_t slot, const auto& loops) {
-        if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
-        const Slot& own = slots_[index(slot)];
-        auto& first = origin[index(own.cell)];
-        if (!first) first = at(loops[0][0]);
-        for (const auto& loop : loops)
-            shells[{own.cell, own.half}][joined_->find(slot)].add(loop, own.sign, *first, at);
+void SurfaceParts::attach_hollows(const Progress* progress) {
+    // the slots of each cell that reaches the surface, and what has them
+    struct Item {
+        std::int32_t slot, patch, region;  // one of the latter, the other -1
     };
-    for (const Patch& patch : patches_) {
-        for (const std::int32_t slot : patch.slots) {
-            if (patch.regions.empty()) {
-                add(slot, std::array{overlay_.model().face(index(patch.face))});
+    const auto items = bucketize<Item>(overlay_.model().cell_count(), [this](const auto& put) {
+        const auto add = [&](std::int32_t slot, std::int32_t patch, std::int32_t region) {
+            if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
+            put(index(slots_[index(slot)].cell), Item{slot, patch, region});
+        };
+        for (std::size_t p = 0; p < patches_.size(); ++p) {
+            for (const std::int32_t slot : patches_[p].slots)
+                add(slot, static_cast<std::int32_t>(p), -1);
+        }
+        for (const Caps& caps : caps_) {
+            for (const auto& own : caps.slots) {
+                for (const std::int32_t slot : own)
+                    add(slot, -1, caps.region);
+            }
+        }
+    });
+    const auto at = [this](NodeId node) { return overlay_.position(node); };
+    const auto shells_of = [&](std::span<const Item> of_cell) {
+        Shells shells;
+        std::optional<Position> origin;
+        for (const auto& [slot, patch, region] : of_cell) {
+            const Slot& own = slots_[index(slot)];
+            Shell& shell = shells[{own.half, joined_->find(slot)}];
+            const auto add = [&](const auto& loops) {
+                if (!origin) origin = at(loops[0][0]);
+                for (const auto& loop : loops)
+                    shell.add(loop, own.sign, *origin, at);
+            };
+            if (patch < 0) {
+                add(overlay_.loops(index(region)));
+            } else if (patches_[index(patch)].regions.empty()) {
+                add(std::array{overlay_.model().face(index(patches_[index(patch)].face))});
             } else {
-                add(slot, patch.loops);
+                add(patches_[index(patch)].loops);
             }
         }
-    }
-    for (const Caps& caps : caps_) {
-        for (const auto& own : caps.slots) {
-            for (const std::int32_t slot : own)
-                add(slot, overlay_.loops(index(caps.region)));
+        return shells;
+    };
+    constexpr std::size_t kCells = 1 << 8;
+    parallel_ranges(items.size(), kCells, overlay_.threads(), progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t cell = begin; cell < end; ++cell)
+                            attach_hollows(shells_of(items[cell]));
+                    });
+}
+
+void SurfaceParts::attach_hollows(const Shells& of_cell) {
+    for (const auto& [key, hollow] : of_cell) {
+        if (hollow.sixfold_volume > 0) continue;
+        const auto rank = [&inner = hollow](const Shell& shell) {  // a box around it, the smallest
+            return std::pair(!shell.box.contains(inner.box), shell.sixfold_volume);
+        };
+        const Shells::value_type* around = nullptr;
+        for (const auto& other : of_cell) {
+            if (other.first.first != key.first || other.first.second == key.second ||
+                other.second.sixfold_volume <= -hollow.sixfold_volume)
+                continue;
+            if (around == nullptr || rank(other.second) < rank(around->second)) around = &other;
         }
-    }
-    for (const auto& [cell, of_cell] : shells) {
-        for (const auto& [root, hollow] : of_cell) {
-            if (hollow.sixfold_volume > 0) continue;
-            const auto rank =
-                [&inner = hollow](const Shell& shell) {  // a box around it, then the smallest
-                    return std::pair(!shell.box.contains(inner.box), shell.sixfold_volume);
-                };
-            const std::pair<const std::int32_t, Shell>* around = nullptr;
-            for (const auto& other : of_cell) {
-                if (other.first == root || other.second.sixfold_volume <= -hollow.sixfold_volume)
-                    continue;
-                if (around == nullptr || rank(other.second) < rank(around->second)) around = &other;
-            }
-            if (around != nullptr) joined_->join(around->first, root);
-        }
+        if (around != nullptr) joined_->join(around->first.second, key.second);
     }
 }
 

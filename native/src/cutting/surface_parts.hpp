@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
 #include "cutting/cutter_sides.hpp"
 #include "cutting/halves.hpp"
+#include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
 
@@ -36,8 +38,10 @@ private:
     /// Regions of one face that no edge of the surface lies between.
     struct Patch {
         std::int32_t face;
+        std::int8_t half;
         std::vector<std::int32_t> regions;  ///< none: the whole face, which has none
         std::vector<std::vector<NodeId>> loops;
+        std::vector<std::int32_t> beside;  ///< of the edges of all loops: the region
         std::array<std::int32_t, 2> slots{-1, -1};
     };
     /// The slots of one region of the surface: what is below it, then what is above.
@@ -58,17 +62,24 @@ private:
     };
 
     void make_patches(Progress* progress);
-    void divide_face(std::size_t face, std::span<const std::int32_t> regions);
+    std::vector<Patch> divide_face(std::size_t face, std::span<const std::int32_t> regions) const;
     void make_caps();
     void leave_out(std::size_t face);
-    Patch& add_patch(std::size_t face, std::int8_t half);
+    void add_patch(Patch&& patch);
     std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
-    void use_edge(std::int32_t slot, const EdgeUse& use);
+    template <class Visit>
+    void each_use(const Patch& patch, const Visit& visit) const;
+    template <class Visit>
+    void each_use(const Caps& caps, const Visit& visit) const;
+    void collect_uses(const Progress* progress);
     void pair_caps(Caps& caps);
     void join_parts(Progress* progress);
     void join_across();
     void join_round_edge(std::span<const SlotUse> uses);
-    void attach_hollows();
+    /// By half and first slot.
+    using Shells = std::map<std::pair<std::int8_t, std::int32_t>, Shell>;
+    void attach_hollows(const Progress* progress);
+    void attach_hollows(const Shells& of_cell);
     void number_parts();
     void write_patches(const Progress* progress);
     void write_caps();
@@ -83,9 +94,10 @@ private:
     std::vector<Slot> slots_;
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
-    std::vector<SlotUse> uses_;
+    Array<SlotUse> uses_;  ///< in order: those of one cell, half and edge side by side
     std::optional<DisjointSets> joined_;  ///< slots of the same part
     std::vector<std::int32_t> part_;      ///< of slots
+    bool has_joined_across_ = false;      ///< some parts are of several cells
     std::vector<std::uint8_t> loses_;     ///< of the model's cells: a part of it is left out
 };
 

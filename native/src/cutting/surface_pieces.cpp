@@ -219,9 +219,17 @@ void SurfaceParts::write_caps() {
 }
 
 void SurfaceParts::find_touches(const Progress* progress) {
-    std::vector<std::array<std::int32_t, 3>> edges;  // part and ends
-    for (const SlotUse& use : uses_)
-        edges.push_back({part_[index(use.slot)], use.use.edge[0], use.use.edge[1]});
+    // part and ends; of parts within one cell, two uses of an edge side by side are not too many
+    std::vector<std::array<std::int32_t, 3>> edges;
+    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
+        const SlotUse& first = uses_[begin];
+        for (; end < uses_.size() && uses_[end].cell == first.cell &&
+               uses_[end].half == first.half && uses_[end].use.edge == first.use.edge;)
+            ++end;
+        if (!has_joined_across_ && end - begin <= 2) continue;
+        for (std::size_t i = begin; i < end; ++i)
+            edges.push_back({part_[index(uses_[i].slot)], first.use.edge[0], first.use.edge[1]});
+    }
     parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     for (std::size_t i = 2; i < edges.size(); ++i) {
         if (edges[i] == edges[i - 2])

@@ -122,7 +122,7 @@ void begin(Progress* progress, double from, double to, const char* what) {
 
 /// The faces of what is left of the cells.
 CellComplex assemble(const Together& together, const std::vector<Position>& new_positions,
-                     const cutting::Pieces& pieces, std::span<const cutting::HalfCell> cells,
+                     const cutting::WholePieces& pieces, std::span<const cutting::HalfCell> cells,
                      const Progress* progress) {
     CellComplex complex;
     complex.cell_kind = together.cell_kind;
@@ -131,12 +131,11 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
     const std::size_t own = together.vertices.size();
     std::vector<std::int32_t> number(own + new_positions.size(), -1);
     complex.face_offsets.push_back(0);
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        poll(progress, p);
-        const cutting::Piece& piece = pieces[p];
-        if (piece.parts[0] < 0 && piece.parts[1] < 0) continue;
+    std::size_t visited = 0;
+    pieces.each([&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
+        poll(progress, visited++);
+        if (piece.parts[0] < 0 && piece.parts[1] < 0) return;
         const bool reversed = piece.parts[0] < 0;
-        const auto nodes = pieces.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const auto node = index(nodes[reversed ? nodes.size() - 1 - i : i]);
             if (number[node] < 0) {
@@ -150,7 +149,7 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
         complex.face_cells.push_back(reversed ? std::array{piece.parts[1], -1} : piece.parts);
         complex.face_surface.push_back(piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
                                                       : together.face_surface[index(piece.face)]);
-    }
+    });
     return complex;
 }
 
@@ -181,11 +180,12 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
                           true)
         .run();
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
-    if (!part.put_back(made.pieces, made.half_cells, sides_beside)) return std::nullopt;
+    const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
+    if (!pieces) return std::nullopt;
     begin(progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
     joined.complex =
-        assemble(together, overlay.new_positions(), made.pieces, made.half_cells, progress);
+        assemble(together, overlay.new_positions(), *pieces, made.half_cells, progress);
     for (const cutting::HalfCell& cell : made.half_cells)
         joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
     joined.complex.volumes =

@@ -8,7 +8,7 @@ namespace realmodel::structures {
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
                                    std::span<const cutting::NearestSide> structures, int threads,
                                    const Progress* progress) {
-    const cutting::CellBoxes cells(model, progress);
+    const cutting::CellBoxes cells(model, structures, threads, progress);
     std::vector<Place> places(model.cell_count(), Place::kInside);
     for (std::size_t s = 0; s < sides.size(); ++s) {
         auto is_near = cutting::cells_near(cells, structures[s], threads, progress);
@@ -20,8 +20,7 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
             }
         }
         if (sides[s] == 0) continue;  // either side will do
-        const auto own =
-            cutting::sides_of_far_cells(model, cells, structures[s], is_near, progress);
+        const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, progress);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = Place::kElsewhere;
         }

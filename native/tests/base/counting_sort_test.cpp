@@ -64,6 +64,9 @@ TEST(CountingSort, SeveralThreadsFindTheSame) {
         std::sort(any[b].begin(), any[b].end());
         EXPECT_EQ(listed(any[b]), sorted);
     }
+    const auto in_order = sorted_in_buckets<int>(kBuckets, kChunks, produce, 3, nullptr);
+    EXPECT_EQ(in_order.offsets, expected.offsets);
+    EXPECT_EQ(in_order.values, any.values);
 }
 
 TEST(Index, IsTheNumberItself) {

@@ -49,5 +49,19 @@ TEST(KeyTable, FindsWhatWasAddedThoughHashesAreEqual) {
     }
 }
 
+TEST(KeyTable, LookingUpAddsNothing) {
+    KeyTable table;
+    const auto find = [&](int value) {
+        return table.find(static_cast<std::uint32_t>(value % 7),
+                          [&](std::int32_t number) { return number == value; });
+    };
+    EXPECT_EQ(find(3), -1);
+    for (int i = 0; i < 100; i += 2)
+        table.find_or_add(static_cast<std::uint32_t>(i % 7), i, [](std::int32_t) { return false; });
+    for (int i = 0; i < 100; ++i)
+        EXPECT_EQ(find(i), i % 2 == 0 ? i : -1);
+    EXPECT_EQ(table.size(), 50);
+}
+
 }  // namespace
 }  // namespace realmodel

@@ -42,7 +42,8 @@ double middle_of(const CellComplex& model, std::int32_t cell) {
 
 std::vector<std::uint8_t> near_cells(const CellComplex& model, double x, int threads) {
     const CutterSurface surface = upright(x);
-    return cells_near(CellBoxes(model), NearestSide(surface), threads, nullptr);
+    const NearestSide nearest(surface);
+    return cells_near(CellBoxes(model, {&nearest, 1}, threads, nullptr), nearest, threads, nullptr);
 }
 
 TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
@@ -56,13 +57,28 @@ TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
     }
 }
 
+TEST(NearPart, OnlyCellsThatMayBeNearHaveABox) {
+    const CellComplex model = row();
+    const CutterSurface surface = upright(1.5), other = upright(3.5);
+    const std::array nearest{NearestSide(surface), NearestSide(other)};
+    const CellBoxes of_one(model, {nearest.data(), 1}, 2, nullptr);
+    const CellBoxes of_both(model, nearest, 1, nullptr);
+    for (std::int32_t c = 0; c < 8; ++c) {
+        const double x = middle_of(model, c);
+        const spatial::Box& box = of_both.boxes[index(c)];
+        EXPECT_EQ(box.low[0], x < 1 ? HUGE_VAL : x - 0.5);
+        EXPECT_EQ(box.high[0], x < 1 ? -HUGE_VAL : x + 0.5);
+        EXPECT_EQ(of_one.boxes[index(c)].low[0], x == 1.5 ? 1 : HUGE_VAL);
+    }
+}
+
 TEST(NearPart, TheOthersAreOnOneSideEach) {
     const CellComplex model = row();
-    const CellBoxes cells(model);
     const CutterSurface surface = upright(1.5);
     const NearestSide nearest(surface);
+    const CellBoxes cells(model, {&nearest, 1}, 1, nullptr);
     const auto sides =
-        sides_of_far_cells(model, cells, nearest, cells_near(cells, nearest, 1, nullptr), nullptr);
+        sides_of_far_cells(model, nearest, cells_near(cells, nearest, 1, nullptr), nullptr);
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         EXPECT_EQ(sides[index(c)], x < 1 ? kAbove : x < 2 ? kOn : kBelow);
@@ -87,21 +103,27 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
             {static_cast<std::int32_t>(f), own, {kAbove, own[1] < 0 ? kOn : kAbove}, false, own});
     }
     const std::vector<std::int8_t> sides(all.cell_count(), kAbove);
-    ASSERT_TRUE(part.put_back(pieces, cells, sides));
+    const auto whole = part.put_back(std::move(pieces), cells, sides);
+    ASSERT_TRUE(whole);
     ASSERT_EQ(cells.size(), all.cell_count());
     for (std::int32_t c = 0; index(c) < cells.size(); ++c)
         EXPECT_EQ(cells[index(c)].cell, c);
-    ASSERT_EQ(pieces.size(), all.face_count());
-    for (std::size_t f = 0; f < pieces.size(); ++f) {
-        std::vector<NodeId> own(pieces.polygons[f].begin(), pieces.polygons[f].end());
-        std::array parts = pieces[f].parts;
+    EXPECT_EQ(whole->near().size(), near.face_count());
+    std::size_t f = 0;
+    whole->each([&](std::span<const NodeId> polygon, const Piece& piece) {
+        ASSERT_LT(f, all.face_count());
+        EXPECT_EQ(piece.face, static_cast<std::int32_t>(f));
+        std::vector<NodeId> own(polygon.begin(), polygon.end());
+        std::array parts = piece.parts;
         if (parts[0] != all.cell(f, 0)) {  // it was turned over
             std::swap(parts[0], parts[1]);
             std::ranges::reverse(own);
         }
         EXPECT_EQ(parts, (std::array{all.cell(f, 0), all.cell(f, 1)}));
         EXPECT_TRUE(std::ranges::equal(own, all.face(f)));
-    }
+        ++f;
+    });
+    EXPECT_EQ(f, all.face_count());
 }
 
 TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
@@ -111,7 +133,7 @@ TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
     Pieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;
     const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);
-    EXPECT_FALSE(part.put_back(pieces, cells, sides));
+    EXPECT_FALSE(part.put_back(std::move(pieces), cells, sides));
 }
 
 }  // namespace

@@ -12,13 +12,17 @@ from .parts import Part, plain_words
 from .text_rows import write_rows
 
 
-def write_obj(parts: Sequence[Part], file: BinaryIO, step: Callable[[float], None], materials: str) -> None:
-    """Writes parts. materials: the name of the .mtl file."""
-    file.write(f"# RealModel: a group for each part, z upward\nmtllib {materials}\n".encode())
+def write_obj(
+    parts: Sequence[Part], file: BinaryIO, step: Callable[[float], None], materials: str = ""
+) -> None:
+    """Writes parts. materials: the name of the .mtl file; "" where there is none."""
+    file.write(b"# RealModel: a group for each part, z upward\n")
+    file.write(f"mtllib {materials}\n".encode() if materials else b"")
     first = 1
     words = plain_words([part.name for part in parts])
     for number, (part, word) in enumerate(zip(parts, words, strict=True), 1):
-        file.write(f"g {word}\nusemtl {_material(part)}\n".encode())
+        file.write(f"g {word}\n".encode())
+        file.write(f"usemtl {_material(part)}\n".encode() if materials else b"")
         write_rows(file, "v %r %r %r", part.vertices)
         corners = part.corners + first
         sizes = np.diff(part.offsets)

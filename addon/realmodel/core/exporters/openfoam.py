@@ -15,6 +15,7 @@ import numpy as np
 
 from ..simulation import PolyhedralMesh
 from ..simulation.patches import boundary_patches, solver_names
+from ..work import native_module
 
 POLY_MESH = "constant/polyMesh"
 _HEADER = """FoamFile
@@ -73,7 +74,9 @@ def write_openfoam(mesh: PolyhedralMesh, folder: Path, step: Callable[[float], N
     (folder / f"{folder.stem}.foam").touch()  # what ParaView opens
     order, turned, inner, patches, starts = _ordered(mesh)
     step(0.2)
-    offsets, corners = _corners(mesh, order, turned)
+    offsets, corners = native_module().ordered_faces(
+        mesh.face_offsets, mesh.face_vertices, order, turned.view(np.uint8)
+    )
     step(0.4)
     cells, faces = mesh.cells, len(order)
     note = f"nPoints:{len(mesh.points)}  nCells:{cells}  nFaces:{faces}  nInternalFaces:{inner}"
@@ -81,7 +84,7 @@ def write_openfoam(mesh: PolyhedralMesh, folder: Path, step: Callable[[float], N
     with _file(poly, "points", "vectorField") as file:
         _list(file, len(mesh.points), np.ascontiguousarray(mesh.points, "<f8"))
     with _file(poly, "faces", "faceCompactList") as file:
-        _list(file, faces + 1, offsets.astype("<i4"))
+        _list(file, faces + 1, offsets.astype("<i4", copy=False))
         _list(file, len(corners), corners.astype("<i4", copy=False))
     step(0.7)
     sides = np.where(turned[:, None], mesh.face_cells[order][:, ::-1], mesh.face_cells[order])
@@ -129,16 +132,6 @@ def _rises(mesh: PolyhedralMesh, faces: np.ndarray) -> np.ndarray:
     following[ends - 1] = first
     x, y = corners.T
     return np.add.reduceat(x * y[following] - y * x[following], first)
-
-
-def _corners(mesh: PolyhedralMesh, order: np.ndarray, turned: np.ndarray):
-    """Offsets (F + 1,) and corners of the faces in this order, first corners kept where they are turned."""
-    sizes = np.diff(mesh.face_offsets)[order]
-    offsets = np.concatenate([[0], np.cumsum(sizes)])
-    rank = np.arange(offsets[-1]) - np.repeat(offsets[:-1], sizes)
-    size, flipped = np.repeat(sizes, sizes), np.repeat(turned, sizes)
-    rank = np.where(flipped & (rank > 0), size - rank, rank)
-    return offsets, mesh.face_vertices[np.repeat(mesh.face_offsets[:-1][order], sizes) + rank]
 
 
 def _boundary(patches, starts) -> str:

@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 from .dxf import write_dxf
 from .gltf import write_glb
+from .obj import write_obj
 from .ply import write_ply
 from .stl import write_stl
 from .tsurf import write_tsurf
 
 PART_WRITERS: dict[str, Callable[..., None]] = {
+    ".obj": write_obj,
     ".ply": write_ply,
     ".stl": write_stl,
     ".glb": write_glb,

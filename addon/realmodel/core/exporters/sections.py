@@ -114,8 +114,8 @@ def write_section_csv(section, file: BinaryIO) -> None:
 
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
-    ".obj": write_section_obj,
     **{ending: writer for ending, writer in part_writers(section_parts).items() if ending != ".dxf"},
+    ".obj": write_section_obj,
     ".csv": write_section_csv,
     ".npz": write_section_npz,
     **dict.fromkeys(drawing.WRITERS, write_section_drawing),

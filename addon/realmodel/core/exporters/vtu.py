@@ -75,46 +75,17 @@ class CellFaces:
     def __init__(self, mesh: PolyhedralMesh):
         self.mesh = mesh
         self.face_size = np.diff(mesh.face_offsets)
-        self.begin, sides = native_module().cell_sides(mesh.face_cells, len(mesh.cell_block))
-        self.face, self.turned = sides >> 1, (sides & 1).astype(bool)
+        self.begin, self._sides = native_module().cell_sides(mesh.face_cells, len(mesh.cell_block))
+        self.face, self.turned = self._sides >> 1, (self._sides & 1).astype(bool)
 
     def stream_length(self) -> np.ndarray:
         """(C,) how many numbers describe the faces of each cell."""
         ends = np.concatenate([[0], np.cumsum(self.face_size[self.face] + 1)])
         return ends[self.begin[1:]] - ends[self.begin[:-1]] + 1
 
-    def _sides(self, start: int, end: int):
-        """Of the cells start..end: their sides' cells (from 0), sizes, and corners side after side."""
-        side = slice(self.begin[start], self.begin[end])
-        face = self.face[side]
-        size = self.face_size[face]
-        cell = np.repeat(np.arange(end - start), np.diff(self.begin[start : end + 1]))
-        owner = np.repeat(np.arange(len(face)), size)
-        rank = np.arange(len(owner)) - np.repeat(np.cumsum(size) - size, size)
-        rank = np.where(self.turned[side][owner], size[owner] - 1 - rank, rank)
-        corners = self.mesh.face_vertices[self.mesh.face_offsets[face][owner] + rank]
-        return cell, size, owner, corners
-
     def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of the cells start..end: int64 for each its number of faces, and each face's number of corners and
         corners; the vertices of each, every one once and in order; and how many these are (a cell)."""
-        cell, size, owner, corners = self._sides(start, end)
-        width = len(self.mesh.points)
-        key = np.sort(cell[owner].astype(np.int64) * width + corners)
-        key = key[np.append(True, key[1:] != key[:-1])] if len(key) else key
-        return (
-            self._stream(start, end, cell, size, owner, corners),
-            key % width,
-            np.bincount(key // width, minlength=end - start),
+        return native_module().describe_cells(
+            self.mesh.face_offsets, self.mesh.face_vertices, self.begin[start : end + 1], self._sides
         )
-
-    def _stream(self, start: int, end: int, cell, size, owner, corners) -> np.ndarray:
-        faces = np.diff(self.begin[start : end + 1])
-        stream = np.empty(len(corners) + len(size) + len(faces), np.int64)
-        # every side is preceded by all corners and sizes before it, and by the counts of cells up to its own
-        at_side = np.cumsum(size) - size + np.arange(len(size)) + cell + 1
-        first = self.begin[start:end] - self.begin[start]
-        stream[at_side[first] - 1] = faces
-        stream[at_side] = size
-        stream[np.arange(len(corners)) + owner + cell[owner] + 2] = corners
-        return stream

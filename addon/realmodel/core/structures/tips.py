@@ -27,8 +27,9 @@ from .triangles import (
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
-_PASSES = 2
-_SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
+_TOUCHES, _PASSES = 1, 2
+_SHARES = np.array([0.00001, 0.001, 0.03, *(np.arange(1, 16) / 16), 0.97, 0.999, 0.99999])
+"""Of a line: where it is looked at. Another fault may leave no more than its end."""
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -214,6 +215,8 @@ def with_equal_ends(
                 divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
                 passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
                 beyond[some[passes]] = True
+                edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
+                beyond[edges[_lie_in(work, fault, sheet[edges], within, threads)]] = True
                 touched = np.unique(some[met > 0]).astype(np.int32)
                 touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
@@ -284,8 +287,18 @@ def torn_beyond(
     return middles[0] if len(middles) else None
 
 
+def _lie_in(work: Work, fault: FaultShape, lines: np.ndarray, within: Within, threads: int) -> np.ndarray:
+    """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
+    beyond its ends."""
+    places = _along(lines)
+    alone = np.repeat(np.arange(len(places), dtype=np.int32)[:, None], 3, axis=1)
+    on = _met(work, fault, places, places, alone, threads) > 0
+    on[on] = within(places[on])
+    return on.reshape(-1, len(_SHARES)).any(axis=1)
+
+
 def _along(lines: np.ndarray) -> np.ndarray:
-    """(16 K, 3) some places along each of some lines (K, 2, 3)."""
+    """(L K, 3) some places along each of some lines (K, 2, 3)."""
     begin, end = lines[:, :1], lines[:, 1:]
     return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
 

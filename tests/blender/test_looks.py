@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rock looks: chosen by name, rendered, with the colors of the library."""
+
+import bpy
+import numpy as np
+from panel_case import PanelCase, ops, stack
+from realmodel.bl import looks, materials
+from realmodel.core.looks import LOOKS
+
+PIXELS = 64
+
+
+class Looks(PanelCase):
+    def setUp(self):
+        super().setUp()
+        stack(0.0, 20.0, 40.0)
+        self.model.library.clear()
+        for name, rock, color in (("lower", "shale", (0.4, 0.4, 0.5)), ("Coal seam", "", (0.5, 0.4, 0.3))):
+            ops.library_add(name=name)
+            self.model.library[-1].rock, self.model.library[-1].color = rock, color
+        for number in (1, 2):
+            self.model.rocks[0].surfaces[number].property_id = self.model.library[number - 1].id
+        ops.build()
+
+    def material(self, number):
+        return bpy.data.objects[f"S{number} block"].data.materials[0]
+
+    def rendered(self):
+        """(height, width, 3) of the blocks seen from the south, without the legend."""
+        for item in self.scene.objects:
+            item.hide_render = item.get("realmodel") == "interface"
+        if self.scene.camera is None:
+            camera = bpy.data.cameras.new("camera")
+            camera.type, camera.ortho_scale = "ORTHO", 40.0
+            item = bpy.data.objects.new("camera", camera)
+            middle = self.scene["realmodel_origin"]
+            item.location = (50.0 - middle[0], -200.0 - middle[1], 20.0 - middle[2])
+            item.rotation_euler = (np.pi / 2, 0.0, 0.0)
+            lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "SUN"))
+            lamp.rotation_euler = (np.pi / 2 - 0.7, 0.0, 0.5)
+            lamp.data.energy, lamp.data.angle = 3.0, 0.0
+            for each in (item, lamp):
+                self.scene.collection.objects.link(each)
+            self.scene.camera = item
+            self.scene.world = None
+        render = self.scene.render
+        render.engine = "CYCLES"
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 8, False
+        render.resolution_x = render.resolution_y = PIXELS
+        render.resolution_percentage = 100
+        render.filepath = str(self.folder / "look.png")
+        render.image_settings.file_format = "PNG"
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(render.filepath)
+        pixels = np.array(image.pixels[:], np.float32).reshape(PIXELS, PIXELS, -1)[:, PIXELS // 2 :, :3]
+        bpy.data.images.remove(image)
+        return pixels
+
+    def test_they_are_chosen_by_name_and_kept_by_builds(self):
+        ops.rock_looks()
+        self.assertEqual([self.material(n)[looks.KEY] for n in (1, 2)], ["SHALE", "COAL"])
+        ops.build()
+        self.assertEqual(self.material(1)[looks.KEY], "SHALE")
+        self.assertEqual(self.material(1)[materials.KEY], self.model.library[0].id)
+
+    def test_only_the_active_property(self):
+        self.model.active_property = 1
+        ops.rock_looks(look="GRASS", only_active=True)
+        self.assertEqual(self.material(2)[looks.KEY], "GRASS")
+        self.assertNotIn(looks.KEY, self.material(1))
+
+    def test_laminae_lie_level_in_level_layers(self):
+        ops.rock_looks(look="FLAT")
+        flat = self.rendered()
+        ops.rock_looks(look="SHALE", scale=20.0)
+        laminated = self.rendered()
+        lower = slice(4, PIXELS // 2 - 4)  # rows of one block
+        plain = flat[lower].std(axis=(0, 1)).max()
+        self.assertLess(plain, 0.01)
+        mean = laminated[lower].mean(axis=1)
+        self.assertGreater(mean.std(axis=0).max(), 3.0 * plain)
+        along = laminated[lower] - mean[:, None]
+        self.assertGreater(mean.std(axis=0).max(), along.std(axis=1).mean())
+        ops.rock_looks(look="SHALE", scale=20.0, seed=5)
+        self.assertGreater(np.abs(self.rendered() - laminated).max(), 0.02)
+
+    def test_every_look_renders_in_the_color_of_its_property(self):
+        self.assertEqual(len(LOOKS), 15)
+        for key in LOOKS:
+            ops.rock_looks(look=key)
+            found = self.rendered()[4 : PIXELS // 2 - 4].mean(axis=(0, 1))
+            self.assertLess(found.max(), 0.95, key)  # no missing texture, which is pink
+            self.assertGreater(found.min(), 0.02, key)
+            if key != "GRASS":  # which is brown below the ground
+                self.assertGreater(found[2], 0.95 * found[0], key)
+
+    def test_a_changed_color_reaches_the_look(self):
+        ops.rock_looks()
+        self.model.library[0].color = (1.0, 0.0, 0.0)
+        found = self.rendered()[4 : PIXELS // 2 - 4].mean(axis=(0, 1))
+        self.assertGreater(found[0], 3 * found[2])
+
+    def test_refused_without_blocks(self):
+        ops.clear()
+        self.refused(ops.rock_looks, "no block has these properties")
