@@ -56,17 +56,23 @@ constexpr double kFacetAngle = 25;     ///< degrees: the least wanted in faces o
 constexpr double kRadiusOverEdge = 2;  ///< the most wanted of a tetrahedron
 constexpr double kSliver = 12;         ///< degrees: flatter tetrahedra are to go
 constexpr std::uint64_t kQuestionsOfAPoint = 200;  ///< about the most asked of the model
+constexpr std::uint64_t kStepsOfAPoint = 20;       ///< the most that may fail before one succeeds
+constexpr int kTimes = 8;                          ///< the most that one thing is asked in a row
+constexpr double kMostPoints = 2e7;
 constexpr int kFirstSurface = 8;  ///< CGAL numbers surfaces from 1, we from kCutFace
 
 Point point_of(const std::array<double, 3>& p) {
     return {p[0], p[1], p[2]};
 }
 
-[[noreturn]] void refuse_endless() {
-    throw InputError(
-        "endless",
-        "ever smaller tetrahedra would be needed where boundaries meet at sharp angles; "
-        "use another edge length or a larger minimum thickness");
+[[noreturn]] void refuse_division() {
+    throw InputError("endless",
+                     "dividing into tetrahedra fails where boundaries meet at sharp angles; "
+                     "use another edge length or a larger minimum thickness");
+}
+
+[[noreturn]] void refuse_nothing() {
+    throw InputError("nothing", "the edge length is too large for the model");
 }
 
 struct Face {
@@ -130,7 +136,8 @@ public:
         tree_.build();
     }
 
-    std::uint64_t most_asked = UINT64_MAX;  ///< questions, after which refinement is given up
+    /// So many more questions, then it is given up.
+    void allow(std::uint64_t more) const { most_asked_ = asked_ + more; }
 
     CGAL::Bbox_3 bbox() const { return tree_.bbox(); }
     bool empty() const { return tree_.empty(); }
@@ -188,11 +195,12 @@ public:
         template <class Query>
         Intersection operator()(const Query& query) const {
             domain.poll();
+            // A center that rounding puts outside the balls of its facet is asked for for ever.
+            if (domain.is_asked_again(query.point(0), query.point(1))) return {};
             const auto row = domain.tree_.any_intersected_primitive(query);
             if (!row) return {};
-            const Point from = query.point(0), to = query.point(1);
-            const double share = domain.share_at(domain.faces_[*row], from, to);
-            return {from + share * (to - from), domain.patch(*row), 2};
+            return {meeting(domain.faces_[*row], query.point(0), query.point(1)),
+                    domain.patch(*row), 2};
         }
     };
     Is_in_domain is_in_domain_object() const { return {*this}; }
@@ -208,9 +216,26 @@ private:
     void poll() const {
         if ((++asked_ & 0xff) != 0) return;
         if (progress_ != nullptr) progress_->check();
-        if (asked_ > most_asked) refuse_endless();
+        if (asked_ > most_asked_) refuse_division();
     }
     int patch(std::size_t row) const { return faces_[row].surface + kFirstSurface; }
+    bool is_asked_again(const Point& from, const Point& to) const {
+        if (from == last_from_ && to == last_to_) return ++times_ > kTimes;
+        last_from_ = from;
+        last_to_ = to;
+        times_ = 1;
+        return false;
+    }
+    /// Where the line through two points meets the plane of a face. One of the points may be
+    /// very far away (the center of four points that are nearly in one plane), so from the nearer.
+    static Point meeting(const Face& face, const Point& from, const Point& to) {
+        const Kernel::Triangle_3& t = face.triangle;
+        const double a = CGAL::volume(t[0], t[1], t[2], from);
+        const double b = CGAL::volume(t[0], t[1], t[2], to);
+        if (a == b) return CGAL::midpoint(from, to);
+        return std::abs(a) <= std::abs(b) ? from + a / (a - b) * (to - from)
+                                          : to + b / (b - a) * (from - to);
+    }
     /// How far the plane of a face is on the way between two points.
     static double share_at(const Face& face, const Point& from, const Point& to) {
         const Kernel::Triangle_3& t = face.triangle;
@@ -224,7 +249,9 @@ private:
     Tree tree_;
     const Progress* progress_;
     mutable std::vector<std::size_t> hits_;
-    mutable std::uint64_t asked_ = 0;
+    mutable std::uint64_t asked_ = 0, most_asked_ = UINT64_MAX;
+    mutable Point last_from_, last_to_;
+    mutable int times_ = 0;
 };
 
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
@@ -346,8 +373,7 @@ FilledMesh arrays_of(const Complex& complex, const Domain& domain,
 }
 
 void require_volume(const FilledMesh& mesh) {
-    if (mesh.tetrahedra.empty())
-        throw InputError("nothing", "the edge length is too large for the model");
+    if (mesh.tetrahedra.empty()) refuse_nothing();
     for (const auto& corners : mesh.tetrahedra) {
         if (!(six_volumes(mesh, corners) > 0))
             throw InputError("flat", "an element has no volume", -1, {},
@@ -372,7 +398,33 @@ std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces, do
         (box.xmax() - box.xmin()) * (box.ymax() - box.ymin()) * (box.zmax() - box.zmin());
     const double most =
         10000 + 8 * volume / std::pow(edge_length, 3) + area / (tolerance * tolerance);
-    return static_cast<std::size_t>(std::min(most, 1e8));
+    return static_cast<std::size_t>(std::min(most, kMostPoints));
+}
+
+void insert(Complex& complex, const std::array<double, 3>& p, double radius, int dimension,
+            int index) {
+    const auto vertex =
+        complex.triangulation().insert(Triangulation::Weighted_point(point_of(p), radius * radius));
+    if (vertex == Triangulation::Vertex_handle()) return;
+    complex.set_dimension(vertex, dimension);
+    complex.set_index(vertex, index);
+}
+
+void refine(Complex& complex, const Domain& domain, const Criteria& criteria, std::size_t most,
+            Progress* progress) {
+    CGAL::Mesh_3::Mesher_3<Complex, Criteria, Domain> mesher(complex, domain, criteria);
+    domain.allow(kQuestionsOfAPoint * most);
+    mesher.initialize();
+    std::size_t points = 0;
+    std::uint64_t failed = 0;  // since the last new point
+    for (std::size_t step = 0; !mesher.is_algorithm_done(); ++step) {
+        if (progress != nullptr && (step & 0xff) == 0) progress->check();
+        mesher.one_step();
+        const std::size_t now = complex.triangulation().number_of_vertices();
+        failed = now == points ? failed + 1 : 0;
+        points = now;
+        if (points > most || failed > kStepsOfAPoint * (1000 + points)) refuse_division();
+    }
 }
 
 }  // namespace
@@ -384,35 +436,37 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     const BoundaryFaces faces = boundary_faces(model, cell_region, kept, threads, progress);
     Domain domain(model, faces.triangles, progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
-    Complex complex;
-    Triangulation& triangulation = complex.triangulation();
-    const auto insert = [&](const std::array<double, 3>& p, double radius, int dimension,
-                            int index) {
-        const auto vertex =
-            triangulation.insert(Triangulation::Weighted_point(point_of(p), radius * radius));
-        if (vertex == Triangulation::Vertex_handle()) return;
-        complex.set_dimension(vertex, dimension);
-        complex.set_index(vertex, index);
-    };
     const auto on_edges = points_on_edges(model, faces.sharp_edges, edge_length);
-    for (const auto& p : on_edges)
-        insert(p, kBall * edge_length, 1, 1);
-    for (const SurfaceSeed& seed :
-         surface_seeds(model, faces.triangles, on_edges, kSeeds * edge_length))
-        insert(seed.point, 0, 2, faces.triangles[index(seed.triangle)].surface + kFirstSurface);
-
-    if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
+    const auto seeds = surface_seeds(model, faces.triangles, on_edges, kSeeds * edge_length);
     const Criteria criteria(edge_length, tolerance);
     const std::size_t most = most_points(model, faces, edge_length, tolerance);
-    domain.most_asked = kQuestionsOfAPoint * most;  // it may fail without a new point, too
-    CGAL::Mesh_error_code stopped{};
-    CGAL::Mesh_3::Mesher_3<Complex, Criteria, Domain>(complex, domain, criteria, 0, most, &stopped)
-        .refine_mesh();
-    if (stopped != CGAL::CGAL_MESH_3_NO_ERROR) refuse_endless();
-    if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
-    CGAL::perturb_mesh_3(complex, domain, CGAL::parameters::sliver_bound = kSliver);
-    CGAL::exude_mesh_3(complex, CGAL::parameters::sliver_bound = kSliver);
-    FilledMesh mesh = arrays_of(complex, domain, kept);
+    const auto divided = [&] {
+        if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
+        auto complex = std::make_unique<Complex>();
+        for (const auto& p : on_edges)
+            insert(*complex, p, kBall * edge_length, 1, 1);
+        for (const SurfaceSeed& seed : seeds)
+            insert(*complex, seed.point, 0, 2,
+                   faces.triangles[index(seed.triangle)].surface + kFirstSurface);
+        if (complex->triangulation().dimension() < 3) refuse_nothing();
+        refine(*complex, domain, criteria, most, progress);
+        if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
+        return complex;
+    };
+    std::unique_ptr<Complex> complex;
+    try {
+        complex = divided();
+        domain.allow(kQuestionsOfAPoint * most);
+        try {
+            CGAL::perturb_mesh_3(*complex, domain, CGAL::parameters::sliver_bound = kSliver);
+        } catch (const CGAL::Failure_exception&) {
+            complex = divided();  // it fails on some flat tetrahedra, and leaves nothing of use
+        }
+        CGAL::exude_mesh_3(*complex, CGAL::parameters::sliver_bound = kSliver);
+    } catch (const CGAL::Failure_exception&) {
+        refuse_division();
+    }
+    FilledMesh mesh = arrays_of(*complex, domain, kept);
     require_volume(mesh);
     divide_corner_tetrahedra(mesh, progress);
     return mesh;

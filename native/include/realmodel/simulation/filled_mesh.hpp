@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Tetrahedra for models that have no columns (docs/dev/simulation.md, section 6): with faults that
+/// Tetrahedra for models that have no columns (docs/dev/simulation.md, section 7): with faults that
 /// are not vertical, with bodies, or cut.
 #pragma once
 
@@ -30,7 +30,8 @@ struct FilledMesh {
 /// (between surfaces that are as near), it is not reached.
 /// @param cell_region  of each cell; cells of one region need not be connected
 /// @param kept         of each surface: whether its faces matter inside a region, too
-/// @throws InputError kinds bad_index, nothing (no tetrahedron is left), flat (place); Cancelled
+/// @throws InputError kinds bad_index, nothing (no tetrahedron is left), flat (place), endless
+/// (refinement was given up); Cancelled
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
                        int threads, Progress* progress);
