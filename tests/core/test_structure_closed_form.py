@@ -9,6 +9,7 @@ from realmodel.core.rules import RULES
 from realmodel.core.structures import closed_form as form
 from realmodel.core.structures.exact import orient2d, orient3d
 from realmodel.core.structures.sides import FaultShape, RockFaults
+from realmodel.core.structures.triangles import distances_of_pairs
 
 BOX_TRIANGLES = np.array(
     [
@@ -189,3 +190,11 @@ def test_signs_are_exact():
         return (value > 0) - (value < 0)
 
     assert on.tolist() == [exact_2d(n) for n in range(300)]
+
+
+def test_places_on_a_long_triangle_are_on_it():
+    """A fault reaches far beyond the model: the length of its triangles does not count."""
+    needle = np.array([[-10.4, -13.6, 77.6], [5.05, 5.6, -3.5], [4.78, 5.8, -3.5]])
+    places = np.random.default_rng(1).dirichlet((1, 30, 30), 200) @ needle
+    away = distances_of_pairs(places, np.broadcast_to(needle, (200, 3, 3)))
+    assert away.max() <= 8 * np.spacing(np.abs(places).max())

@@ -21,6 +21,7 @@ from realmodel.core import (
 from realmodel.core.exporters.report import model_report
 from realmodel.core.residuals import residuals
 from realmodel.core.rules import RULES
+from realmodel.core.structures.displacement import displacements
 from realmodel.core.structures.located import OUTSIDE, Locator
 from realmodel.core.structures.proof import closed_forms
 from realmodel.core.table import volume_table
@@ -174,6 +175,28 @@ def test_a_branch_of_a_fault_that_dies_out(tmp_path):
     model = assert_right(Project("p", [rock(given, edge_length=1.5)], faults=faults), tmp_path)
     assert sorted(model.compartment_names) == ["above B", "below B", "r"]
     assert {2, 3} <= set(model.face_surface.tolist())
+
+
+def test_a_branch_leaves_the_throw_of_other_faults_that_die_out():
+    def height(k):
+        def at(x, y):
+            fade = np.clip((6.0 - y) / 3.0, 0.0, 1.0) ** 2 * np.where(x > 4, 0.4, np.where(y > 3, -0.4, -0.8))
+            return k + fade + np.clip((y - 4.0) / 3.0, 0.0, 1.0) ** 2 * np.where(x > 8, 0.3, -0.3)
+
+        return at
+
+    given = [Surface(f"S{k}", points=points_of(height(k), k, 500)) for k in range(2)]
+    corners = np.array([[-5.0, 3, -20], [4.5, 3, -20], [4.5, 3, 20], [-5, 3, 20]])
+    dying = [
+        Fault("F", *plane_fault(x=4.0, y=(-5.0, 6.0)), dies_out=True),
+        Fault("G", *plane_fault(x=8.0, y=(4.0, 15.0)), dies_out=True),
+    ]
+    branch = Fault("B", corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32), ends_at=("F",))
+    throws = []
+    for faults in (dying, [*dying, branch]):
+        model = build(Project("p", [rock(given, edge_length=1.0)], faults=faults))
+        throws.append([float(each.throw.mean()) for each in displacements(model) if each.fault == "G"])
+    assert throws[1] == pytest.approx(throws[0], rel=0.05)
 
 
 def test_a_fault_that_ends_inside_is_refused():

@@ -103,7 +103,7 @@ def test_files(tmp_path):
     assert np.array_equal(corners[-2:], last)
 
     with pytest.raises(UsageError, match="npz"):
-        surfaces.save(tmp_path / "s.obj")
+        surfaces.save(tmp_path / "s.foam")
     with pytest.raises(UsageError):
         build_surfaces(project(), stage=9)
 
@@ -158,7 +158,7 @@ def test_from_the_command_line(tmp_path, write):
         refused = command(path, "--surfaces-only", *wrong)
         assert refused.returncode == 2
         assert "--surfaces-only goes without" in refused.stderr
-    assert command(path, "--surfaces-only", "--export", tmp_path / "s.obj").returncode == 2
+    assert command(path, "--surfaces-only", "--export", tmp_path / "s.foam").returncode == 2
 
 
 def test_the_sheets_of_a_surface_that_a_fault_displaces(tmp_path):

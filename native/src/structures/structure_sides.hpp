@@ -47,6 +47,7 @@ public:
     /// Of a region of the surface that counts.
     const std::vector<RegionOf>& structures_at(std::size_t region) const { return of_[region]; }
     const std::vector<std::uint8_t>& near_cells() const { return near_; }
+    bool is_body(std::int32_t structure) const { return structures_[index(structure)].is_body; }
     bool dies_out(std::int32_t structure) const { return structures_[index(structure)].dies_out; }
     [[noreturn]] void refuse(const char* kind, const char* text, std::int32_t structure,
                              std::size_t region) const;

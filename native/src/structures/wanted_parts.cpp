@@ -82,18 +82,21 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
 
 /// The last structure that acts between two cells, -1 none. It must part their sides. What is cut
 /// off against no rock lies against what is below the oldest surface: a fault displaces that, too,
-/// and what fills a void from a base elevation may have it beside it.
+/// and what fills a void from a base elevation may have it beside it. Where a body was protected,
+/// what came later may end at its border.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
     const Sides& above = sides_.sides(sides_.part_at(region, 1));
-    const bool is_cut_off =
-        (low < 0 || high < 0) && !(ends_itself(low, region) && ends_itself(high, region));
+    const ComplexView& model = overlay_.model();
+    const bool differs = low < 0 || high < 0 || model.block(low) != model.block(high);
+    const bool is_cut_off = differs && !(ends_itself(low, region) && ends_itself(high, region));
     std::int32_t found = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off) last = of.structure;
+        if (is_cut_off && (low < 0 || high < 0 || sides_.is_body(of.structure)))
+            last = of.structure;
     }
     return found >= 0 ? found : last;
 }

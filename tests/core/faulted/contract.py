@@ -212,8 +212,6 @@ class Contract:
             for b, inside in enumerate(insides):
                 if self.times[b].get(r) != k:
                     continue
-                if not has_base:  # whether nothing is ever there depends on surfaces to come
-                    decided &= ~(inside & ~covered)
                 inside = inside & (has_base | (state != NEVER))
                 state[inside] = AIR if self.case.bodies[b].void else 100 + b
         return state, decided

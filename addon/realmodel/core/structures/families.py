@@ -19,11 +19,13 @@ _DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 class Family:
     """key: of each fault -1 or +1, the side; 0, it is not there or does not displace the surface; 2, it dies
     out here. members: the sides of the latter, -1 or +1 each, by compartment. branches: of several families
-    together the faults that end at one that dies out: 2 in the key, 0 in members where they are not."""
+    together the faults that end at one that dies out: 2 in the key, 0 in members where they are not. settled:
+    of these families the faults beyond whose tips the sheets are equal already."""
 
     key: tuple[int, ...]
     members: dict[int, tuple[int, ...]]
     branches: tuple[int, ...] = ()
+    settled: tuple[int, ...] = ()
 
     @property
     def dying(self) -> list[int]:
@@ -70,10 +72,16 @@ def around_tips(structure: RockStructure, number: int, every: list[Family]) -> l
     )
     if not branches:
         return []
+    ended_at = {other for branch in branches for other, _ in faults.ends[branch]}
+    settled = tuple(
+        fault
+        for fault, dies_out in enumerate(faults.dies_out)
+        if dies_out and fault not in ended_at and fault not in branches
+    )
     found: dict[tuple[int, ...], Family] = {}
     for family in every:
         key = tuple(_DIES_OUT if fault in branches else side for fault, side in enumerate(family.key))
-        together = found.setdefault(key, Family(key, {}, branches))
+        together = found.setdefault(key, Family(key, {}, branches, settled))
         for compartment in family.members:
             together.members[compartment] = tuple(
                 structure.compartments[compartment, together.dying].tolist()

@@ -128,14 +128,16 @@ class InterpolatedSurface:
         die out. told: what interpolating them gave, likewise by sides."""
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
+        faults = [family.dying[number] for number in some]
+        ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
         equal = with_equal_ends(
             self.work,
             nodes,
             meshed,
             heights,
-            [shapes[family.dying[number]] for number in some],
+            [shapes[fault] for fault in faults],
             self._within(family),
-            _RAMP * float(np.median(_lengths(nodes, triangles))),
+            [0.0 if fault in family.settled else ramp for fault in faults],
             self.threads,
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})

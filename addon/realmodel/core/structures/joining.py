@@ -9,12 +9,12 @@ import numpy as np
 
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
-from .part_models import NOTHING, Stack, distinct_plans, inside_body, plain_stack
+from .part_models import DEEP, FILLER, NOTHING, Stack, inside_body, plain_stack
 from .parts import Structures, compartment_of
 from .reach import Reach
 from .refusals import refused_structure
 from .rock_structure import Triangulation
-from .voids import Build
+from .voids import Build, distinct_plans
 
 _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
 
@@ -142,7 +142,8 @@ def _part_model(
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
     rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
-    surfaces = [first[n] + own if own >= 0 else own for n in taken for own in stacks[n].surfaces]
+    named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
+    surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
         built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
     except native.InputError as error:
@@ -204,14 +205,14 @@ def _stack(
     )
     if not inside:
         return stack
-    top = _above_all(sheets, structures)
+    ends = _beyond_all(sheets, structures)
     plans = [entry.region] if entry.region is not None else distinct_plans(sheets)
     for at, (after, body) in enumerate(inside):
         given = structures.bodies[body]
         if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
-        stack = inside_body(stack, after, block, top, plans, entry.region, build)
+        stack = inside_body(stack, after, block, ends, plans, entry.region, build)
     return stack
 
 
@@ -221,11 +222,12 @@ def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> i
     return surfaces + rock * len(structures) + len(structures.faults) + body
 
 
-def _above_all(sheets, structures: Structures) -> float:
-    """A height above all sheets and bodies."""
+def _beyond_all(sheets, structures: Structures) -> tuple[float, float]:
+    """Heights below and above all sheets and bodies."""
     shapes = [*(vertices for vertices, _ in sheets), *(body.vertices for body in structures.bodies)]
     low, high = min(each[:, 2].min() for each in shapes), max(each[:, 2].max() for each in shapes)
-    return float(high + (high - low) + 1.0)
+    away = (high - low) + 1.0
+    return float(low - away), float(high + away)
 
 
 def acts(inputs: list, structures: Structures) -> np.ndarray:
@@ -253,21 +255,23 @@ def acts(inputs: list, structures: Structures) -> np.ndarray:
 
 
 def _without_cells(model: dict, dropped: np.ndarray) -> dict:
-    """The arrays of a model without some cells, (C,) bool: slivers on a floor that rounding left."""
+    """The arrays of a model without some cells, (C,) bool: those under a body, where nothing is, and slivers
+    on a floor."""
     number = np.append(np.where(dropped, -1, np.cumsum(~dropped) - 1), -1).astype(np.int32)
     cells = number[model["face_cells"]]
     kept = np.flatnonzero((cells >= 0).any(axis=1))
-    loops = [
-        model["face_vertices"][model["face_offsets"][face] : model["face_offsets"][face + 1]][
-            :: 1 if cells[face, 0] >= 0 else -1
-        ]
-        for face in kept
-    ]
-    used, corners = np.unique(np.concatenate(loops), return_inverse=True)
+    size = np.diff(model["face_offsets"])[kept]
+    offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
+    face = np.repeat(np.arange(len(kept)), size)
+    at = np.arange(offsets[-1]) - offsets[face]
+    at = np.where(cells[kept, 0][face] >= 0, at, size[face] - 1 - at)  # seen from the cell that is left
+    used, corners = np.unique(
+        model["face_vertices"][model["face_offsets"][kept][face] + at], return_inverse=True
+    )
     cells = cells[kept]
     return {
         "vertices": np.ascontiguousarray(model["vertices"][used]),
-        "face_offsets": np.cumsum([0, *map(len, loops)]).astype(np.int64),
+        "face_offsets": offsets,
         "face_vertices": corners.ravel().astype(np.int32),
         "face_cells": np.ascontiguousarray(np.where(cells[:, :1] >= 0, cells, cells[:, ::-1])),
         "face_surface": model["face_surface"][kept],

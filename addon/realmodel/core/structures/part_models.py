@@ -5,21 +5,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..rules import RULES
 from .rock_structure import Triangulation
-from .voids import Build, Older, level
+from .voids import Build, Older, distinct_plans, level
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
+DEEP = -3  # below everything, under a body where no base elevation is
 _DEPOSITS, _PROTECTS = "conformable", "base"
 
 
 @dataclass
 class Stack:
     """A stack as the builder takes it. blocks: of each surface the number of the block beneath it, NOTHING
-    for none. surfaces: of each surface its number in the rock mass, FILLER or FLOOR."""
+    for none. surfaces: of each surface its number in the rock mass, FILLER, FLOOR or DEEP."""
 
     sheets: list[Triangulation]
     rules: list[str]
@@ -48,54 +47,51 @@ def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | Non
     return Stack(list(sheets), list(rules), base, blocks, numbers)
 
 
-def distinct_plans(sheets: list[Triangulation]) -> list[Triangulation]:
-    """Of sheets, one of each that cover the same triangles in plan."""
-    found: list[Triangulation] = []
-    for sheet in sheets:
-        if not any(_same_plan(sheet, other) for other in found):
-            found.append(sheet)
-    return found
-
-
-def _same_plan(one: Triangulation, other: Triangulation) -> bool:
-    return one is other or (
-        np.array_equal(one[1], other[1]) and np.array_equal(one[0][:, :2], other[0][:, :2])
-    )
-
-
 def inside_body(
     stack: Stack,
     after: int,
     block: int,
-    top: float,
+    ends: tuple[float, float],
     plans: list[Triangulation],
     region: Triangulation | None,
     build: Build,
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
-    body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans:
+    body, block `block`, or NOTHING in a void. ends: heights below and above all. plans:
     triangulations that together cover the rock mass in plan; region: the one that bounds it, or None.
     """
+    stack = stack.without([number == DEEP for number in stack.surfaces])
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
         base = float(stack.sheets[0][0][0, 2])
+    before = Older(build, stack.sheets[:older], stack.rules[:older], region)
     if block == NOTHING:
-        sheets = stack.sheets[:older]
-        before = Older(build, sheets, stack.rules[:older], distinct_plans(sheets), region)
         return _emptied(stack, older, base, before)
     # what is protected depends on all that was there
-    protects = any(RULES[rule].protects for rule in stack.rules[:older])
+    protects = any(RULES[rule].protects for rule in before.rules)
     kept = [k for k in range(older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
+    lowest: list[tuple[Triangulation, int]] = []
+    if base is None:  # a body also lies where no older surface is
+        lowest = [(level(plan, ends[0]), DEEP) for plan in plans]
+        if len(distinct_plans([stack.sheets[k] for k in kept if stack.surfaces[k] != FILLER])) > 1:
+            lowest += _never(stack, before)
+            kept = kept if protects else []
     inside = Stack(
-        [*(stack.sheets[k] for k in kept), *(level(plan, top) for plan in plans)],
-        [*(stack.rules[k] for k in kept), *[_DEPOSITS] * len(plans)],
+        [*(sheet for sheet, _ in lowest), *(stack.sheets[k] for k in kept)],
+        [*[_DEPOSITS] * len(lowest), *(stack.rules[k] for k in kept)],
         None,
-        [block] * (len(kept) + len(plans)),
-        [*(stack.surfaces[k] for k in kept), *[FILLER] * len(plans)],
+        [
+            *[NOTHING] * len(lowest),
+            *(NOTHING if base is None and stack.blocks[k] == NOTHING else block for k in kept),
+        ],
+        [*(of for _, of in lowest), *(stack.surfaces[k] for k in kept)],
     )
-    if base is None:
-        inside.blocks[0] = NOTHING
+    for plan in plans:
+        inside.sheets.append(level(plan, ends[1]))
+        inside.rules.append(_DEPOSITS)
+        inside.blocks.append(block)
+        inside.surfaces.append(FILLER)
     return _upon(base, plans, inside, stack, older)
 
 
@@ -112,6 +108,12 @@ def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> 
     )
 
 
+def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
+    """The top of what is below the oldest surface, with numbers of surfaces; none where only bodies are."""
+    pieces = [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never()]
+    return [(sheet, of) for sheet, of in pieces if of != FILLER]
+
+
 def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
     of what is below the oldest surface. What they fill below the top of what was protected stays: it is there
@@ -120,7 +122,7 @@ def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Sta
         # where no older surface was, none that comes later forms a block
         floors = [(level(plan, base), FLOOR) for plan in before.plans]
     else:
-        floors = [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never()]
+        floors = _never(stack, before)
     young = range(older, len(stack.sheets))
     kept: list[tuple[Triangulation, int, int]] = []  # with their blocks and surfaces
     if any(RULES[stack.rules[k]].cuts for k in young[1:]) and (tops := before.protected()):

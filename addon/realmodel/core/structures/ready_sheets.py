@@ -134,7 +134,8 @@ class ReadyMesh:
         shapes = self.entry.structure.faults.shapes
         faults = [shapes[family.dying[number]] for number in some]
         within = self._within(family)
-        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, 0.0, self.threads)
+        ramps = [0.0] * len(faults)
+        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps, self.threads)
         return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family):

@@ -166,12 +166,12 @@ def with_equal_ends(
     heights: dict[tuple[int, ...], np.ndarray],
     faults: list[FaultShape],
     within: Within,
-    ramp: float,
+    ramps: list[float],
     threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
-    triangles through which a fault that dies out would go on beyond its ends. Within the distance `ramp` of
-    these they are drawn together."""
+    triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
+    its ramp, they are drawn together."""
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
         return dict.fromkeys(heights, first)
@@ -223,7 +223,7 @@ def with_equal_ends(
                 beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
             if (beyond & (weights[number] > 0)).any():
                 before = weights[number] == 0
-                weights[number] = _weight(plan, beyond | before, ramp)
+                weights[number] = _weight(plan, beyond | before, ramps[number])
                 settled = False
         if settled:
             return found

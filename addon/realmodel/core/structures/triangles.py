@@ -78,11 +78,16 @@ def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -
 
 
 def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(K,) how far each point (K, 3) is from the triangle of its row (K, 3, 3), up to rounding."""
-    a, b, c = corners.transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
+    """(K,) how far each point (K, 3) is from the triangle of its row (K, 3, 3), up to rounding of what is
+    near it: long triangles have their plane from their shorter edges, taken from their nearest corner."""
+    rows = np.arange(len(points))
+    edges = np.roll(corners, -1, axis=1) - corners
+    longest = (edges * edges).sum(axis=2).argmax(axis=1)
+    normal = np.cross(edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3])
     normal = normal / np.linalg.norm(normal, axis=1)[:, None]
-    height = ((points - a) * normal).sum(axis=1)
+    apart = points[:, None] - corners
+    nearest = (apart * apart).sum(axis=2).argmin(axis=1)
+    height = (apart[rows, nearest] * normal).sum(axis=1)
     inside = np.ones(len(points), bool)
     found = np.full(len(points), np.inf)
     for first, second in _EDGES:

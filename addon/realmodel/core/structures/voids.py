@@ -34,14 +34,17 @@ class Piece(NamedTuple):
 
 
 class Older(NamedTuple):
-    """sheets, rules: of the surfaces before a void. plans: triangulations that cover what they cover. region:
-    that of the rock mass, or None."""
+    """sheets, rules: of the surfaces before a void or body. region: that of the rock mass, or None."""
 
     build: Build
     sheets: Sequence[Triangulation]
     rules: Sequence[str]
-    plans: Sequence[Triangulation]
     region: Triangulation | None
+
+    @property
+    def plans(self) -> list[Triangulation]:
+        """Triangulations that cover what the sheets cover."""
+        return distinct_plans(self.sheets)
 
     def _built(self, sheets, rules, region) -> dict:
         """The model of sheets upon one more for each plan, far below all."""
@@ -127,6 +130,21 @@ def _single_valued(build: Build, sheet: Triangulation) -> list[Triangulation]:
         if not aside:
             return [part]
         return [part, *_single_valued(build, (vertices, triangles[aside]))]
+
+
+def distinct_plans(sheets: Sequence[Triangulation]) -> list[Triangulation]:
+    """Of sheets, one of each that cover the same triangles in plan."""
+    found: list[Triangulation] = []
+    for sheet in sheets:
+        if not any(_same_plan(sheet, other) for other in found):
+            found.append(sheet)
+    return found
+
+
+def _same_plan(one: Triangulation, other: Triangulation) -> bool:
+    return one is other or (
+        np.array_equal(one[1], other[1]) and np.array_equal(one[0][:, :2], other[0][:, :2])
+    )
 
 
 def level(plan: Triangulation, height: float) -> Triangulation:
