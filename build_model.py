@@ -175,7 +175,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--mesh-elements",
         choices=("prisms", "tetrahedra"),
-        help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone",
+        help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone, which "
+        "models with bodies and inclined faults and halves of cuts need",
     )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
     parser.add_argument(

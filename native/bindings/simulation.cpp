@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulation_lines, layered_mesh, clean_cells, describe_cells, ordered_faces.
+// simulation_lines, layered_mesh, filled_mesh, clean_cells, describe_cells, ordered_faces.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -15,6 +15,7 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/simulation/clean_cells.hpp"
 #include "realmodel/simulation/face_lists.hpp"
+#include "realmodel/simulation/filled_mesh.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
 #include "rows.hpp"
 
@@ -131,6 +132,25 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     return made;
 }
 
+py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
+                     const Array<std::uint8_t>& kept, double edge_length, double tolerance,
+                     int threads, Progress* control) {
+    const ComplexArrays arrays(model);
+    simulation::FilledMesh mesh;
+    {
+        const py::gil_scoped_release unlocked;
+        mesh = simulation::filled_mesh(arrays.complex, view_of(cell_region), view_of(kept),
+                                       edge_length, tolerance, threads, control);
+    }
+    py::dict made;
+    made["points"] = to_array(std::move(mesh.points));
+    made["tetrahedra"] = to_array(std::move(mesh.tetrahedra));
+    made["region"] = to_array(std::move(mesh.region));
+    made["triangles"] = to_array(std::move(mesh.triangles));
+    made["surface"] = to_array(std::move(mesh.surface));
+    return made;
+}
+
 py::dict counts_dict(const simulation::ComplexCounts& counts) {
     py::dict made;
     made["edges"] = counts.edges;
@@ -216,6 +236,16 @@ divided into (at most, where layer_thickness is above 0; 0: no limit). Returns a
 tetrahedron, pyramid, prism: dicts of corners, block, column, layer; triangle, quadrilateral: (corners,
 surface) of the faces outside and between blocks; plan_vertices, plan_triangles, layers, volumes (B,).
 Raises InputError kinds "bad_index", "too_large"; Cancelled.)");
+    module.def("filled_mesh", &filled_mesh, py::arg("model"), py::arg("cell_region"),
+               py::arg("kept"), py::arg("edge_length"), py::arg("tolerance"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Each region of a model filled with tetrahedra, for models without columns.
+
+model: dict of the arrays of docs/dev/geometry.md. cell_region: (C,) int32. kept: (S,) uint8, surfaces
+whose faces matter inside a region, too. tolerance: how far boundaries may lie from the exact ones.
+Returns a dict: points (P, 3), tetrahedra (E, 4), region (E,), triangles (F, 3) outside, between regions
+and on kept surfaces, surface (F,).
+Raises InputError kinds "bad_index", "nothing", "flat"; Cancelled.)");
     module.def("clean_cells", &clean_cells, py::arg("model"), py::arg("blocks"),
                py::arg("surface_kind"), py::arg("tolerance"), py::arg("threads") = 0,
                py::arg("control") = nullptr,

@@ -41,6 +41,21 @@ class MeshExport(PanelCase):
         save_mesh(model.simulation_mesh(8.0, 0.8, layers=3, elements="tetrahedra"), expected)
         self.assertEqual(path.read_bytes(), expected.read_bytes())
 
+    def test_a_model_without_columns(self):
+        project = SAMPLES / "fault_blocks" / "project.toml"
+        ops.open_project(filepath=str(project))
+        ops.build()
+        path, expected = self.folder / "m.vtu", self.folder / "e.vtu"
+        sizes = {"edge_length": 160.0, "minimum_thickness": 40.0}
+        self.refused(ops.export_mesh, "elements .*tetrahedra", filepath=str(path), **sizes)
+        self.refused(
+            ops.export_mesh, "has none", filepath=str(path), layers=2, elements="TETRAHEDRA", **sizes
+        )
+        self.assertFalse(path.exists())
+        ops.export_mesh(filepath=str(path), elements="TETRAHEDRA", **sizes)
+        save_mesh(build(load_project(project)).simulation_mesh(160.0, 40.0, elements="tetrahedra"), expected)
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+
     def test_what_cannot_be_is_refused(self):
         self.refused(ops.export_mesh, "press Build first", filepath=str(self.folder / "m.vtu"))
         self.open_two_layers()

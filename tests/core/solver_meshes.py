@@ -36,14 +36,17 @@ def block_volumes(mesh):
 
 
 def directed_faces(mesh):
-    """Every face of every element as it is seen from outside, from its least corner on, with its block."""
+    """Every face of every element as it is seen from outside, from its least corner on, with its block and
+    compartment."""
     for kind, elements in mesh.elements.items():
+        blocks = mesh.element_block[kind].tolist()
+        compartments = [0] * len(blocks)
+        if mesh.element_compartment is not None:
+            compartments = mesh.element_compartment[kind].tolist()
         for face in _FACES[kind]:
-            for corners, block in zip(
-                elements[:, face].tolist(), mesh.element_block[kind].tolist(), strict=True
-            ):
+            for corners, *part in zip(elements[:, face].tolist(), blocks, compartments, strict=True):
                 first = corners.index(min(corners))
-                yield tuple(corners[first:] + corners[:first]), block
+                yield tuple(corners[first:] + corners[:first]), part
 
 
 def check_solver_mesh(mesh):
@@ -52,9 +55,9 @@ def check_solver_mesh(mesh):
         assert element_volumes(mesh, kind)[1].min() > 0, kind
         assert all(len(set(row)) == len(row) for row in mesh.elements[kind].tolist())
     seen = {}
-    for face, block in directed_faces(mesh):
+    for face, part in directed_faces(mesh):
         assert face not in seen, f"{face} is a face of two elements on one side"
-        seen[face] = block
+        seen[face] = part
     reverse = lambda face: (face[0], *face[:0:-1])  # noqa: E731
     outside = {face for face in seen if reverse(face) not in seen}
     edges = Counter()
@@ -73,7 +76,7 @@ def check_solver_mesh(mesh):
     assert len(rest) == len(given) - len(outside)
     for face in rest:
         if given[face] >= 0 and mesh.surface_kind[given[face]] != 0:  # a fault divides a block, too
-            assert reverse(face) in seen and _is_upright(mesh, face)
+            assert reverse(face) in seen
         else:
             assert min(face, reverse(face)) in inner
     flat = {face for face in inner if min(face, reverse(face)) and not _is_upright(mesh, face)}

@@ -53,7 +53,10 @@ class BatchMesh:
         entry = mesh_entry(mesh)
         counts = ", ".join(f"{count:,} {kind}s" for kind, count in entry["elements"].items())
         counts = counts.replace("tetrahedrons", "tetrahedra")
-        return f"{self.path}: {counts or 'no elements'}; {_change_text(mesh)}"
+        angle = (
+            "" if mesh.smallest_angle is None else f", angles of {mesh.smallest_angle:.2g} degrees and more"
+        )
+        return f"{self.path}: {counts or 'no elements'}{angle}; {_change_text(mesh)}"
 
 
 def cleaned_line(cells: CleanedCells) -> str:

@@ -17,8 +17,8 @@ _PRISM = [0, 2, 1, 3, 5, 4]  # VTK's prisms turn the other way round
 
 def write_vtu_elements(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes elements with the cell arrays `MaterialIDs`, as OpenGeoSys calls it, and `block`, both the
-    number
-    of the block in the model's list, and `property` (library id, 0: none)."""
+    number of the block in the model's list, `property` (library id, 0: none) and, where it is known,
+    `compartment`."""
     kinds = {kind: elements for kind, elements in mesh.elements.items() if len(elements)}
     corners = [
         (elements[:, _PRISM] if kind == "prism" else elements).astype("<i8").ravel()
@@ -29,6 +29,10 @@ def write_vtu_elements(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float],
     block = np.concatenate([*(mesh.element_block[kind] for kind in kinds), np.empty(0, np.int32)])
     block = block.astype("<i4")
     empty = np.empty(0, np.int64)
+    compartment = []
+    if mesh.element_compartment is not None:
+        own = np.concatenate([*(mesh.element_compartment[kind] for kind in kinds), np.empty(0, np.int32)])
+        compartment.append(("CellData", "compartment", own.astype("<i4")))
     step(0.3)
     write_grid(
         file,
@@ -40,6 +44,7 @@ def write_vtu_elements(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float],
             ("CellData", "MaterialIDs", block),
             ("CellData", "block", block),
             ("CellData", "property", mesh.block_property[block].astype("<i4") if len(block) else block),
+            *compartment,
         ],
     )
     step(1.0)

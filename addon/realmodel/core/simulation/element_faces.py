@@ -97,6 +97,9 @@ class ElementFaces:
             mesh.block_property,
             mesh.surface_names,
             mesh.surface_kind,
+            None
+            if mesh.element_compartment is None
+            else np.concatenate([*mesh.element_compartment.values()]).astype(np.int32, copy=False),
         )
 
     def sets(self, longest: int = 64) -> list[FaceSet]:

@@ -9,18 +9,21 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..build_warning import BuildWarning
-from ..errors import BuildFailed, InputRefused, UsageError
+from ..errors import InputRefused, UsageError
 from ..finite import is_number
 from ..mesh_sizes import check_mesher, local_lengths
 from ..method_options import check_threads
 from ..planar_mesh import mesh_rings
 from ..work import Cancel, Progress, Work, native_module, run
+from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
+from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals
 from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
 from .volume_warnings import changed_volumes
 
 ELEMENTS = ("prisms", "tetrahedra")
 MESHER = "frontal"
+_CHANGES_LESS = "a shorter edge length or a smaller minimum thickness changes less"
 _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
 
 
@@ -30,11 +33,13 @@ class SimulationMesh(VolumeMesh):
 
     volumes: (B,) float64, of the elements of each block; exact_volumes: (B,) float64, of the block itself;
     model units cubed. warnings: blocks whose volume it changes by more than a tenth.
+    smallest_angle: between two faces of an element, degrees, of a model without columns; else None.
     """
 
     volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
     exact_volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
     warnings: list[BuildWarning] = field(default_factory=list)
+    smallest_angle: float | None = None
 
 
 def simulation_mesh(
@@ -65,6 +70,11 @@ def simulation_mesh(
     size: where edges are shorter, as of mesh_region; "outline" and "constraints" mean all lines.
     mesher: of the planar mesh.
 
+    Models that have no columns (with bodies, with faults that are not vertical, halves of cuts) are filled
+    with tetrahedra of about edge_length, and layers, layer_thickness, size and mesher mean nothing there.
+    Their boundaries lie within about minimum_thickness of the exact ones, and no edge is made shorter than
+    that to get there: what is thinner may be lost. Compartments are kept apart.
+
     Raises UsageError and InputRefused for what cannot be meshed so, BuildFailed, Cancelled.
     """
     threads = check_threads(threads)
@@ -77,7 +87,19 @@ def simulation_mesh(
     if layer_thickness is not None and not (is_number(layer_thickness) and layer_thickness > 0):
         raise UsageError(f"layer_thickness must be a finite number above 0, not {layer_thickness!r}")
     numbers = layer_numbers(model, layers, layer_thickness)
-    _refuse_what_has_no_columns(model)
+    if not len(model.cell_block):
+        raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
+    size = list(size)
+    without_columns = _without_columns(model)
+    if without_columns and elements != "tetrahedra":
+        raise InputRefused(
+            f"{without_columns} cannot be meshed in columns of prisms",
+            advice='use elements "tetrahedra" (--mesh-elements tetrahedra)',
+        )
+    if without_columns and (layers is not None or layer_thickness is not None or size):
+        raise UsageError(
+            f"layers, layer_thickness and size are for meshes of columns; {without_columns} has none"
+        )
     largest = float(np.abs(model.vertices).max(initial=0.0))
     if minimum_thickness < _THINNEST * largest:
         raise UsageError(
@@ -85,12 +107,17 @@ def simulation_mesh(
             f"use {_THINNEST * largest:g} or more"
         )
 
+    def fill(work: Work) -> SimulationMesh:
+        with work.phase(0.0, 1.0, "filling with tetrahedra"):
+            made = filled(work, model, float(edge_length), float(minimum_thickness), threads)
+        return _of_tetrahedra(model, made)
+
     def task(work: Work) -> SimulationMesh:
         arrays = model_arrays(model)
         rocks = np.array([block.rock for block in model.blocks], np.int32)
         sizes = local_lengths(size, [], None)
         with work.phase(0.0, 0.2, "simplifying lines"):
-            lines = _native(
+            lines = call_native(
                 work, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes, threads
             )
         inner = lines.inner_lines
@@ -104,7 +131,7 @@ def simulation_mesh(
                 constraints=inner,
             )
         with work.phase(0.5, 1.0, "filling columns"):
-            made = _native(
+            made = call_native(
                 work,
                 native_module().layered_mesh,
                 arrays,
@@ -119,7 +146,7 @@ def simulation_mesh(
             )
         return _assembled(model, made, elements)
 
-    return run(task, progress, cancel)
+    return run(fill if without_columns else task, progress, cancel)
 
 
 def layer_numbers(model, layers, layer_thickness) -> list[int]:
@@ -146,39 +173,25 @@ def layer_numbers(model, layers, layer_thickness) -> list[int]:
     return [int(value) for value in given]
 
 
-def _refuse_what_has_no_columns(model) -> None:
-    if not len(model.cell_block):
-        raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
-    advice = "prisms need blocks that lie one above another"
+def _without_columns(model) -> str | None:
+    """Why the model has no columns, or None."""
     if model.is_cut:
-        raise InputRefused("a cut model cannot be meshed in columns", advice=advice)
-    if model.structures is not None:
-        if model.structures.bodies:
-            raise InputRefused("a model with bodies cannot be meshed in columns", advice=advice)
-        for fault in model.structures.faults:
-            corners = fault.vertices[fault.triangles]
-            u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-            if (u[:, 0] * v[:, 1] != u[:, 1] * v[:, 0]).any():
-                raise InputRefused(
-                    f"fault '{fault.name}' is not vertical: the model cannot be meshed in columns",
-                    advice=advice,
-                )
+        return "a cut model"
+    if model.structures is None:
+        return None
+    if model.structures.bodies:
+        return "a model with bodies"
+    for fault in model.structures.faults:
+        corners = fault.vertices[fault.triangles]
+        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        if (u[:, 0] * v[:, 1] != u[:, 1] * v[:, 0]).any():
+            return f"a model with a fault that is not vertical ('{fault.name}')"
+    return None
 
 
 def _with_lines(size, inner: list[np.ndarray]) -> list[Mapping]:
     """`size` for the planar mesh; without lines inside there is nothing that "constraints" would mean."""
     return [entry for entry in size if inner or entry.get("at") != "constraints"]
-
-
-def _native(work: Work, function, *arguments):
-    native = native_module()
-    try:
-        return work.native(function, *arguments[:-1], threads=arguments[-1])
-    except native.InputError as error:
-        if error.kind == "nothing":
-            raise InputRefused(str(error), advice="use a shorter edge length") from error
-        place = tuple(error.place[:2]) if error.place is not None else None
-        raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error
 
 
 def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
@@ -200,10 +213,7 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         element_block={kind: own["block"] for kind, own in elements.items()},
         faces={kind: own[0] for kind, own in faces.items()},
         face_surface={kind: own[1] for kind, own in faces.items()},
-        block_names=[block.name for block in model.blocks],
-        block_property=np.array([block.property for block in model.blocks], np.int32),
-        surface_names=list(model.surface_names),
-        surface_kind=model.surface_kind,
+        **_names(model),
         plan=PlanMesh(
             made["plan_vertices"],
             made["plan_triangles"],
@@ -216,9 +226,36 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         warnings=changed_volumes(
             model,
             made["volumes"],
-            "a shorter edge length or a smaller minimum thickness changes less",
+            _CHANGES_LESS,
         ),
     )
+
+
+def _of_tetrahedra(model, made: dict) -> SimulationMesh:
+    sizes = tetrahedron_volumes(made["points"], made["corners"])
+    volumes = np.bincount(made["block"], sizes, minlength=len(model.blocks))
+    return SimulationMesh(
+        points=made["points"],
+        elements={"tetrahedron": made["corners"]},
+        element_block={"tetrahedron": made["block"]},
+        element_compartment={"tetrahedron": made["compartment"]},
+        faces={"triangle": made["triangles"]},
+        face_surface={"triangle": made["surface"]},
+        **_names(model),
+        volumes=volumes,
+        exact_volumes=np.array([block.volume for block in model.blocks]),
+        warnings=changed_volumes(model, volumes, _CHANGES_LESS),
+        smallest_angle=smallest_dihedral_angle(made["points"], made["corners"]),
+    )
+
+
+def _names(model) -> dict:
+    return {
+        "block_names": [block.name for block in model.blocks],
+        "block_property": np.array([block.property for block in model.blocks], np.int32),
+        "surface_names": list(model.surface_names),
+        "surface_kind": model.surface_kind,
+    }
 
 
 def mesh_entry(mesh: SimulationMesh) -> dict:
@@ -226,6 +263,7 @@ def mesh_entry(mesh: SimulationMesh) -> dict:
     return {
         "elements": {kind: len(corners) for kind, corners in mesh.elements.items()},
         "points": len(mesh.points),
+        **({} if mesh.smallest_angle is None else {"smallest_angle": mesh.smallest_angle}),
         "blocks": [
             {"block": name, "volume": float(volume), "exact_volume": float(exact)}
             for name, volume, exact in zip(mesh.block_names, mesh.volumes, mesh.exact_volumes, strict=True)

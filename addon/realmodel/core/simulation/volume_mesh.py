@@ -43,6 +43,7 @@ class VolumeMesh:
     block_names, block_property (B,) int32 (ids of the library, 0: none), surface_names, surface_kind (S,)
     int32: as of the model; so blocks and surfaces have the numbers that they have there.
     plan: where the elements stand in columns.
+    element_compartment: of each kind, (E,) int32, as cell_compartment of the model; None: of one.
     """
 
     points: np.ndarray
@@ -55,6 +56,7 @@ class VolumeMesh:
     surface_names: list[str]
     surface_kind: np.ndarray
     plan: PlanMesh | None = None
+    element_compartment: dict[str, np.ndarray] | None = None
 
     @property
     def cells(self) -> int:

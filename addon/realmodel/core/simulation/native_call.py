@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Calls of the native module that make meshes from a model."""
+
+from __future__ import annotations
+
+from ..errors import BuildFailed, InputRefused
+from ..work import Work, native_module
+
+
+def call_native(work: Work, function, *arguments):
+    """What `function` gives; the last argument is the number of threads. Raises InputRefused, BuildFailed."""
+    native = native_module()
+    try:
+        return work.native(function, *arguments[:-1], threads=arguments[-1])
+    except native.InputError as error:
+        if error.kind == "nothing":
+            raise InputRefused(str(error), advice="use a shorter edge length") from error
+        place = tuple(error.place[:2]) if error.place is not None else None
+        raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error

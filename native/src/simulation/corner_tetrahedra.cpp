@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/corner_tetrahedra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+using Tetrahedron = std::array<std::int32_t, 4>;
+using Triangle = std::array<std::int32_t, 3>;
+
+constexpr int kMostRounds = 20;
+constexpr std::int32_t kGone = INT32_MIN;  ///< the surface of a triangle that is no longer one
+constexpr double kFlat = 0.87;             ///< cosine between normals: 30 degrees
+
+template <std::size_t N>
+bool has(const std::array<std::int32_t, N>& corners, std::int32_t v) {
+    return std::find(corners.begin(), corners.end(), v) != corners.end();
+}
+
+template <std::size_t N>
+std::array<std::int32_t, N> with(std::array<std::int32_t, N> corners, std::int32_t old,
+                                 std::int32_t instead) {
+    std::replace(corners.begin(), corners.end(), old, instead);
+    return corners;
+}
+
+Triangle opposite(const Tetrahedron& corners, std::size_t corner) {
+    Triangle face{};
+    for (std::size_t i = 0, at = 0; i < 4; ++i)
+        if (i != corner) face[at++] = corners[i];
+    std::sort(face.begin(), face.end());
+    return face;
+}
+
+/// Keeps the rows, and their labels, of which is_kept holds.
+template <class Rows, class IsKept>
+void keep(Rows& rows, std::vector<std::int32_t>& labels, const IsKept& is_kept) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!is_kept(i)) continue;
+        rows[kept] = rows[i];
+        labels[kept++] = labels[i];
+    }
+    rows.resize(kept);
+    labels.resize(kept);
+}
+
+/// Which tetrahedra and triangles meet in each vertex.
+struct Incidence {
+    std::vector<std::vector<std::int32_t>> tetrahedra, triangles;
+
+    explicit Incidence(const FilledMesh& mesh)
+        : tetrahedra(mesh.points.size()), triangles(mesh.points.size()) {
+        add(mesh.tetrahedra, tetrahedra);
+        add(mesh.triangles, triangles);
+    }
+    template <class Rows>
+    static void add(const Rows& rows, std::vector<std::vector<std::int32_t>>& of_vertex) {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (const std::int32_t v : rows[i])
+                of_vertex[index(v)].push_back(static_cast<std::int32_t>(i));
+    }
+};
+
+std::array<double, 3> normal(const FilledMesh& mesh, const Tetrahedron& corners,
+                             std::size_t corner) {
+    std::array<std::array<double, 3>, 3> at{};
+    for (std::size_t i = 0, k = 0; i < 4; ++i)
+        if (i != corner) at[k++] = mesh.points[index(corners[i])];
+    std::array<std::array<double, 3>, 3> edge{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        edge[0][axis] = at[1][axis] - at[0][axis];
+        edge[1][axis] = at[2][axis] - at[0][axis];
+        edge[2][axis] = mesh.points[index(corners[corner])][axis] - at[0][axis];
+    }
+    const auto& [u, v, inward] = edge;
+    std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                            u[0] * v[1] - u[1] * v[0]};
+    const double size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    const bool turns = n[0] * inward[0] + n[1] * inward[1] + n[2] * inward[2] > 0;
+    for (double& x : n)
+        x /= turns ? -size : size;
+    return n;
+}
+
+/// One round: what is divided does not touch what else is divided.
+class Round {
+public:
+    explicit Round(FilledMesh& mesh)
+        : mesh_(mesh),
+          incidence_(mesh),
+          tetrahedra_(mesh.tetrahedra),
+          triangles_(mesh.triangles),
+          is_taken_(mesh.tetrahedra.size(), 0),
+          is_gone_(mesh.tetrahedra.size(), 0) {}
+
+    /// Whether anything was divided.
+    bool run(Progress* progress) {
+        bool any = false;
+        const std::size_t count = mesh_.tetrahedra.size();
+        for (std::size_t t = 0; t < count; ++t) {
+            poll(progress, t);
+            if (is_taken_[t] != 0) continue;
+            const Tetrahedron corners = mesh_.tetrahedra[t];
+            // corners across from faces of the outside, then the others
+            std::array<std::int32_t, 4> order{};
+            std::size_t outer = 0, inner = 4;
+            for (std::size_t i = 0; i < 4; ++i) {
+                if (is_outside(corners, i, t))
+                    order[outer++] = corners[i];
+                else
+                    order[--inner] = corners[i];
+            }
+            // Two outer faces share the edge of the two last corners, and the edge of the first two
+            // is inside; three share the last corner, and the face of the others is inside.
+            if (outer < 2 || outer > 3) continue;
+            std::vector<std::int32_t> inside(order.begin(), order.begin() + 2);
+            if (outer == 3) inside.push_back(order[2]);
+            any |= give_up(t, inside) || divide(inside);
+        }
+        drop_gone();
+        return any;
+    }
+
+private:
+    /// Whether no other tetrahedron has the face.
+    bool is_outside(const Tetrahedron& corners, std::size_t corner, std::size_t own) const {
+        const Triangle face = opposite(corners, corner);
+        for (const std::int32_t other : incidence_.tetrahedra[index(face[0])]) {
+            const Tetrahedron& its = tetrahedra_[index(other)];
+            if (index(other) != own && is_gone_[index(other)] == 0 && has(its, face[0]) &&
+                has(its, face[1]) && has(its, face[2]))
+                return false;
+        }
+        return true;
+    }
+
+    /// Leaves out a tetrahedron whose faces outside are nearly one plane: they are on one surface,
+    /// and the others, inside until now, take their place.
+    bool give_up(std::size_t t, const std::vector<std::int32_t>& inside) {
+        const Tetrahedron corners = mesh_.tetrahedra[t];
+        std::vector<std::array<double, 3>> normals;
+        std::vector<Triangle> old_faces, new_faces;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const bool is_outer =
+                std::find(inside.begin(), inside.end(), corners[i]) != inside.end();
+            (is_outer ? old_faces : new_faces).push_back(opposite(corners, i));
+            if (is_outer) normals.push_back(normal(mesh_, corners, i));
+        }
+        for (std::size_t i = 0; i < normals.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (!(normals[i][0] * normals[j][0] + normals[i][1] * normals[j][1] +
+                          normals[i][2] * normals[j][2] >
+                      kFlat))
+                    return false;
+        std::vector<std::size_t> rows;
+        for (const std::int32_t f : incidence_.triangles[index(inside[0])]) {
+            const Triangle& face = triangles_[index(f)];
+            // what is inside must not be on the outside, or a boundary, elsewhere
+            const bool is_own =
+                has(corners, face[0]) && has(corners, face[1]) && has(corners, face[2]);
+            if (!is_own && has(face, inside[1])) return false;
+        }
+        for (const Triangle& face : new_faces)
+            if (row_of(face)) return false;
+        for (const Triangle& face : old_faces) {
+            const auto row = row_of(face);
+            if (!row || mesh_.surface[*row] != mesh_.surface[*row_of(old_faces[0])]) return false;
+            rows.push_back(*row);
+        }
+        for (const std::int32_t v : corners)
+            for (const std::int32_t other : incidence_.tetrahedra[index(v)])
+                is_taken_[index(other)] = 1;
+        is_gone_[t] = 1;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (i >= new_faces.size()) {
+                mesh_.surface[rows[i]] = kGone;
+                continue;
+            }
+            // seen from outside: the other way round than from the tetrahedron that is left out
+            Triangle face = new_faces[i];
+            std::int32_t fourth = corners[0];
+            for (const std::int32_t v : corners)
+                if (!has(face, v)) fourth = v;
+            if (six_volumes(mesh_, {face[0], face[1], face[2], fourth}) < 0)
+                std::swap(face[0], face[1]);
+            mesh_.triangles[rows[i]] = face;
+        }
+        return true;
+    }
+
+    /// The row of a face with sorted corners among the triangles.
+    std::optional<std::size_t> row_of(const Triangle& sorted) const {
+        for (const std::int32_t f : incidence_.triangles[index(sorted[0])]) {
+            const Triangle& face = mesh_.triangles[index(f)];
+            if (mesh_.surface[index(f)] != kGone && has(face, sorted[0]) && has(face, sorted[1]) &&
+                has(face, sorted[2]))
+                return index(f);
+        }
+        return std::nullopt;
+    }
+
+    void drop_gone() {
+        is_gone_.resize(mesh_.tetrahedra.size(), 0);
+        keep(mesh_.tetrahedra, mesh_.region, [&](std::size_t t) { return is_gone_[t] == 0; });
+        keep(mesh_.triangles, mesh_.surface,
+             [&](std::size_t f) { return mesh_.surface[f] != kGone; });
+    }
+
+    /// A new point in the middle of an edge or a face; everything that has it is divided.
+    bool divide(const std::vector<std::int32_t>& middle_of) {
+        const auto has_all = [&](const auto& corners) {
+            return std::all_of(middle_of.begin(), middle_of.end(),
+                               [&](std::int32_t v) { return has(corners, v); });
+        };
+        std::vector<std::int32_t> around;
+        for (const std::int32_t t : incidence_.tetrahedra[index(middle_of[0])]) {
+            if (!has_all(tetrahedra_[index(t)])) continue;
+            if (is_taken_[index(t)] != 0) return false;
+            around.push_back(t);
+        }
+        std::array<double, 3> middle{};
+        for (const std::int32_t v : middle_of)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                middle[axis] +=
+                    mesh_.points[index(v)][axis] / static_cast<double>(middle_of.size());
+        const std::int32_t added = checked_number(mesh_.points.size(), "points");
+        mesh_.points.push_back(middle);
+        for (const std::int32_t t : around) {
+            for (const std::int32_t v : middle_of) {
+                if (!(six_volumes(mesh_, with(mesh_.tetrahedra[index(t)], v, added)) > 0)) {
+                    mesh_.points.pop_back();
+                    return false;
+                }
+            }
+        }
+        for (const std::int32_t t : around) {
+            is_taken_[index(t)] = 1;
+            split(mesh_.tetrahedra, mesh_.region, index(t), middle_of, added);
+        }
+        for (const std::int32_t f : incidence_.triangles[index(middle_of[0])])
+            if (has_all(mesh_.triangles[index(f)]))
+                split(mesh_.triangles, mesh_.surface, index(f), middle_of, added);
+        return true;
+    }
+
+    template <class Rows>
+    static void split(Rows& rows, std::vector<std::int32_t>& labels, std::size_t row,
+                      const std::vector<std::int32_t>& middle_of, std::int32_t added) {
+        const auto corners = rows[row];
+        rows[row] = with(corners, middle_of[0], added);
+        for (std::size_t i = 1; i < middle_of.size(); ++i) {
+            rows.push_back(with(corners, middle_of[i], added));
+            labels.push_back(labels[row]);
+        }
+    }
+
+    FilledMesh& mesh_;
+    Incidence incidence_;
+    // as they were before the round, which incidence_ is of
+    const std::vector<Tetrahedron> tetrahedra_;
+    const std::vector<Triangle> triangles_;
+    std::vector<std::uint8_t> is_taken_, is_gone_;
+};
+
+/// Leaves out tetrahedra that share no face with another.
+void drop_single(FilledMesh& mesh) {
+    std::vector<std::pair<Triangle, std::int32_t>> faces;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (std::size_t i = 0; i < 4; ++i)
+            faces.emplace_back(opposite(mesh.tetrahedra[t], i), static_cast<std::int32_t>(t));
+    std::sort(faces.begin(), faces.end());
+    std::vector<std::uint8_t> has_neighbor(mesh.tetrahedra.size(), 0);
+    for (std::size_t i = 1; i < faces.size(); ++i)
+        if (faces[i].first == faces[i - 1].first)
+            has_neighbor[index(faces[i].second)] = has_neighbor[index(faces[i - 1].second)] = 1;
+    if (std::find(has_neighbor.begin(), has_neighbor.end(), 0) == has_neighbor.end()) return;
+    std::vector<Triangle> lost;
+    for (const auto& [face, t] : faces)
+        if (has_neighbor[index(t)] == 0) lost.push_back(face);
+    keep(mesh.triangles, mesh.surface, [&](std::size_t f) {
+        Triangle face = mesh.triangles[f];
+        std::sort(face.begin(), face.end());
+        return !std::binary_search(lost.begin(), lost.end(), face);
+    });
+    keep(mesh.tetrahedra, mesh.region, [&](std::size_t t) { return has_neighbor[t] != 0; });
+}
+
+void drop_unused_points(FilledMesh& mesh) {
+    std::vector<std::int32_t> number(mesh.points.size(), -1);
+    for (const Tetrahedron& corners : mesh.tetrahedra)
+        for (const std::int32_t v : corners)
+            number[index(v)] = 0;
+    std::size_t used = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] < 0) continue;
+        number[v] = static_cast<std::int32_t>(used);
+        mesh.points[used++] = mesh.points[v];
+    }
+    mesh.points.resize(used);
+    for (Tetrahedron& corners : mesh.tetrahedra)
+        for (std::int32_t& v : corners)
+            v = number[index(v)];
+    for (Triangle& corners : mesh.triangles)
+        for (std::int32_t& v : corners)
+            v = number[index(v)];
+}
+
+}  // namespace
+
+double six_volumes(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
+    const auto& o = mesh.points[index(corners[0])];
+    std::array<std::array<double, 3>, 3> edge{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            edge[i][axis] = mesh.points[index(corners[i + 1])][axis] - o[axis];
+    const auto& [a, b, c] = edge;
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+void divide_corner_tetrahedra(FilledMesh& mesh, Progress* progress) {
+    for (int round = 0; round < kMostRounds && Round(mesh).run(progress); ++round) {
+    }
+    drop_single(mesh);
+    drop_unused_points(mesh);
+}
+
+}  // namespace realmodel::simulation

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/simulation/filled_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+#include "realmodel/base/errors.hpp"
+#include "simulation/corner_tetrahedra.hpp"
+
+namespace realmodel::simulation {
+namespace {
+
+using Triangle = std::array<std::int32_t, 3>;
+
+/// A box divided by an inclined face, which is a fault (surface 0).
+struct DividedBox {
+    // below at y = 0 and 6, then above, then the ends of the fault below and above
+    std::vector<double> vertices{0,  0, 0, 10, 0, 0, 10, 6, 0, 0, 6, 0, 0, 0, 8, 10, 0, 8,
+                                 10, 6, 8, 0,  6, 8, 4,  0, 0, 4, 6, 0, 6, 0, 8, 6,  6, 8};
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::int32_t> corners, cells, surface, block{0, 0};
+    ComplexView view;
+
+    DividedBox() {
+        add({8, 9, 11, 10}, 0, 1, 0);
+        add({0, 3, 9, 8}, 0, -1, 1);
+        add({4, 10, 11, 7}, 0, -1, 2);
+        add({0, 4, 7, 3}, 0, -1, -1);
+        add({0, 8, 10, 4}, 0, -1, -1);
+        add({3, 7, 11, 9}, 0, -1, -1);
+        add({8, 9, 2, 1}, 1, -1, 1);
+        add({10, 5, 6, 11}, 1, -1, 2);
+        add({1, 2, 6, 5}, 1, -1, -1);
+        add({8, 1, 5, 10}, 1, -1, -1);
+        add({9, 11, 6, 2}, 1, -1, -1);
+        view = {.vertices = vertices,
+                .face_offsets = offsets,
+                .face_vertices = corners,
+                .face_cells = cells,
+                .face_surface = surface,
+                .cell_block = block,
+                .blocks = 1,
+                .surfaces = 3};
+    }
+    void add(const std::array<std::int32_t, 4>& loop, std::int32_t first, std::int32_t second,
+             std::int32_t on) {
+        corners.insert(corners.end(), loop.begin(), loop.end());
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        cells.insert(cells.end(), {first, second});
+        surface.push_back(on);
+    }
+    FilledMesh filled(double edge_length, double tolerance,
+                      const std::vector<std::int32_t>& regions = {0, 1}) const {
+        return filled_mesh(view, regions, std::vector<std::uint8_t>{1, 0, 0}, edge_length,
+                           tolerance, 1, nullptr);
+    }
+};
+
+Triangle sorted(Triangle face) {
+    std::sort(face.begin(), face.end());
+    return face;
+}
+
+/// How many tetrahedra have each face.
+std::map<Triangle, int> faces_of(const FilledMesh& mesh) {
+    std::map<Triangle, int> found;
+    for (const auto& t : mesh.tetrahedra) {
+        for (std::size_t i = 0; i < 4; ++i)
+            ++found[sorted({t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]})];
+    }
+    return found;
+}
+
+double volume(const FilledMesh& mesh, std::int32_t region) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (mesh.region[t] == region) sum += six_volumes(mesh, mesh.tetrahedra[t]) / 6;
+    return sum;
+}
+
+/// Positive, conforming, and with all faces of the outside given once.
+void expect_valid(const FilledMesh& mesh) {
+    ASSERT_FALSE(mesh.tetrahedra.empty());
+    for (const auto& t : mesh.tetrahedra)
+        EXPECT_GT(six_volumes(mesh, t), 0);
+    std::map<Triangle, int> given;
+    for (const Triangle& face : mesh.triangles)
+        ++given[sorted(face)];
+    for (const auto& [face, times] : given)
+        EXPECT_EQ(times, 1);
+    std::map<std::array<std::int32_t, 2>, int> edges;
+    for (const auto& [face, times] : faces_of(mesh)) {
+        EXPECT_LE(times, 2);
+        if (times > 1) continue;
+        EXPECT_TRUE(given.contains(face));
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = i + 1; j < 3; ++j)
+                ++edges[{face[i], face[j]}];
+    }
+    for (const auto& [edge, times] : edges)
+        EXPECT_EQ(times % 2, 0);
+}
+
+TEST(FilledMeshTest, AnInclinedFaultDividesABox) {
+    const DividedBox box;
+    const FilledMesh mesh = box.filled(1.5, 0.2);
+    expect_valid(mesh);
+    EXPECT_NEAR(volume(mesh, 0), 240, 2.4);
+    EXPECT_NEAR(volume(mesh, 1), 240, 2.4);
+    std::size_t on_fault = 0;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+        if (mesh.surface[f] != 0) continue;
+        ++on_fault;
+        for (const std::int32_t v : mesh.triangles[f]) {
+            const auto& p = mesh.points[static_cast<std::size_t>(v)];
+            EXPECT_NEAR(p[0], 4 + p[2] / 4, 0.2);
+        }
+    }
+    EXPECT_GT(on_fault, 30u);
+}
+
+TEST(FilledMeshTest, AKeptSurfaceWithinOneRegionHasFaces) {
+    const FilledMesh mesh = DividedBox().filled(2, 0.3, {0, 0});
+    expect_valid(mesh);
+    EXPECT_NEAR(volume(mesh, 0), 480, 4.8);
+    EXPECT_GT(std::count(mesh.surface.begin(), mesh.surface.end(), 0), 10);
+}
+
+TEST(FilledMeshTest, EveryLengthEnds) {
+    const DividedBox box;
+    for (const double edge : {0.8, 1.1, 1.6, 2.0, 2.5})
+        for (const double share : {0.1, 0.25, 0.5})
+            expect_valid(box.filled(edge, share * edge));
+}
+
+TEST(FilledMeshTest, WhatIsTooCoarseIsRefused) {
+    try {
+        DividedBox().filled(1000, 500);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, "nothing");
+    }
+}
+
+TEST(FilledMeshTest, ThereIsOneRegionForEachCell) {
+    EXPECT_THROW(DividedBox().filled(2, 0.3, {0}), InputError);
+}
+
+/// Corners 0 to 3 of a tetrahedron, and 4 below it.
+FilledMesh corner_mesh() {
+    return {
+        .points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.3, 0.3, -1}},
+        .tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}},
+        .region = {0, 1},
+        .triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}, {0, 1, 2}},
+        .surface = {1, 2, 3, 4, 5, 6, 0}};
+}
+
+TEST(CornerTetrahedraTest, ThreeFacesOutsideAreDivided) {
+    FilledMesh mesh = corner_mesh();
+    divide_corner_tetrahedra(mesh, nullptr);
+    expect_valid(mesh);
+    const auto faces = faces_of(mesh);
+    for (const auto& t : mesh.tetrahedra) {
+        int outside = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            outside += faces.at(sorted({t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]})) == 1;
+        EXPECT_LE(outside, 1);
+    }
+    EXPECT_NEAR(volume(mesh, 0) + volume(mesh, 1), 1.0 / 3, 1e-12);
+    EXPECT_NEAR(volume(mesh, 0), 1.0 / 6, 1e-12);
+}
+
+TEST(CornerTetrahedraTest, ASingleTetrahedronIsLeftOut) {
+    FilledMesh mesh = corner_mesh();
+    mesh.points.insert(mesh.points.end(), {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {5, 0, 1}});
+    // of four faces outside, none is inside
+    mesh.tetrahedra.push_back({5, 6, 7, 8});
+    mesh.region.push_back(0);
+    for (const Triangle& face : {Triangle{5, 7, 6}, {5, 6, 8}, {6, 7, 8}, {7, 5, 8}}) {
+        mesh.triangles.push_back(face);
+        mesh.surface.push_back(7);
+    }
+    divide_corner_tetrahedra(mesh, nullptr);
+    expect_valid(mesh);
+    EXPECT_NEAR(volume(mesh, 0) + volume(mesh, 1), 1.0 / 3, 1e-12);
+    EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), 7), 0);
+    for (const auto& p : mesh.points)
+        EXPECT_LT(p[0], 2);
+}
+
+}  // namespace
+}  // namespace realmodel::simulation

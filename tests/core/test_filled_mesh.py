@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models without columns filled with tetrahedra: positive, conforming, named, near the exact volumes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from realmodel.core import (
+    Body,
+    Cancelled,
+    Fault,
+    InputRefused,
+    Project,
+    Rock,
+    Surface,
+    UsageError,
+    build,
+    load_project,
+)
+from realmodel.core.exporters.meshes import save_mesh
+from realmodel.core.simulation.element_faces import ElementFaces
+from realmodel.core.simulation.filled import smallest_dihedral_angle
+from solver_meshes import block_volumes, check_solver_mesh, outside_volume
+from solvers import foam_program, run_foam
+
+SAMPLES = Path(__file__).parents[2] / "blend_samples"
+SQUARE = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [0.0, 60.0]]
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+CUBE_TRIANGLES = [
+    *([0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3], [0, 1, 3], [0, 3, 2]),
+    *([4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6]),
+]
+
+
+def flat(name, height):
+    vertices = [[x, y, height] for x, y in SQUARE]
+    return Surface(name=name, vertices=vertices, triangles=[[0, 1, 2], [0, 2, 3]])
+
+
+def rock():
+    points = np.array([[x, y, 20.0 if x < 50 else 26.0] for x in range(5, 100, 10) for y in range(5, 60, 10)])
+    middle = Surface(name="s1", points=points, method="idw")
+    return Rock(name="r", region=SQUARE, edge_length=10, surfaces=[flat("s0", 0), middle, flat("s2", 50)])
+
+
+def inclined(name="F", **more):
+    vertices = [[30, -10, -10], [30, 70, -10], [70, 70, 60], [70, -10, 60.0]]
+    return Fault(name=name, vertices=vertices, triangles=[[0, 1, 2], [0, 2, 3]], **more)
+
+
+def box(name, low, high, **more):
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    return Body(name=name, vertices=low + CUBE * (high - low), triangles=CUBE_TRIANGLES, **more)
+
+
+def filled(model, edge_length, minimum_thickness, **more):
+    mesh = model.simulation_mesh(edge_length, minimum_thickness, elements="tetrahedra", **more)
+    outside = check_solver_mesh(mesh)
+    volumes = block_volumes(mesh)
+    assert mesh.volumes == pytest.approx(volumes, rel=1e-9)
+    assert outside_volume(mesh, outside) == pytest.approx(volumes.sum(), rel=1e-9)
+    assert set(mesh.elements) == {"tetrahedron"}
+    # no element has more than one face outside: solvers would find no gradient there
+    faces = ElementFaces(mesh).polyhedral()
+    outer = faces.face_cells[faces.face_cells[:, 1] < 0, 0]
+    assert np.bincount(outer).max() == 1
+    return mesh
+
+
+@pytest.fixture(scope="module")
+def faulted():
+    return build(Project(name="f", rocks=[rock()], faults=[inclined()]))
+
+
+def test_an_inclined_fault(faulted):
+    mesh = filled(faulted, 12.0, 2.0)
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.02)
+    assert mesh.smallest_angle > 3
+    compartments = mesh.element_compartment["tetrahedron"]
+    assert sorted(set(compartments.tolist())) == sorted(set(faulted.cell_compartment.tolist()))
+    # the fault keeps them apart: its faces, in its plane, are those between compartments
+    faces = ElementFaces(mesh).polyhedral()
+    inner = faces.face_cells[:, 1] >= 0
+    a, b = (compartments[faces.face_cells[inner, side]] for side in (0, 1))
+    number = mesh.surface_names.index("F")
+    assert ((a != b) == (faces.face_surface[inner] == number)).mean() > 0.99
+    corners = mesh.points[mesh.faces["triangle"][mesh.face_surface["triangle"] == number]]
+    off = np.abs((corners[..., 0] - 30) * 70 - (corners[..., 2] + 10) * 40) / np.hypot(70, 40)
+    assert off.mean() < 0.5 and off.max() < 12.0 / 2  # beside sharp edges it is more than the tolerance
+
+
+def test_names_of_boundaries(faulted):
+    names = {part.name for part in ElementFaces(filled(faulted, 15.0, 3.0)).sets()}
+    assert names == {"top", "base", "sides", "s1", "F"}
+
+
+def test_bodies_and_voids():
+    bodies = [box("B", [20, 20, 10], [50, 40, 40]), box("V", [65, 25, 15], [80, 40, 35], void=True)]
+    model = build(Project(name="b", rocks=[rock()], bodies=bodies))
+    mesh = filled(model, 10.0, 1.5)
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.05)
+    assert mesh.volumes.sum() == pytest.approx(mesh.exact_volumes.sum(), rel=0.01)
+    sets = {part.name: part for part in ElementFaces(mesh).sets()}
+    assert {"top", "base", "sides", "B", "V"} <= set(sets)
+    for name, low, high in (("B", [20, 20, 10], [50, 40, 40]), ("V", [65, 25, 15], [80, 40, 35])):
+        at = mesh.points[sets[name].corners["triangle"]].reshape(-1, 3)
+        assert (at >= np.subtract(low, 1.5)).all() and (at <= np.add(high, 1.5)).all()
+
+
+def test_a_cut_model(faulted, tmp_path):
+    half = faulted.cut_by_plane((50, 30, 25), (1, 0.4, 0.8)).above
+    mesh = filled(half, 12.0, 2.0)
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.04)
+    assert "cut" in {part.name for part in ElementFaces(mesh).sets()}
+    save_mesh(mesh, tmp_path / "m.vtu")
+    assert b'Name="compartment"' in (tmp_path / "m.vtu").read_bytes()
+
+
+@pytest.mark.skipif(foam_program("checkMesh") is None, reason="OpenFOAM is absent")
+def test_check_mesh(faulted, tmp_path):
+    """Single flat elements may be left where sharp edges meet; all else is right."""
+    save_mesh(filled(faulted, 8.0, 2.0), tmp_path / "case.foam")
+    told = run_foam("checkMesh", tmp_path / "case.foam", "-allGeometry", "-allTopology")
+    faults = [line for line in told.splitlines() if "***" in line]
+    assert all("small determinant" in line and int(line.split()[-1]) <= 3 for line in faults), faults
+
+
+def test_the_same_bytes(faulted):
+    one, two = (faulted.simulation_mesh(12.0, 2.0, elements="tetrahedra", threads=n) for n in (1, 2))
+    assert one.points.tobytes() == two.points.tobytes()
+    assert one.elements["tetrahedron"].tobytes() == two.elements["tetrahedron"].tobytes()
+    assert one.faces["triangle"].tobytes() == two.faces["triangle"].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("sample", "edge", "tolerance", "within"),
+    [
+        ("fault_blocks", 100.0, 20.0, 0.2),
+        ("fault_blocks", 160.0, 40.0, 0.8),  # has centers of flat tetrahedra at 1e19
+        ("fault_blocks", 117.6, 41.18, 0.8),  # CGAL's perturbation fails
+        ("tunnel", 25.0, 5.0, 0.2),
+    ],
+)
+def test_samples(sample, edge, tolerance, within):
+    model = build(load_project(SAMPLES / sample / "project.toml"))
+    mesh = filled(model, edge, tolerance)
+    assert mesh.volumes.sum() == pytest.approx(mesh.exact_volumes.sum(), rel=0.01)
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=within, abs=1.0)
+
+
+def test_what_is_lost_is_warned_of():
+    """A sheet of 2 m, and tetrahedra that may be 10 m off."""
+    model = build(Project(name="b", rocks=[rock()], bodies=[box("sheet", [20, 20, 30], [60, 50, 32])]))
+    mesh = filled(model, 20.0, 10.0)
+    assert any("sheet" in str(warning) for warning in mesh.warnings)
+
+
+def test_refused(faulted):
+    with pytest.raises(UsageError, match=r"layers.*has none"):
+        faulted.simulation_mesh(12.0, 2.0, elements="tetrahedra", layers=2)
+    with pytest.raises(InputRefused, match="--mesh-elements tetrahedra"):
+        faulted.simulation_mesh(12.0, 2.0)
+    with pytest.raises(Cancelled):
+        faulted.simulation_mesh(1.0, 0.1, elements="tetrahedra", cancel=lambda: True)
+
+
+def test_smallest_dihedral_angle():
+    corner = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    angle = np.degrees(np.arccos(1 / np.sqrt(3)))
+    assert smallest_dihedral_angle(corner, np.array([[0, 1, 2, 3]])) == pytest.approx(angle)
