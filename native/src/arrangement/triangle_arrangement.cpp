@@ -283,7 +283,7 @@ public:
 
     /// The nodes between two others, in order from the first to the second.
     std::vector<SpacePointId> operator()(const std::array<SpacePointId, 2>& line) const {
-        const auto [a, b] = line;
+        const SpacePointId a = line[0], b = line[1];
         std::vector<SpacePointId> found;
         const auto visit = [&](SpacePointId p) {
             if (is_between(p, a, b)) found.push_back(p);
