@@ -142,7 +142,9 @@ void CutterSides::refuse_borders() const {
 /// that rounding flattened away; of a closed one it need not be said.
 void CutterSides::go_round(std::size_t e) {
     const auto uses = winding_.edge(e);
-    const auto [fan, windings] = winding_.sectors(e);
+    const auto sectors = winding_.sectors(e);
+    const auto& fan = sectors.fan;
+    const auto& windings = sectors.windings;
     /// Visits the items of a blade, each with whether it is seen from its side 1.
     const auto each = [&](std::size_t blade, bool ahead, const auto& visit) {
         for (const std::size_t i : fan.blade(blade)) {

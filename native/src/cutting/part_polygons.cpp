@@ -2,8 +2,8 @@
 // Polygons of rounded parts that lie on each other, or are no longer convex.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <ranges>
 
 #include "cutting/part_rounding.hpp"
 
@@ -321,11 +321,11 @@ void PartRounding::set_touching_apart() {
         while (true) {
             std::vector<std::size_t> way = way_back(own);
             if (way.empty()) break;
-            std::ranges::sort(way);
+            std::ranges::sort(way, std::greater<>{});  // each is erased without moving the next
             const NodeId middle = add_between(uses[begin].edge);
             for (const std::size_t use : way)
                 nodes_on[own[use].piece].push_back({uses[begin].edge, middle});
-            for (const std::size_t use : std::views::reverse(way))
+            for (const std::size_t use : way)
                 own.erase(own.begin() + static_cast<std::ptrdiff_t>(use));
         }
     }
