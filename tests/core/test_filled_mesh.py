@@ -137,7 +137,7 @@ def test_the_same_bytes(faulted):
     [
         ("fault_blocks", 100.0, 20.0, 0.2),
         ("fault_blocks", 160.0, 40.0, 0.8),  # has centers of flat tetrahedra at 1e19
-        ("fault_blocks", 117.6, 41.18, 0.8),  # CGAL's perturbation fails
+        ("fault_blocks", 117.6, 41.18, 0.8),
         ("tunnel", 25.0, 5.0, 0.2),
     ],
 )

@@ -13,7 +13,6 @@
 #include <CGAL/Random.h>
 #include <CGAL/tss.h>
 
-#include <memory>
 #pragma push_macro("CGAL_STATIC_THREAD_LOCAL_VARIABLE_0")
 #undef CGAL_STATIC_THREAD_LOCAL_VARIABLE_0
 #define CGAL_STATIC_THREAD_LOCAL_VARIABLE_0(TYPE, VAR)                         \
@@ -30,7 +29,6 @@
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/exude_mesh_3.h>
-#include <CGAL/perturb_mesh_3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -440,33 +438,22 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     const auto seeds = surface_seeds(model, faces.triangles, on_edges, kSeeds * edge_length);
     const Criteria criteria(edge_length, tolerance);
     const std::size_t most = most_points(model, faces, edge_length, tolerance);
-    const auto divided = [&] {
-        if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
-        auto complex = std::make_unique<Complex>();
-        for (const auto& p : on_edges)
-            insert(*complex, p, kBall * edge_length, 1, 1);
-        for (const SurfaceSeed& seed : seeds)
-            insert(*complex, seed.point, 0, 2,
-                   faces.triangles[index(seed.triangle)].surface + kFirstSurface);
-        if (complex->triangulation().dimension() < 3) refuse_nothing();
-        refine(*complex, domain, criteria, most, progress);
-        if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
-        return complex;
-    };
-    std::unique_ptr<Complex> complex;
+    Complex complex;
     try {
-        complex = divided();
-        domain.allow(kQuestionsOfAPoint * most);
-        try {
-            CGAL::perturb_mesh_3(*complex, domain, CGAL::parameters::sliver_bound = kSliver);
-        } catch (const CGAL::Failure_exception&) {
-            complex = divided();  // it fails on some flat tetrahedra, and leaves nothing of use
-        }
-        CGAL::exude_mesh_3(*complex, CGAL::parameters::sliver_bound = kSliver);
+        if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
+        for (const auto& p : on_edges)
+            insert(complex, p, kBall * edge_length, 1, 1);
+        for (const SurfaceSeed& seed : seeds)
+            insert(complex, seed.point, 0, 2,
+                   faces.triangles[index(seed.triangle)].surface + kFirstSurface);
+        if (complex.triangulation().dimension() < 3) refuse_nothing();
+        refine(complex, domain, criteria, most, progress);
+        if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
+        CGAL::exude_mesh_3(complex, CGAL::parameters::sliver_bound = kSliver);
     } catch (const CGAL::Failure_exception&) {
         refuse_division();
     }
-    FilledMesh mesh = arrays_of(*complex, domain, kept);
+    FilledMesh mesh = arrays_of(complex, domain, kept);
     require_volume(mesh);
     divide_corner_tetrahedra(mesh, progress);
     return mesh;
