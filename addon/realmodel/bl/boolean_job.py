@@ -15,7 +15,7 @@ from ..core import BuildFailed, InputRefused, work
 from ..core.booleans import SURFACES, intersect_within
 from ..core.mesh_parts import MeshParts, Operand, mesh_of_parts
 from . import mesh_data, meshes, scene, shapes, versions
-from .threads import threads
+from .thread_job import ThreadJob
 
 DIVIDE = "DIVIDE"
 OPERATIONS = (  # items of an enum
@@ -52,8 +52,8 @@ class _Loop:
     is_closed: bool
 
 
-class BooleanJob:
-    """A Boolean of two mesh objects of a scene; to be used as build_job.BuildJob.
+class BooleanJob(ThreadJob):
+    """A Boolean of two mesh objects of a scene.
 
     operation: one of OPERATIONS. keep: the objects stay as they are, and the result is a new one.
     """
@@ -69,39 +69,10 @@ class BooleanJob:
         self._local = read[0][2]
         self._operands = tuple(entry[0] for entry in read)
         self._layers = tuple(entry[1] for entry in read)
-        self._job = None
 
     def run(self):
         """Intersects in this thread and puts the result into the scene."""
         return self._put(work.run(self._work))
-
-    def start(self):
-        """Intersects in a thread."""
-        self._threads = threads()
-        self._job = work.start(self._work)
-
-    _threads = 0
-
-    @property
-    def done(self):
-        return self._job.done
-
-    def state(self):
-        """(fraction done, what is being done)."""
-        return self._job.state()
-
-    def cancel(self):
-        self._job.cancel()
-
-    def wait(self):
-        self._job.wait()
-
-    def hand_over(self, _seconds):
-        """There is nothing to be given to Blender ahead."""
-        return True
-
-    def leave(self):
-        """There is nothing to be taken back."""
 
     def finish(self):
         """Puts the result into the scene; raises Cancelled, and what went wrong."""

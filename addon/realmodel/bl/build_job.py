@@ -6,18 +6,18 @@ thread again. Nothing of Blender is held in between but the scene's name: undo m
 import bpy
 
 from .. import preferences
-from ..core import BuildFailed, InputRefused, RealModelError, build, work
+from ..core import BuildFailed, InputRefused, RealModelError, build
 from ..core.project import surface_item
 from . import built_scene, meshes, project_settings, settings
+from .thread_job import ThreadJob
 from .threads import threads
 
 
-class BuildJob:
+class BuildJob(ThreadJob):
     """A build of the model of a scene.
 
-    `run()` builds at once; `start()` builds in a thread, `done` tells when it has ended, `state()` how far it
-    is, `cancel()` stops it. `finish()` then puts the model into the scene, or raises what went wrong and
-    leaves the scene as it was.
+    `run()` builds at once; `start()` builds in a thread. `finish()` then puts the model into the scene, or
+    raises what went wrong and leaves the scene as it was.
     """
 
     def __init__(self, current, depsgraph, cells=None, whole=True):
@@ -28,7 +28,7 @@ class BuildJob:
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
         self._stage = group.stage if is_stage else None  # what is shown of the model afterwards
-        self._job = self._slices = None
+        self._slices = None
 
     def run(self, progress=None):
         """Builds in this thread and puts the model into the scene."""
@@ -43,31 +43,15 @@ class BuildJob:
 
     def start(self, is_short=False):
         """Builds in a thread. is_short: it is expected to take less than half a second."""
-        self._threads, self._memory = threads(is_short), preferences.build_memory()
-        self._job = work.start(self._work)
+        self._memory = preferences.build_memory()
+        super().start(is_short)
 
     def _work(self, _):
         model = build(self.composed.project, cells=self.cells, threads=self._threads, memory=self._memory)
         return built_scene.prepare(model, self.composed, self._stage, self._threads)
 
-    @property
-    def done(self):
-        return self._job.done
-
-    def state(self):
-        """(fraction done, what is being done)."""
-        return self._job.state()
-
-    def cancel(self):
-        self._job.cancel()
-
-    def wait(self):
-        """Waits until it has ended or, where it was cancelled, for a moment."""
-        self._job.wait()
-
     def hand_over(self, seconds):
-        """Once the thread is done: gives Blender some of the meshes that the scene will need, for about so
-        many seconds, while the scene stays as it is. Returns whether `finish` may be called."""
+        """As ThreadJob: gives some of the meshes that the scene will need."""
         current = bpy.data.scenes.get(self.scene_name)
         if current is None or not self._job.succeeded:
             return True  # finish tells
@@ -81,7 +65,6 @@ class BuildJob:
             raise
 
     def leave(self):
-        """Takes back what was handed over; the scene never had it."""
         if self._slices is not None:
             self._slices.clear()
             self._slices = None

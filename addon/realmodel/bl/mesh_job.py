@@ -3,13 +3,14 @@
 
 from ..core import work
 from ..core.atomic import Outputs
+from .thread_job import ThreadJob
 from .threads import threads
 
 _SHARE = 0.9  # of the progress that making it takes
 
 
-class MeshJob:
-    """To be used as build_job.BuildJob.
+class MeshJob(ThreadJob):
+    """Makes a simulation mesh and writes it.
 
     model: realmodel.core.Model. request: realmodel.core.batch_mesh.BatchMesh. unit: of the model's lengths.
     """
@@ -18,38 +19,11 @@ class MeshJob:
         """Raises UsageError, OutputFailed where the file cannot be written."""
         request.target()
         self._model, self._request, self._unit = model, request, unit
-        self._job = None
 
     def run(self):
         """Makes and writes it in this thread; returns the SimulationMesh. Raises RealModelError."""
         self._threads = threads()
         return work.run(self._work)
-
-    def start(self):
-        """Makes and writes it in a thread."""
-        self._threads = threads()
-        self._job = work.start(self._work)
-
-    @property
-    def done(self):
-        return self._job.done
-
-    def state(self):
-        """(fraction done, what is being done)."""
-        return self._job.state()
-
-    def cancel(self):
-        self._job.cancel()
-
-    def wait(self):
-        self._job.wait()
-
-    def hand_over(self, _seconds):
-        """There is nothing to be given to Blender ahead."""
-        return True
-
-    def leave(self):
-        """There is nothing to be taken back."""
 
     def finish(self):
         """The SimulationMesh; raises Cancelled, and what went wrong."""
