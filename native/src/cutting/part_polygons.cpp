@@ -216,6 +216,20 @@ bool PartRounding::is_bent(std::size_t piece) const {
     return !is_sure || !is_nearly_convex(flat, rounding);
 }
 
+/// Whether triangles about a middle would include one of what may be a wall that has no extent in
+/// plan.
+bool PartRounding::lacks_extent(std::size_t piece, const Position& middle) const {
+    if (!joins_models_ || (pieces_[piece].face >= 0 && !is_wall(piece))) return false;
+    const auto nodes = pieces_.polygons[piece];
+    const auto is_below = [&](NodeId node) {
+        return at(node)[0] == middle[0] && at(node)[1] == middle[1];
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (is_below(nodes[i]) && is_below(nodes[(i + 1) % nodes.size()])) return true;
+    }
+    return false;
+}
+
 /// A new node in the middle of a polygon, or beside it where there is one already.
 NodeId PartRounding::add_middle(std::size_t piece) {
     const auto nodes = pieces_.polygons[piece];
@@ -230,6 +244,8 @@ NodeId PartRounding::add_middle(std::size_t piece) {
         const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
     }
+    while (lacks_extent(piece, middle))
+        middle = free_position_beside(middle, Freedom::kLevel, taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }
@@ -365,7 +381,7 @@ void PartRounding::divide_bent() {
     Pieces divided;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
-        if (is_doubled_[p] == 0 && !is_bent(p)) {
+        if (is_doubled_[p] == 0 && !is_bent(p) && !(joins_models_ && is_upright(p))) {
             divided.add(nodes, pieces_[p]);
             continue;
         }

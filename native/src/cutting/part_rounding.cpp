@@ -48,6 +48,15 @@ bool PartRounding::is_wall(std::size_t piece) const {
     return face >= 0 && model_.face_surface[index(face)] == kWall;
 }
 
+/// Whether what is a wall, or may be one, has no extent in plan.
+bool PartRounding::is_upright(std::size_t piece) const {
+    if (!is_wall(piece) && !(joins_models_ && pieces_[piece].face < 0)) return false;
+    const auto nodes = pieces_.polygons[piece];
+    return std::ranges::all_of(nodes, [&](NodeId node) {
+        return at(node)[0] == at(nodes[0])[0] && at(node)[1] == at(nodes[0])[1];
+    });
+}
+
 void PartRounding::run() {
     find_pieces_of_parts();
     drop_hollow();  // of a cell that lies flat on the cutter
@@ -459,12 +468,8 @@ void PartRounding::give_extents() {
         }
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        if (!is_wall(p) && !(joins_models_ && pieces_[p].face < 0)) continue;
         const auto corners = pieces_.polygons[p];
-        const bool upright = std::all_of(corners.begin(), corners.end(), [&](NodeId node) {
-            return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];
-        });
-        if (upright && !widen(corners, 0, false)) widen(corners, 1, false);
+        if (is_upright(p) && !widen(corners, 0, false)) widen(corners, 1, false);
     }
 }
 

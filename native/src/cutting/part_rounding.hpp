@@ -37,6 +37,7 @@ private:
     Position& moving(NodeId node) { return new_positions_[index(node) - model_.vertex_count()]; }
     bool is_changed(std::int32_t part) const;
     bool is_wall(std::size_t piece) const;
+    bool is_upright(std::size_t piece) const;
 
     void find_pieces_of_parts();
     void level_base();
@@ -69,6 +70,7 @@ private:
     void glue_doubled();
     void drop_hollow();
     bool is_bent(std::size_t piece) const;
+    bool lacks_extent(std::size_t piece, const Position& middle) const;
     NodeId add_middle(std::size_t piece);
     NodeId add_between(const std::array<NodeId, 2>& edge);
     void divide_bent();

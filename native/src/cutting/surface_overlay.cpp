@@ -200,6 +200,7 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) 
 /// for their rounding. No two share one.
 void SurfaceOverlay::name_vertices() {
     vertex_point_.assign(model_.vertex_count(), kNone);
+    is_moved_.assign(model_.vertex_count(), 0);
     name_vertices_of(active_faces_);
     activate_beside_flat_triangles();
 }
@@ -227,6 +228,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         is_taken(point) = 0;
         is_taken(*found) = 1;
         point = *found;
+        is_moved_[index(vertices[i])] = 1;
     }
 }
 
@@ -304,16 +306,39 @@ void SurfaceOverlay::overlay_all() {
     arrangement_.divide(threads_, progress_);
 }
 
-/// The triangles of active faces, then those of the surface.
+/// The triangles of active faces, then those of the surface. A wall between two upright lines has
+/// two, whatever ends on its sides: that is exactly in their planes, unless it is taken to be on
+/// the surface.
 void SurfaceOverlay::add_triangles() {
+    const auto point = [this](NodeId v) { return vertex_point_[index(v)]; };
+    const auto add = [&](std::int32_t face, const std::array<NodeId, 3>& t,
+                         std::span<const SpacePointId> outline) {
+        arrangement_.add({point(t[0]), point(t[1]), point(t[2])}, outline);
+        face_of_.push_back(face);
+    };
     std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<NodeId> corners;
+    std::vector<SpacePointId> points;
     for (const std::int32_t f : active_faces_) {
-        triangulate_face(model_, index(f), triangles);
-        for (const auto& t : triangles) {
-            arrangement_.add({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
-                              vertex_point_[index(t[2])]});
-            face_of_.push_back(f);
+        const auto face = model_.face(index(f));
+        const auto second = face.size() > 3 ? upright_sides(face, model_, corners) : std::nullopt;
+        if (second &&
+            std::ranges::none_of(face, [this](NodeId v) { return is_moved_[index(v)] != 0; })) {
+            // the first side with the near end of the second, then that end with the whole second
+            points.clear();
+            for (const NodeId v : corners)
+                points.push_back(point(v));
+            const std::size_t last = corners.size() - 1, turn = *second;
+            if (turn > 1)
+                add(f, {corners[0], corners[turn - 1], corners[turn]},
+                    std::span(points).first(turn + 1));
+            points.erase(points.begin() + 1, points.begin() + static_cast<std::ptrdiff_t>(turn));
+            if (turn < last) add(f, {corners[0], corners[turn], corners[last]}, points);
+            continue;
         }
+        triangulate_face(model_, index(f), triangles);
+        for (const auto& t : triangles)
+            add(f, t, {});
     }
     first_cutter_ = static_cast<std::int32_t>(face_of_.size());
     for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t)

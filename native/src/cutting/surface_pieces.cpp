@@ -43,21 +43,6 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
     return divided;
 }
 
-/// Whether polygons between parts of one half include one that is upright without extent in plan,
-/// where no node is new that could give it one.
-bool has_none_to_widen(const SurfaceOverlay& overlay, const Polygons& polygons) {
-    for (std::size_t p = 0; p < polygons.size(); ++p) {
-        const Position first = overlay.position(polygons[p][0]);
-        const bool is_fixed = std::ranges::all_of(polygons[p], [&](NodeId node) {
-            const Position at = overlay.position(node);
-            return index(node) < overlay.model().vertex_count() && at[0] == first[0] &&
-                   at[1] == first[1];
-        });
-        if (is_fixed) return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
@@ -203,10 +188,7 @@ void SurfaceParts::write_caps() {
             const auto half_of = [this](std::int32_t slot) -> std::size_t {
                 return slots_[index(slot)].half == kAbove ? 1 : 0;
             };
-            const bool within_half =
-                std::ranges::all_of(slots, [](auto slot) { return slot >= 0; }) &&
-                half_of(slots[0]) == half_of(slots[1]);
-            bool again = within_half && has_none_to_widen(overlay_, polygons);
+            bool again = false;
             for (const std::int32_t slot : slots)
                 again = again || (slot >= 0 && written[half_of(slot)]);
             for (const std::int32_t slot : slots) {
