@@ -159,7 +159,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
                            std::span<const PartModel> models, std::span<const Structure> structures,
                            std::span<const std::uint8_t> acts, int threads, Progress* progress) {
     const ComplexView all = together.view();
-    const cutting::NearPart part(all, together.is_near);
+    const cutting::NearPart part(all, together.is_near, threads, progress);
     const ComplexView near = part.view();
     std::vector<std::int32_t> model_of_cell;
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
