@@ -177,7 +177,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     cutting::SurfaceParts made(overlay, winding, wanted, progress);
     begin(progress, 0.85, 0.92, "rounding what was cut");
     cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          true)
+                          threads, progress, true)
         .run();
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
