@@ -7,8 +7,8 @@ from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.display import shown_models
 from realmodel.bl.mesh_job import MeshJob
 from realmodel.core import Cancelled, UsageError, build, load_project
-from realmodel.core.batch_mesh import BatchMesh
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
+from realmodel.core.simulation.mesh_request import MeshRequest
 
 PROJECT = SAMPLES / "two_layers" / "project.toml"
 OPTIONS = {"edge_length": 8.0, "minimum_thickness": 1.0, "layer_thickness": 4.0}
@@ -69,7 +69,7 @@ class MeshExport(PanelCase):
         self.open_two_layers()
         model = shown_models.whole(self.scene)
         path = self.folder / "m.vtu"
-        job = MeshJob(model, BatchMesh(path, 0.25, 0.05, None, 0.1), "m")
+        job = MeshJob(model, MeshRequest(path, 0.25, 0.05, None, 0.1), "m")
         job.start()
         while job.state()[0] == 0 and not job.done:
             time.sleep(0.005)
@@ -79,7 +79,7 @@ class MeshExport(PanelCase):
         with self.assertRaises(Cancelled):
             job.finish()
         self.assertEqual(list(self.folder.iterdir()), [])
-        job = MeshJob(model, BatchMesh(path, 8.0), "m")
+        job = MeshJob(model, MeshRequest(path, 8.0), "m")
         job.start()
         job.wait()
         while not job.done:
@@ -87,7 +87,7 @@ class MeshExport(PanelCase):
         self.assertGreater(job.finish().cells, 100)
         self.assertTrue(path.is_file())
         with self.assertRaisesRegex(UsageError, "meshes are not written as"):
-            MeshJob(model, BatchMesh(self.folder / "m.xyz"), "m")
+            MeshJob(model, MeshRequest(self.folder / "m.xyz"), "m")
 
     def test_maps_and_their_interval(self):
         self.open_two_layers()

@@ -19,10 +19,10 @@ from ..bl.display import shown_models
 from ..bl.mesh_job import MeshJob
 from ..core import UsageError
 from ..core.atomic import Outputs
-from ..core.batch_mesh import BatchMesh
 from ..core.exporters import FORMATS, save_model
 from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import write_report
+from ..core.simulation.mesh_request import MeshRequest
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, not_building
 
@@ -205,7 +205,7 @@ class REALMODEL_OT_export_mesh(InBackground, Exporting, bpy.types.Operator):
         InBackground.act(self, context)
 
     def begin(self, context):
-        self._request = BatchMesh(
+        self._request = MeshRequest(
             self.target(),
             self.edge_length or None,
             self.minimum_thickness or None,
