@@ -18,13 +18,14 @@ TEXTURE = "realmodel_look_texture"  # its scale and seed
 AUTO = AUTO_LOOK.upper()
 
 
-def _says(key, look):
+def says(key, look):
+    """A look in one line."""
     return "The color of the property alone" if key == "FLAT" else f"Texture of {look.label.lower()}"
 
 
 ITEMS = (
     (AUTO, "Automatic", "The look that suits the lithology, else the name of the property"),
-    *((key, look.label, _says(key, look)) for key, look in LOOKS.items()),
+    *((key, look.label, says(key, look)) for key, look in LOOKS.items()),
 )
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
 SIZE = "Texture Size"  # the node that says how large a texture unit is
@@ -86,7 +87,7 @@ def _fill(nodes, shader, look, color, unit, seed):
         tones.append(nodes.about(nodes.noise(place, 1.0 / look.grain_size, 1.0), 2.0 * look.grain))
     if look.relief:
         heights.append(nodes.about(rough, 2.0 * look.relief))
-        tones.append(nodes.about(rough, 0.7))  # hollows are dark
+        tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
     if look.lamination:
         lamina = nodes.about(nodes.noise(_in_layer(nodes, place, above, look.lamina), 1.0, 3.0), 1.0)
         patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
@@ -117,7 +118,7 @@ def _fill(nodes, shader, look, color, unit, seed):
     base = _base(nodes, look, color)
     nodes.link(base, tint.inputs["Color"])
     nodes.link(nodes.math("MAXIMUM", nodes.math("ADD", tone, 1.0), 0.15), tint.inputs["Value"])
-    nodes.link(nodes.math("SUBTRACT", 0.8, nodes.math("MULTIPLY", tone, 0.3)), tint.inputs["Saturation"])
+    nodes.link(nodes.math("SUBTRACT", 0.95, nodes.math("MULTIPLY", tone, 0.3)), tint.inputs["Saturation"])
     if look.hue and hues:
         hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in hues])
         nodes.link(nodes.math("ADD", hue, 0.5), tint.inputs["Hue"])

@@ -162,13 +162,20 @@ def add_group_socket(group, name, kind, default=None, low=None, high=None, is_ou
 
 def set_group_input(modifier, name, value):
     """Sets an input of a modifier of geometry nodes."""
-    modifier[_group_key(modifier, name)] = value
+    key = _group_key(modifier, name)
+    if hasattr(modifier, "properties"):  # from 5.2 on
+        getattr(modifier.properties.inputs, key).value = value
+    else:
+        modifier[key] = value
     modifier.id_data.update_tag()
 
 
 def group_input(modifier, name):
     """What an input of a modifier of geometry nodes is set to."""
-    return modifier[_group_key(modifier, name)]
+    key = _group_key(modifier, name)
+    return (
+        getattr(modifier.properties.inputs, key).value if hasattr(modifier, "properties") else modifier[key]
+    )
 
 
 def _group_key(modifier, name):
@@ -178,6 +185,16 @@ def _group_key(modifier, name):
     else:
         sockets = [s for s in group.interface.items_tree if s.item_type == "SOCKET" and s.in_out == "INPUT"]
     return next(socket.identifier for socket in sockets if socket.name == name)
+
+
+def add_asset_library(name, folder):
+    """Adds a folder to the asset libraries of the preferences."""
+    known = bpy.context.preferences.filepaths.asset_libraries
+    if hasattr(known, "new"):
+        known.new(name=name, directory=folder)
+    else:
+        bpy.ops.preferences.asset_library_add(directory=folder)
+        known[-1].name = name
 
 
 def leave_sky_to_bounces(world):

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Look:
-    """Strengths are shares of the brightness of a property's color; sizes, depths and heights are in texture
+    """How a rock looks. color: "#rrggbb" of a material that is of no property. words: with which names of
+    such rocks begin.
+
+    Strengths are shares of the brightness of a property's color; sizes, depths and heights are in texture
     units.
 
     lamination: of laminae, which follow the layer as it was deposited; lamina: how thick one is. bed: how
@@ -23,6 +26,7 @@ class Look:
     """
 
     label: str
+    color: str
     words: tuple[str, ...] = ()
     hardness: float = 0.5
     lamination: float = 0.0
@@ -46,9 +50,10 @@ class Look:
 
 
 LOOKS = {
-    "FLAT": Look("Flat", stain=0.0, grain=0.0, relief=0.0, roughness=1.0),
+    "FLAT": Look("Flat", "#c0b8a8", stain=0.0, grain=0.0, relief=0.0, roughness=1.0),
     "SANDSTONE": Look(
         "Sandstone",
+        "#c08a5e",
         ("sandstone", "sand stone", "arkose", "grès"),
         0.6,
         lamination=0.24,
@@ -61,6 +66,7 @@ LOOKS = {
     ),
     "LIMESTONE": Look(
         "Limestone",
+        "#cbc2a8",
         ("limestone", "dolomite", "chalk", "marble", "carbonate"),
         0.75,
         lamination=0.05,
@@ -75,6 +81,7 @@ LOOKS = {
     ),
     "SHALE": Look(
         "Shale",
+        "#7a7f86",
         ("shale", "mudstone", "claystone", "siltstone", "slate", "marl", "schist", "phyllite"),
         0.25,
         lamination=0.3,
@@ -88,6 +95,7 @@ LOOKS = {
     ),
     "CONGLOMERATE": Look(
         "Conglomerate",
+        "#a98c72",
         ("conglomerate", "breccia"),
         0.7,
         lamination=0.08,
@@ -101,6 +109,7 @@ LOOKS = {
     ),
     "GRANITE": Look(
         "Granite",
+        "#c0a79c",
         ("granite", "gneiss", "diorite", "gabbro", "intrusive", "basement", "pluton"),
         0.95,
         joint=11.0,
@@ -117,6 +126,7 @@ LOOKS = {
     ),
     "BASALT": Look(
         "Basalt",
+        "#55555a",
         ("basalt", "lava", "andesite", "volcanic", "tuff", "rhyolite"),
         0.9,
         joint=1.5,
@@ -130,6 +140,7 @@ LOOKS = {
     ),
     "GRAVEL": Look(
         "Gravel",
+        "#a39a8c",
         ("gravel", "pebble", "debris", "scree", "till", "moraine"),
         0.3,
         clasts=0.34,
@@ -138,9 +149,12 @@ LOOKS = {
         hue=0.012,
         relief=0.4,
     ),
-    "SAND": Look("Sand", ("sand", "dune"), 0.1, 0.06, 0.3, grain=0.14, relief=0.25, relief_size=1.2),
+    "SAND": Look(
+        "Sand", "#dcc48e", ("sand", "dune"), 0.1, 0.06, 0.3, grain=0.14, relief=0.12, relief_size=1.2
+    ),
     "CLAY": Look(
         "Clay",
+        "#a5785c",
         ("clay", "mud", "silt", "loess", "loam"),
         0.15,
         lamination=0.06,
@@ -153,6 +167,7 @@ LOOKS = {
     ),
     "COAL": Look(
         "Coal",
+        "#38363a",
         ("coal", "lignite", "peat"),
         0.35,
         lamination=0.4,
@@ -167,6 +182,7 @@ LOOKS = {
     ),
     "SALT": Look(
         "Salt",
+        "#dcd3d0",
         ("salt", "halite", "gypsum", "anhydrite", "evaporite"),
         0.2,
         lamination=0.12,
@@ -179,10 +195,19 @@ LOOKS = {
         roughness=0.35,
     ),
     "SOIL": Look(
-        "Soil", ("soil", "humus"), 0.1, stain=0.2, grain=0.3, grain_size=0.25, relief=0.8, relief_size=0.9
+        "Soil",
+        "#6a4a32",
+        ("soil", "humus"),
+        0.1,
+        stain=0.2,
+        grain=0.3,
+        grain_size=0.25,
+        relief=0.8,
+        relief_size=0.9,
     ),
     "GRASS": Look(
         "Grass",
+        "#6d8a3c",
         ("grass", "meadow"),
         0.3,
         stain=0.35,
@@ -195,6 +220,7 @@ LOOKS = {
     ),
     "WATER": Look(
         "Water",
+        "#3c6a84",
         ("water", "lake", "sea"),
         1.0,
         stain=0.05,

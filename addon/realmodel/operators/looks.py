@@ -4,9 +4,9 @@
 import math
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..bl import library_rows, looks, settings, weathering
+from ..bl import library_rows, look_assets, looks, project_settings, settings, weathering
 from ..core import InputRefused
 from .reporting import Reporting, a_library, a_model
 
@@ -136,4 +136,30 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
         weathering.take_off(items)
 
 
-CLASSES = (REALMODEL_OT_rock_looks, REALMODEL_OT_weathering, REALMODEL_OT_weathering_remove)
+class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
+    """Make an asset library of the looks and add it to the preferences: materials to drag onto any object"""
+
+    bl_idname = "realmodel.install_looks"
+    bl_label = "Install Rock Looks"
+    bl_options = {"REGISTER"}
+
+    directory: StringProperty(
+        name="Folder",
+        description="Where the library goes; empty: Blender's folder of the user",
+        subtype="DIR_PATH",
+    )
+
+    def act(self, context):
+        given = self.directory.strip()
+        folder = project_settings.absolute(given) if given else look_assets.default_folder()
+        look_assets.write(folder)
+        look_assets.register(folder)
+        self.report({"INFO"}, f"The asset library '{look_assets.LIBRARY}' is in {folder}")
+
+
+CLASSES = (
+    REALMODEL_OT_rock_looks,
+    REALMODEL_OT_weathering,
+    REALMODEL_OT_weathering_remove,
+    REALMODEL_OT_install_looks,
+)
