@@ -234,6 +234,18 @@ def plain_colors(scene):
     scene.view_settings.gamma = 1.0
 
 
+def curves(datablock):
+    """The F-curves of a datablock's keyframes, or None where it has none; actions have slots since 4.4."""
+    animated = datablock.animation_data
+    if animated is None or animated.action is None:
+        return None
+    if bpy.app.version < (4, 4, 0):
+        return animated.action.fcurves
+    strips = [strip for layer in animated.action.layers for strip in layer.strips]
+    found = [strip.channelbag(animated.action_slot) for strip in strips] if animated.action_slot else []
+    return next((bag.fcurves for bag in found if bag is not None), None)
+
+
 def text_size(font, size):
     """Sets the size of blf's text in pixels; the resolution went in 4.0."""
     if bpy.app.version >= (4, 0, 0):

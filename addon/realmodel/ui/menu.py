@@ -100,7 +100,10 @@ class REALMODEL_MT_view(_Menu, bpy.types.Menu):
         yield None
         yield "coordinates", None, {}
         yield "capture", None, {}
+        yield None
         yield "set_up_picture", None, {}
+        yield "turntable", None, {}
+        yield "animate_stages", None, {}
         yield "render_picture", None, {}
 
 

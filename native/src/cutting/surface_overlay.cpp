@@ -329,18 +329,18 @@ void SurfaceOverlay::name_nodes() {
     }
     // edges and sides number regions and then faces in one row
     checked_number(size() + model_.face_count(), "faces and their parts");
-    for (const arrangement::Region& region : arrangement_.regions()) {
-        auto& loops = loops_.emplace_back(region.loops.size());
-        for (std::size_t i = 0; i < loops.size(); ++i) {
-            for (const SpacePointId p : region.loops[i]) {
-                NodeId& node = out[index(p)];
-                if (node < 0) {
-                    node = add_node(points_.rounded(p));
-                    exact_of_new_.push_back(p);
-                }
-                loops[i].push_back(node);
-            }
+    const auto& of_points = arrangement_.regions().loops;
+    loops_.loop_begins = of_points.loop_begins;
+    loops_.region_begins = of_points.region_begins;
+    loops_.nodes.resize(of_points.nodes.size());
+    for (std::size_t i = 0; i < of_points.nodes.size(); ++i) {
+        const SpacePointId p = of_points.nodes[i];
+        NodeId& node = out[index(p)];
+        if (node < 0) {
+            node = add_node(points_.rounded(p));
+            exact_of_new_.push_back(p);
         }
+        loops_.nodes[i] = node;
     }
 }
 
@@ -397,7 +397,7 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
-    const auto& outline = loops_[region][0];
+    const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::vector<SpacePointId> own;
     for (const NodeId node : outline)
@@ -417,7 +417,7 @@ SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
         if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     SpacePointId farthest = kNone;
-    for (const auto& loop : loops_[region]) {
+    for (const auto loop : loops_[region]) {
         for (const NodeId node : loop) {
             const SpacePointId p = exact(node);
             if (p == a || p == b || p == c) continue;
