@@ -45,17 +45,10 @@ std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
 
 }  // namespace
 
-std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners,
-                                      std::span<const SpacePointId> outline) {
-    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+TriangleArrangement::Triangle TriangleArrangement::triangle_of(
+    const std::array<SpacePointId, 3>& corners) const {
     Triangle t;
     t.corners = corners;
-    if (outline.size() > corners.size()) {
-        t.outline.assign(outline.begin(), outline.end());
-        std::ranges::copy_if(outline, std::back_inserter(t.points), [&](SpacePointId p) {
-            return std::ranges::find(corners, p) == corners.end();
-        });
-    }
     const std::array<Position, 3> at{points_.rounded(corners[0]), points_.rounded(corners[1]),
                                      points_.rounded(corners[2])};
     const Position normal = polygon_normal(at);
@@ -68,12 +61,47 @@ std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners
         t.facing = exact::orient2d(points_, axis, corners[0], corners[1], corners[2]);
         if (t.facing != 0) break;
     }
+    return t;
+}
+
+std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
+    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+    add_all({&corners, 1}, 1, nullptr);
+    return number;
+}
+
+void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                                  const Progress* progress) {
+    const std::size_t before = triangles_.size();
+    checked_number(before + corners.size(), "triangles");
+    triangles_.resize(before + corners.size());
+    of_edge_.resize(3 * triangles_.size());
+    parallel_ranges(
+        corners.size(), kChunk, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                triangles_[before + i] = triangle_of(corners[i]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    of_edge_[3 * (before + i) + k] = {
+                        unordered(corners[i][k], corners[i][(k + 1) % 3]),
+                        static_cast<std::int32_t>(before + i)};
+                }
+            }
+        },
+        0.02);
+}
+
+void TriangleArrangement::set_outline(std::int32_t triangle,
+                                      std::span<const SpacePointId> outline) {
+    Triangle& t = triangles_[index(triangle)];
+    t.outline.assign(outline.begin(), outline.end());
+    std::ranges::copy_if(outline, std::back_inserter(t.points), [&t](SpacePointId p) {
+        return std::ranges::find(t.corners, p) == t.corners.end();
+    });
     for (std::size_t i = 0; i < t.edge_count(); ++i) {
         const auto [a, b] = t.edge(i);
-        of_edge_.push_back({unordered(a, b), number});
+        of_edge_.push_back({unordered(a, b), triangle});
     }
-    triangles_.push_back(std::move(t));
-    return number;
 }
 
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,

@@ -39,10 +39,14 @@ public:
     explicit TriangleArrangement(exact::SpacePoints& points) : points_(points) {}
 
     /// The number of the triangle. One without area stays an edge that others share.
-    /// @param outline  its corners with other nodes on its edges, in order, if there are any
     /// @throws InputError kind too_large
-    std::int32_t add(const std::array<SpacePointId, 3>& corners,
-                     std::span<const SpacePointId> outline = {});
+    std::int32_t add(const std::array<SpacePointId, 3>& corners);
+    /// The same for many, numbered in their order.
+    void add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                 const Progress* progress);
+    /// Puts nodes on the edges of a triangle. All triangles must be there by then.
+    /// @param outline  its corners and these nodes, in order
+    void set_outline(std::int32_t triangle, std::span<const SpacePointId> outline);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
@@ -130,6 +134,7 @@ private:
     using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
 
+    Triangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
     int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }

@@ -92,6 +92,8 @@ private:
     void name_vertices();
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
+    std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(
+        std::span<const std::int32_t> faces) const;
     SpacePointId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
@@ -103,6 +105,7 @@ private:
     std::optional<SpacePointId> point_in_triangle(const Position& p,
                                                   const std::array<Position, 3>& corners);
     std::optional<SpacePointId> point_on_surface(const Position& p);
+    std::size_t upright_turn(std::size_t face, std::vector<NodeId>& corners) const;
     void add_triangles();
     void overlay_all();
     void name_nodes();

@@ -56,8 +56,9 @@ TEST(TriangleArrangement, PointsOnEdgesAreNodesOfWhatIsThere) {
     const std::array outline{a.points.add(kFloor[0]), a.points.add(Position{1, 0, 0}),
                              a.points.add(Position{3, 0, 0}), a.points.add(kFloor[1]),
                              a.points.add(kFloor[2])};
-    const auto level = a.triangles.add({outline[0], outline[3], outline[4]}, outline);
+    const auto level = a.triangles.add({outline[0], outline[3], outline[4]});
     const auto upright = a.add({{{2, -1, -1}, {2, -1, 1}, {2, 9, 0}}});  // x = 2
+    a.triangles.set_outline(level, outline);
     a.divide(2);
     const auto regions = a.regions_of(level);
     ASSERT_EQ(regions.size(), 2U);
