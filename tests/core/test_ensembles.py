@@ -109,6 +109,7 @@ def test_the_volume_spreads_as_the_covariances_say():
 
 
 METHODS = {
+    "kriging": {"variogram": {**KRIGING["variogram"], "nugget": 1.0}},
     "universal_kriging": {},
     "idw": {},
     "natural_neighbour": {"extrapolate": "nearest"},

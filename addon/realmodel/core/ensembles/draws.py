@@ -86,13 +86,24 @@ class Draw:
 
     def _field(self, work, own: _Known, points, nodes, threads) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
-        places, row = np.unique(np.concatenate([points, nodes]), axis=0, return_inverse=True)
         anisotropy = own.settings.get("anisotropy")
-        field = gaussian_field(work, own.variogram, anisotropy, self.frame, places, self.noise, threads)
+        at_points, at_nodes = (
+            gaussian_field(work, own.variogram, anisotropy, self.frame, places, self.noise, threads)
+            for places in (points, nodes)
+        )
         if own.variogram.nugget > 0:
-            field += math.sqrt(own.variogram.nugget) * self.noise.normal(_NUGGET, len(places))
-        field = field[row.reshape(-1)]
-        return field[: len(points)], field[len(points) :]
+            _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
+            noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
+            noise *= math.sqrt(own.variogram.nugget)
+            of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
+            number = {tuple(point): n for n, point in enumerate(points.tolist())}
+            for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):
+                point = number.get(tuple(nodes[node].tolist()))
+                if point is not None:
+                    of_nodes[node] = of_points[point]
+            at_points += of_points
+            at_nodes += of_nodes
+        return at_points, at_nodes
 
 
 def _bounded(z, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:

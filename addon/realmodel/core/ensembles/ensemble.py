@@ -129,8 +129,8 @@ class Ensemble:
         Outside of all blocks counts as one more (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
         outside = 1.0 - self.probability.sum(axis=1, keepdims=True)
         every = np.column_stack([self.probability, np.maximum(outside, 0.0)])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return -np.where(every > 0, every * np.log2(every), 0.0).sum(axis=1)
+        shares = np.where(every > 0, every, 1.0)
+        return np.abs((shares * np.log2(shares)).sum(axis=1))
 
 
 def ensemble(
