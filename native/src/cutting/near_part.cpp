@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
@@ -17,6 +18,21 @@ namespace {
 /// How far from a surface a cell may be that is taken to be near.
 double margin_of(const CellBoxes& cells, const NearestSide& surface) {
     return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+}
+
+/// Widens a box around another one while other threads do so, too.
+void include_at_once(spatial::Box& box, const spatial::Box& other) {
+    const auto widen = [](double& own, double to, const auto& is_beyond) {
+        const std::atomic_ref shared(own);
+        double known = shared.load(std::memory_order_relaxed);
+        while (is_beyond(to, known) &&
+               !shared.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
+        }
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+        widen(box.low[k], other.low[k], std::less<>());
+        widen(box.high[k], other.high[k], std::greater<>());
+    }
 }
 
 /// The faces, in order, of which one of the cells is one that is asked for.
@@ -91,16 +107,21 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
                         }
                     });
     constexpr std::uint8_t kAll = 63;
-    const auto may_be_near = [&](std::int32_t cell) { return of_cell[index(cell)] == kAll; };
-    for (const std::int32_t f : faces_of(model, may_be_near, threads, progress)) {
-        spatial::Box box;
-        for (const NodeId v : model.face(index(f)))
-            box.include(model.vertex(v));
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = model.cell(index(f), k);
-            if (cell >= 0 && may_be_near(cell)) boxes[index(cell)].include(box);
-        }
-    }
+    parallel_ranges(model.face_count(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            spatial::Box box;
+                            for (std::size_t k = 0; k < 2; ++k) {
+                                const std::int32_t cell = model.cell(f, k);
+                                if (cell < 0 || of_cell[index(cell)] != kAll) continue;
+                                if (box.low[0] > box.high[0]) {
+                                    for (const NodeId v : model.face(f))
+                                        box.include(model.vertex(v));
+                                }
+                                include_at_once(boxes[index(cell)], box);
+                            }
+                        }
+                    });
 }
 
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
@@ -135,22 +156,21 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (is_far(c) && joined.find(c) == c) face[index(c)] = kNone;
     }
-    parallel_ranges(model.face_count(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            for (std::size_t k = 0; k < 2; ++k) {
-                                const std::int32_t cell = model.cell(f, k);
-                                if (cell < 0) continue;
-                                const std::atomic_ref last(face[index(cell)]);
-                                auto known = last.load(std::memory_order_relaxed);
-                                const auto own = static_cast<std::int32_t>(f);
-                                while (known != kNotFirst && known < own &&
-                                       !last.compare_exchange_weak(known, own,
-                                                                   std::memory_order_relaxed)) {
-                                }
-                            }
-                        }
-                    });
+    parallel_ranges(
+        model.face_count(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const std::int32_t cell = model.cell(f, k);
+                    if (cell < 0) continue;
+                    const std::atomic_ref last(face[index(cell)]);
+                    auto known = last.load(std::memory_order_relaxed);
+                    const auto own = static_cast<std::int32_t>(f);
+                    while (known != kNotFirst && known < own &&
+                           !last.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
+                    }
+                }
+            }
+        });
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (!is_far(c)) continue;
         if (face[index(c)] == kNotFirst) {
