@@ -45,8 +45,8 @@ std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
 
 }  // namespace
 
-std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
-    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+TriangleArrangement::Triangle TriangleArrangement::triangle_of(
+    const std::array<SpacePointId, 3>& corners) const {
     Triangle t;
     t.corners = corners;
     const std::array<Position, 3> at{points_.rounded(corners[0]), points_.rounded(corners[1]),
@@ -61,10 +61,34 @@ std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners
         t.facing = exact::orient2d(points_, axis, corners[0], corners[1], corners[2]);
         if (t.facing != 0) break;
     }
-    for (std::size_t i = 0; i < 3; ++i)
-        of_edge_.push_back({unordered(corners[i], corners[(i + 1) % 3]), number});
-    triangles_.push_back(std::move(t));
+    return t;
+}
+
+std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
+    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+    add_all({&corners, 1}, 1, nullptr);
     return number;
+}
+
+void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                                  const Progress* progress) {
+    const std::size_t before = triangles_.size();
+    checked_number(before + corners.size(), "triangles");
+    triangles_.resize(before + corners.size());
+    of_edge_.resize(3 * triangles_.size());
+    parallel_ranges(
+        corners.size(), kChunk, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                triangles_[before + i] = triangle_of(corners[i]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    of_edge_[3 * (before + i) + k] = {
+                        unordered(corners[i][k], corners[i][(k + 1) % 3]),
+                        static_cast<std::int32_t>(before + i)};
+                }
+            }
+        },
+        0.02);
 }
 
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,

@@ -41,6 +41,9 @@ public:
     /// The number of the triangle. One without area stays an edge that others share.
     /// @throws InputError kind too_large
     std::int32_t add(const std::array<SpacePointId, 3>& corners);
+    /// The same for many, numbered in their order.
+    void add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                 const Progress* progress);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
@@ -114,6 +117,7 @@ private:
     using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
 
+    Triangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
     int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }

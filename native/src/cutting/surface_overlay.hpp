@@ -92,6 +92,8 @@ private:
     void name_vertices();
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
+    std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(
+        std::span<const std::int32_t> faces) const;
     SpacePointId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
