@@ -73,6 +73,8 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "edit_surface", "Edit Active Surface", {}
         yield "fault_body_edit", "Edit Active Fault or Body", {}
         yield "assign_property", "Assign Active Property", {}
+        yield "weathering", None, {}
+        yield "weathering_remove", None, {}
         yield None
         for operation, name, *_ in OPERATIONS:
             yield "boolean", f"Boolean: {name}", {"operation": operation}

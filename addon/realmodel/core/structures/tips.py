@@ -206,12 +206,10 @@ def with_equal_ends(
             nodes[some] = True
     every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
     continuations = [_continued(fault, box_of(every)) for fault in faults]
-    weights = [np.ones(len(plan)) for _ in faults]
+    drawn = _Drawn(plan, ramps, _sides_of_branches(work, plan, heights, faults, threads))
     while True:
-        found = blended(heights, near, on_side, weights)
-        settled = True
+        found = blended(heights, near, on_side, drawn.weights)
         for number, fault in enumerate(faults):
-            beyond = np.zeros(len(plan), bool)
             for sides, z in found.items():
                 some = doubtful[number]
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
@@ -220,31 +218,68 @@ def with_equal_ends(
                 passes = met == _PASSES
                 divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
                 passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
-                beyond[some[passes]] = True
+                drawn.let_be_equal(number, sides, some[passes])
                 edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
                 lie_in = _lie_in(work, fault, sheet[edges], continuations[number], within, threads)
-                beyond[edges[lie_in]] = True
+                drawn.let_be_equal(number, sides, edges[lie_in])
                 touched = np.unique(some[met > 0]).astype(np.int32)
                 touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
-                beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
-            if (beyond & (weights[number] > 0)).any():
-                before = weights[number] == 0
-                weights[number] = _weight(plan, beyond | before, ramps[number])
-                settled = False
-        if settled and not _draw_between(
-            work, plan, triangles, found, faults, continuations, within, (near, weights, ramps), threads
+                on = _met(work, fault, sheet, sheet, alone, threads) > 0
+                drawn.let_be_equal(number, sides, touched[on, None])
+        if drawn.is_settled() and not _draw_between(
+            work, plan, triangles, found, faults, continuations, within, near, drawn, threads
         ):
             return found
 
 
+class _Drawn:
+    """Nodes at which the sheets on both sides of faults are to be equal, and what weight that leaves to the
+    difference around. sides: by the sides of each sheet the side of each branch that its nodes are on."""
+
+    def __init__(self, plan: np.ndarray, ramps: list[float], sides: dict[tuple[int, ...], list]):
+        self.plan, self.ramps, self.sides = plan, ramps, sides
+        self.weights = [np.ones(len(plan)) for _ in ramps]
+        self.equal = [np.zeros(len(plan), bool) for _ in ramps]
+
+    def let_be_equal(self, number: int, sides: tuple[int, ...], nodes: np.ndarray) -> None:
+        """For the sides of one fault, on one sheet, at the nodes (K, 1 to 3) of triangles or edges. A branch
+        that passes them there ends in nothing: its sides are equal, too."""
+        self.equal[number][nodes] = True
+        for branch, side in self.sides[sides]:
+            passed = (side[nodes] != side[nodes[:, :1]]).any(axis=1)
+            self.equal[branch][nodes[passed]] = True
+
+    def is_settled(self) -> bool:
+        """Whether nothing has changed since this was asked."""
+        settled = True
+        for number, (equal, ramp) in enumerate(zip(self.equal, self.ramps, strict=True)):
+            if (equal & (self.weights[number] > 0)).any():
+                self.weights[number] = _weight(self.plan, equal, ramp)
+                settled = False
+        return settled
+
+
+def _sides_of_branches(
+    work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int
+) -> dict[tuple[int, ...], list]:
+    """By the sides of each sheet: (number, sides (N,) of its nodes) of each fault that does not die out."""
+    branches = [number for number, fault in enumerate(faults) if not fault.dies_out]
+    return {
+        sides: [
+            (n, fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads))
+            for n in branches
+        ]
+        for sides, z in heights.items()
+    }
+
+
 def _draw_between(
-    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, drawn, threads: int
+    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn, threads: int
 ) -> bool:
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
-    neither meets it: rock would be above it alone, or below. Whether there is such a place. drawn: near,
-    weights and ramps of with_equal_ends, of which the first two are changed."""
-    near, weights, ramps = drawn
+    neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
+    with_equal_ends has them, changed."""
     is_torn = False
     for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
         for one, other in _pairs(found, number) if fault.dies_out else ():
@@ -262,16 +297,12 @@ def _draw_between(
                 sides = [fault_sides(work, points, shape, threads) == side for shape, side in asked if side]
                 return np.all(sides, axis=0) if sides else np.ones(len(points), bool)
 
-            torn = torn_triangles(plan, some, (found[one], found[other]), others, within, on_sides)
-            beyond = np.zeros(len(plan), bool)
-            beyond[some[torn]] = True
-            apart = (weights[number] > 0) | ~near[one] | ~near[other]
-            if (beyond & apart).any():
-                is_torn = True
-                weights[number] = _weight(plan, beyond | (weights[number] == 0), ramps[number])
-                for sides in (one, other):
-                    near[sides] = near[sides] | beyond
-    return is_torn
+            torn = some[torn_triangles(plan, some, (found[one], found[other]), others, within, on_sides)]
+            for sides in (one, other):
+                drawn.let_be_equal(number, sides, torn)
+                is_torn = is_torn or not near[sides][torn].all()
+                near[sides][torn] = True
+    return not drawn.is_settled() or is_torn
 
 
 def _pairs(sheets: dict, number: int):
