@@ -122,21 +122,6 @@ class Picture:
             add_legend(drawing, list(self.names.items()))
         put_over(file, drawing)
 
-    def apply_looks(self, model, scale):
-        """Gives each property the look that suits its rock. scale: of the texture, times that of Rock
-        Looks."""
-        import bpy
-        import numpy as np
-        from realmodel.bl import looks, materials
-        from realmodel.core.looks import look_of
-
-        diagonal = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
-        for material in list(bpy.data.materials):
-            entry = model.project.library.get(material.get(materials.KEY, 0))
-            if entry is not None:
-                chosen = look_of(entry.rock or "", entry.name)
-                looks.apply(material, chosen, scale, entry.id, diagonal)
-
     def landscape(self, sun, haze=None):
         """Sun and sky of a landscape. sun: azimuth and elevation, radians. haze: how far one sees clearly."""
         import bpy
@@ -177,6 +162,7 @@ class Picture:
         picture.set_renderer(scene, file, SIZE, RAYS, SECONDS)
         scene.view_settings.exposure = exposure
         scene.cycles.max_bounces = 3
+        scene.cycles.denoising_prefilter = "FAST"
         bpy.ops.render.render(write_still=True)
         write_title(file, title, subtitle, color)
 
@@ -315,6 +301,21 @@ def read_pixels(file):
     pixels = np.array(image.pixels[:], np.float32).reshape(height, width, -1)[::-1].copy()
     bpy.data.images.remove(image)
     return pixels
+
+
+def apply_looks(model, scale):
+    """Gives the material of each property the look that suits its rock. scale: of the texture, times that of
+    Rock Looks."""
+    import bpy
+    import numpy as np
+    from realmodel.bl import looks, materials
+    from realmodel.core.looks import look_of
+
+    diagonal = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
+    for material in list(bpy.data.materials):
+        entry = model.project.library.get(material.get(materials.KEY, 0))
+        if entry is not None:
+            looks.apply(material, look_of(entry.rock or "", entry.name), scale, entry.id, diagonal)
 
 
 def part(shape, keep):
@@ -629,10 +630,10 @@ def rocks(folder):
     picture.show(model, shapes, only_outside=True)
     tops = [shape.coordinates[top_corners(shape)] for shape in shapes if shape is not None]
     lowest = min(float(corners[:, 2].min()) for corners in tops if len(corners))
-    picture.apply_looks(model, 1.0)
+    apply_looks(model, 1.0)
     meadow("Soil", lowest, 2500.0)
     picture.landscape(sun=(math.radians(246.0), math.radians(13.0)), haze=6000.0)
-    picture.look(np.array([-74.0, -172.0, 15.0]), np.array([-4.0, 0.0, 10.5]), lens=31.0)
+    picture.look(np.array([-78.0, -172.0, 14.0]), np.array([-15.0, 0.0, 12.5]), lens=28.0)
     picture.finish(
         "rocks",
         "Haut-Barr",
@@ -669,7 +670,7 @@ def canyon(folder):
 
     model, picture = sample("canyon", folder)
     picture.show(model, blocks_of(model, picture), only_outside=True)
-    picture.apply_looks(model, 0.7)
+    apply_looks(model, 0.7)
     picture.landscape(sun=(math.radians(226.0), math.radians(34.0)), haze=16000.0)
     picture.look((-640.0, -150.0, 455.0), (60.0, 60.0, 92.0), lens=22.0)
     picture.finish(
@@ -689,7 +690,7 @@ def quarry(folder):
     model, picture = sample("quarry", folder)
     made, origin = generator("quarry"), np.array(picture.origin)
     picture.show(model, blocks_of(model, picture), only_outside=True)
-    picture.apply_looks(model, 1.0)
+    apply_looks(model, 1.0)
     around(made, origin, "Loam", 700.0, 20.0)
     taken = model.eroded().taken.sum(axis=0)
     rows = [(b.name, f"{v:,.0f} m\u00b3") for b, v in zip(model.blocks, taken, strict=True) if v > 0]
@@ -712,7 +713,7 @@ def island(folder):
 
     model, picture = sample("sculpted_island", folder)
     picture.show(model, blocks_of(model, picture), only_outside=True)
-    picture.apply_looks(model, 0.8)
+    apply_looks(model, 0.8)
     picture.sun = math.radians(95.0), math.radians(33.0)
     picture.draw(
         "island",
@@ -730,12 +731,13 @@ def diagram(folder):
     import math
 
     import bpy
-    from realmodel.bl import batch, looks, picture
+    from realmodel.bl import batch, picture
     from realmodel.bl.display import viewpoints
     from realmodel.bl.overlay import legend_share, rendered
     from realmodel.core import build, load_project
 
-    batch.write_scene(build(load_project(SAMPLES / "block_diagram" / "project.toml"), cells="blocks"))
+    model = build(load_project(SAMPLES / "block_diagram" / "project.toml"), cells="blocks")
+    batch.write_scene(model)
     scene = bpy.context.scene
     view = scene.realmodel.view
     view.exaggeration = 2.0
@@ -744,7 +746,7 @@ def diagram(folder):
         if item.get("realmodel") == "block":
             smooth(item.data)
             item.hide_render = False
-    looks.apply_to_scene(scene, scene.realmodel.library, None, 0.9, 0, 10800.0)
+    apply_looks(model, 0.9)
     bpy.context.view_layer.update()
     file = folder / "diagram.png"
     points = viewpoints.model_points(scene)
