@@ -35,8 +35,11 @@ class Weathering(PanelCase):
 
     def test_the_evaluated_mesh_is_worn_and_the_block_is_not(self):
         plain = [meshes.mesh_coordinates(self.block(n).data) for n in (1, 2)]
-        volumes = self.volumes()
+        volumes, files = self.volumes(), [self.folder / name for name in ("plain.ply", "weathered.ply")]
+        ops.export(filepath=str(files[0]))
         ops.weathering(strength=2.0, detail=3)
+        ops.export(filepath=str(files[1]))
+        self.assertEqual(*(file.read_bytes() for file in files))
         low = self.evaluated(1)[0]
         for number in (1, 2):
             self.assertTrue(

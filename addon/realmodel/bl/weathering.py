@@ -22,7 +22,7 @@ HARDNESS = "realmodel_hardness"  # on a block: the hardness that the library gav
 _VERSION = 1
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
-_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 0.8}  # texture units (looks) at 1
+_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6}  # texture units (looks) at 1
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
@@ -145,15 +145,15 @@ def _fill(nodes):
     at_points = nodes.on("FACE", exposed)  # at a point the share of its faces
     worn = nodes.math("GREATER_THAN", at_points, 0.0)
     position = nodes.of("GeometryNodeInputPosition", "Position")
-    for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
-        middle = nodes.on("POINT", nodes.on("EDGE", position))
-        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
-        geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
     outward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), exposed)
     outward = nodes.vector("NORMALIZE", nodes.on("FACE", outward))
     depth = nodes.math("MULTIPLY", _depth(nodes, given, position), given["Strength"])
     offset = nodes.vector("SCALE", outward, nodes.math("MULTIPLY", depth, -1.0))
     geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=offset)
+    for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
+        middle = nodes.on("POINT", nodes.on("EDGE", position))
+        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
+        geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
     geometry = _covered(nodes, given, geometry, is_top, position)
     geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
