@@ -60,6 +60,14 @@ class Weathering(PanelCase):
         self.assertEqual(len(self.evaluated(1)[0]), len(plain[0]))
         self.refused(ops.weathering_remove, "no block is weathered")
 
+    def test_sheets_between_blocks_do_not_stick_out(self):
+        """Polygons are smaller here than what is worn away."""
+        ops.weathering(strength=6.0, detail=5)
+        for number, most in ((1, 49.0), (2, 49.7)):
+            found = self.evaluated(number)[0]
+            away = np.abs(found - (found.min(axis=0) + found.max(axis=0)) / 2)[:, :2]
+            self.assertLess(away[away[:, 1] < 30.0, 0].max(), most)
+
     def test_soft_rock_falls_back_behind_hard_rock(self):
         ops.weathering(strength=3.0, rounding=0.0, detail=3)
         soft, hard = (np.ptp(self.evaluated(n)[0][:, 0]) for n in (1, 2))
