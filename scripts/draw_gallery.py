@@ -164,7 +164,7 @@ class Picture:
         scene.cycles.max_bounces = 3
         scene.cycles.denoising_prefilter = "FAST"
         bpy.ops.render.render(write_still=True)
-        write_title(file, title, subtitle, color)
+        write_title(file, title, subtitle, color or INK)
 
     def render(self, file, size, azimuth, elevation, room):
         """Writes a picture of so many pixels without texts. Returns the camera."""
@@ -633,7 +633,7 @@ def rocks(folder):
     apply_looks(model, 1.0)
     meadow("Soil", lowest, 2500.0)
     picture.landscape(sun=(math.radians(246.0), math.radians(13.0)), haze=6000.0)
-    picture.look(np.array([-78.0, -172.0, 14.0]), np.array([-15.0, 0.0, 12.5]), lens=28.0)
+    picture.look(np.array([-95.0, -150.0, 15.0]), np.array([-31.0, 0.0, 12.0]), lens=24.5)
     picture.finish(
         "rocks",
         "Haut-Barr",
