@@ -55,7 +55,7 @@ apt=(apt-get -qq -o "Dir::Etc::SourceList=$work/sources.list" -o Dir::Etc::Sourc
     -o APT::Sandbox::User="$(id -un)")
 "${apt[@]}" update || fail "the list of packages of $suite cannot be had from $mirror"
 if [[ $kind == deb-src ]]; then
-    (cd "$work/archives" && "${apt[@]}" source --download-only "$1") || fail "$suite has no source package $1"
+    (cd "$work/archives" && "${apt[@]}" source --download-only --tar-only "$1") || fail "$suite has no source package $1"
     tar --extract --file "$(echo "$work"/archives/*.orig.tar.*z)" --strip-components=1 --directory "$work/unpacked"
 else
     (cd "$work/archives" && "${apt[@]}" download "$@") || fail "$suite has no such packages: $*"

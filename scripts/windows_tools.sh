@@ -5,10 +5,12 @@
 # does not have for mingw-w64, compiled from Debian's source. What is there is left as it is.
 #
 #   scripts/windows_tools.sh [VERSION...]      VERSION: e.g. 3.11, of Python; its headers and a library of its
-#                                              names go to build/windows/python3.11. tests: GoogleTest
+#                                              names go to build/windows/python3.11, through
+#                                              ${XDG_CACHE_HOME:-~/.cache}/realmodel. tests: GoogleTest
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
 compiler=x86_64-w64-mingw32
 
 "$root/scripts/install_dependencies.sh" build windows
@@ -36,17 +38,19 @@ gmp() {
 python() { # VERSION
     # The oldest release of Debian that has it.
     local -A suite_of=([3.11]=bookworm [3.13]=trixie [3.14]=sid)
-    local version=$1 source=$windows/python$1-source folder=$windows/python$1 name=python${1/./}
+    local version=$1 headers=$cache/python$1-headers folder=$windows/python$1 name=python${1/./}
     if [[ -z ${suite_of[$version]-} ]]; then
         echo "windows_tools.sh: it is not known which release of Debian has Python $version" >&2
         return 2
     fi
-    "$root/scripts/foreign_packages.sh" --source "${suite_of[$version]}" "$source" "python$version" || return 1
+    # The headers are the same for all systems but for the configuration. That of 3.13 does for the others: what
+    # it says of this compiler and these processors has not changed, and it is the first that knows mingw-w64.
+    "$root/scripts/foreign_packages.sh" "${suite_of[$version]}" "$headers" "libpython$version-dev" || return 1
+    "$root/scripts/foreign_packages.sh" --source trixie "$windows/python-source" python3.13 || return 1
     rm -rf "$folder.part"
     mkdir "$folder.part"
-    cp -R "$source/Include" "$folder.part/include"
-    # The configuration for Windows; since 3.13 with one line that says whether Python is free-threaded: it is not.
-    cp "$source"/PC/pyconfig.h* "$folder.part/include/pyconfig.h"
+    cp -R "$headers/usr/include/python$version" "$folder.part/include"
+    cp "$windows/python-source/PC/pyconfig.h.in" "$folder.part/include/pyconfig.h"
     # The library of names is made from the headers, so that it takes no Python for Windows.
     {
         echo "LIBRARY $name.dll"
@@ -57,7 +61,6 @@ python() { # VERSION
     } >"$folder.part/$name.def"
     "$compiler-dlltool" --input-def "$folder.part/$name.def" --output-lib "$folder.part/lib$name.dll.a"
     mv "$folder.part" "$folder"
-    rm -rf "$source"
 }
 
 google_test() {
