@@ -3,8 +3,8 @@
 
     build/tools/bin/python make_zip.py PLATFORM FOLDER MODULE...
 
-PLATFORM: as Blender calls it, e.g. windows-x64. FOLDER: where realmodel-VERSION-PLATFORM.zip goes. MODULE: the
-native modules, one for each Python.
+PLATFORM: as Blender calls it, e.g. windows-x64. FOLDER: where realmodel-VERSION-PLATFORM.zip goes. MODULE:
+the native modules, one for each Python.
 The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
 for which markdown-it-py is needed.
 """

@@ -9,7 +9,10 @@ from realmodel.core import missing_native
 
 MINOR = sys.version_info.minor
 VERSION = f"3.{MINOR}"
-MODULES = {"linux-x86_64": "_native.cpython-3{}-x86_64-linux-gnu.so", "win-amd64": "_native.cp3{}-win_amd64.pyd"}
+MODULES = {
+    "linux-x86_64": "_native.cpython-3{}-x86_64-linux-gnu.so",
+    "win-amd64": "_native.cp3{}-win_amd64.pyd",
+}
 
 
 @pytest.fixture
