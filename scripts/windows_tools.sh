@@ -56,7 +56,7 @@ python() { # VERSION
         echo "LIBRARY $name.dll"
         echo EXPORTS
         find "$folder.part/include" -name '*.h' -exec cat {} + |
-            perl -0777 -ne 'while (/PyAPI_(FUNC|DATA)\s*\([^()]*\)\s*(?:\(\*)?\s*(\w+)/g) {
+            perl -0777 -ne 'while (/PyAPI_(FUNC|DATA)\s*\([^()]*\)\s*(?:\(\*)?\s*(_*Py\w+)/g) {
                 print $2, $1 eq "DATA" ? " DATA" : "", "\n" }' | sort -u
     } >"$folder.part/$name.def"
     "$compiler-dlltool" --input-def "$folder.part/$name.def" --output-lib "$folder.part/lib$name.dll.a"
