@@ -5,62 +5,36 @@
 #
 #   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
-#     native      the C++ tests, compiled for Windows (half an hour)
-#     digests     build_digests gives the same bytes as on Linux, for any number of threads
-#     files       tests/windows: the samples' bytes as on Linux, paths, line ends, files open elsewhere, Ctrl-C
+#     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C
 #     4.5 5.0     tests/blender in this version of Blender
-#     speed       ten surfaces of 180,000 triangles, beside Linux
 #
 # shellcheck disable=SC2317  # functions are called by name
 set -uo pipefail # and not -e: a step that fails does not keep the others from being tried
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
 results=$windows/results
-all=(native digests files 4.5 5.0 speed)
+all=(files 4.5 5.0)
 
 zip="" steps=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
-        native | digests | files | 4.5 | 5.0 | speed) steps+=("$1") ;;
+        files | 4.5 | 5.0) steps+=("$1") ;;
         *)
-            echo "usage: test_windows.sh [--zip FILE] [native|digests|files|4.5|5.0|speed]..." >&2
+            echo "usage: test_windows.sh [--zip FILE] [files|4.5|5.0]..." >&2
             exit 2
             ;;
     esac
     shift
 done
 ((${#steps[@]} > 0)) || steps=("${all[@]}")
-wants() { [[ " ${steps[*]} " == *" $1 "* ]]; }
 
 mkdir -p "$results"
 "$root/scripts/install_dependencies.sh" build wine || exit 1
-"$root/scripts/windows_tools.sh" tests || exit 1
 # A folder of its own for Wine, and no window of its.
 export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEDLLOVERRIDES="winemenubuilder.exe,mscoree,mshtml=d"
 windows_run() { # PROGRAM ARGUMENT...: through pipes, since Python for Windows takes no files of Wine's for its streams
     wine "$@" </dev/null 2>&1 | cat
-}
-
-compiled() { # TARGET...
-    (cd "$root" && cmake --preset windows-x64 -DREALMODEL_BUILD_TESTS=ON --log-level=WARNING) &&
-        cmake --build "$root/build/windows-x64" --target "$@" -j "$("$root/scripts/build_jobs.sh")"
-}
-
-native() {
-    compiled realmodel_tests && windows_run "$root/build/windows-x64/native/realmodel_tests.exe" --gtest_brief=1
-}
-
-digests() {
-    compiled build_digests || return 1
-    cmake --preset release --log-level=WARNING && cmake --build "$root/build/release" --target build_digests -j 2 || return 1
-    "$root/build/release/native/build_digests" 2 >"$results/digests_linux.txt" || return 1
-    local threads
-    for threads in 1 2 5; do
-        windows_run "$root/build/windows-x64/native/build_digests.exe" "$threads" | tr -d '\r' >"$results/digests_$threads.txt" || return 1
-        diff "$results/digests_linux.txt" "$results/digests_$threads.txt" || return 1
-    done
-    echo "$(wc -l <"$results/digests_linux.txt") results, the same bytes"
 }
 
 # Python 3.11 with NumPy and bpy, as Blender has them.
@@ -117,15 +91,6 @@ suite() { # VERSION
     blender "$1" && windows_run "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py"
 }
 
-speed() {
-    compiled stack_benchmark || return 1
-    cmake --build "$root/build/release" --target stack_benchmark -j 2 || return 1
-    local benchmark=native/stack_benchmark
-    for _ in 1 2 3; do
-        echo Linux && "$root/build/release/$benchmark" && echo Windows && windows_run "$root/build/windows-x64/$benchmark.exe"
-    done
-}
-
 failed=0
 run() { # NAME COMMAND...
     local log=$results/$1.log status=0
@@ -140,16 +105,14 @@ run() { # NAME COMMAND...
     fi
 }
 
-if wants files || wants 4.5 || wants 5.0; then
-    stage >"$results/stage.log" 2>&1 || {
-        tail -n 25 "$results/stage.log"
-        exit 1
-    }
-fi
+stage >"$results/stage.log" 2>&1 || {
+    tail -n 25 "$results/stage.log"
+    exit 1
+}
 for step in "${steps[@]}"; do
     case $step in
         4.5 | 5.0) run "$step" suite "$step" ;;
-        *) run "$step" "$step" ;;
+        files) run files files ;;
     esac
 done
 ((failed == 0))
