@@ -3,14 +3,21 @@
 
 Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
 the model, so that it goes on from block to block.
+
+What other programs read of a material, they should find: Blender's exporters take the value of the shader's
+Base Color where what is linked to it says nothing to them; that of glTF takes one of two colors that are
+multiplied; that of USD would take the first attribute that it finds on the way, so these are in a group, into
+which it does not look. Textures themselves have to be baked (baking.py).
 """
 
+import bpy
 import numpy as np
 
 from ..core.looks import LOOKS, look_of
 from . import library_rows, materials, meshes, versions
 
 KEY = "realmodel_look"  # on a material: its look
+GROUP = "realmodel_bedding"  # on the node group that has the attributes of blocks
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
 _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
 
@@ -23,16 +30,39 @@ def apply(material, look, scale, seed, diagonal):
     tree = material.node_tree
     tree.nodes.clear()
     nodes = _Nodes(tree)
-    shader = nodes.new("ShaderNodeBsdfPrincipled")
-    output = nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
+    shader = _new_shader(nodes)
     recipe = LOOKS[look]
     _set_gloss(shader, recipe.roughness)
-    if look == "FLAT":
-        shader.inputs["Base Color"].default_value = color
-    else:
+    shader.inputs["Base Color"].default_value = color
+    if look != "FLAT":
         _fill(nodes, shader, recipe, color, diagonal / UNITS * scale, seed)
     material[KEY] = look
+
+
+def level(material):
+    """Nothing stands out of a material that has a look any more."""
+    for link in list(material.node_tree.links):
+        if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
+            material.node_tree.links.remove(link)
+
+
+def show_picture(material, image):
+    """Gives a material that has a look a picture of it in the place of its nodes."""
+    tree = material.node_tree
+    tree.nodes.clear()
+    nodes = _Nodes(tree)
+    shader = _new_shader(nodes)
+    shader.inputs["Base Color"].default_value = (1.0, 1.0, 1.0, 1.0)  # files multiply both
+    _set_gloss(shader, LOOKS[material[KEY]].roughness)
+    picture = nodes.new("ShaderNodeTexImage")
+    picture.image = image
+    nodes.link(picture.outputs["Color"], shader.inputs["Base Color"])
+
+
+def _new_shader(nodes):
+    shader = nodes.new("ShaderNodeBsdfPrincipled")
+    nodes.link(shader.outputs["BSDF"], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return shader
 
 
 def _set_gloss(shader, roughness):
@@ -71,13 +101,26 @@ def _fill(nodes, shader, look, color, unit, seed):
     nodes.link(base, tint.inputs["Color"])
     nodes.link(nodes.math("ADD", nodes.math("MULTIPLY", total, 1.6), 1.0), tint.inputs["Value"])
     nodes.link(nodes.math("SUBTRACT", 1.05, nodes.math("MULTIPLY", total, 0.5)), tint.inputs["Saturation"])
-    nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
+    _multiply(nodes, given.outputs[0], tint.outputs["Color"], shader.inputs["Base Color"])
     if look.bump:
         bump = nodes.new("ShaderNodeBump")
         bump.inputs["Strength"].default_value = 0.7
         bump.inputs["Distance"].default_value = look.bump * unit * 4.0
         nodes.link(total, bump.inputs["Height"])
         nodes.link(bump.outputs["Normal"], shader.inputs["Normal"])
+
+
+def _multiply(nodes, color, seen, socket):
+    """Links a color to a socket as the product of the property's and what is left."""
+    mix = nodes.new("ShaderNodeMix")
+    mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+    factor, first, second = (
+        next(s for s in mix.inputs if s.name == name and s.enabled) for name in ("Factor", "A", "B")
+    )
+    nodes.link(1.0, factor)
+    nodes.link(color, first)
+    nodes.link(nodes.vector("DIVIDE", seen, color), second)
+    nodes.link(next(s for s in mix.outputs if s.enabled), socket)
 
 
 def _in_layer(nodes, place, lamina, unit):
@@ -124,6 +167,7 @@ class _Nodes:
 
     def __init__(self, tree):
         self.tree = tree
+        self._bedding = None
 
     def new(self, kind):
         node = self.tree.nodes.new(kind)
@@ -162,9 +206,27 @@ class _Nodes:
         return node.outputs[0]
 
     def attribute(self, name):
-        node = self.new("ShaderNodeAttribute")
+        if self._bedding is None:
+            self._bedding = self.new("ShaderNodeGroup")
+            self._bedding.node_tree = _bedding_group()
+        return self._bedding.outputs[name]
+
+
+def _bedding_group():
+    """The node group that has the attributes of the bedding, new where there is none."""
+    found = next((group for group in bpy.data.node_groups if GROUP in group and not group.library), None)
+    if found is not None:
+        return found
+    group = bpy.data.node_groups.new("RealModel Bedding", "ShaderNodeTree")
+    group[GROUP] = True
+    nodes = _Nodes(group)
+    output = nodes.new("NodeGroupOutput")
+    for name in meshes.BEDDING:
+        versions.new_output(group, name)
+        node = nodes.new("ShaderNodeAttribute")
         node.attribute_name = meshes.PREFIX + name
-        return node.outputs["Fac"]
+        nodes.link(node.outputs["Fac"], output.inputs[name])
+    return group
 
 
 def apply_to_scene(scene, rows, look, scale, seed, diagonal):

@@ -144,6 +144,14 @@ def make_matt(principled):
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
 
 
+def new_output(group, name):
+    """Gives a node group an output, a number; groups got an interface of their own in 4.0."""
+    if hasattr(group, "interface"):
+        group.interface.new_socket(name, in_out="OUTPUT", socket_type="NodeSocketFloat")
+    else:
+        group.outputs.new("NodeSocketFloat", name)
+
+
 def leave_sky_to_bounces(world):
     """Have Cycles not sample the sky as a lamp of its own."""
     if hasattr(world, "cycles"):
