@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import preferences, props_rock, props_stage, props_structure, props_surface, props_view
-from .bl import changes, data_objects, display, quality, results, units
+from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
 from .core.units import MODEL_UNIT
 
 
@@ -50,7 +50,9 @@ class RealModelProperty(bpy.types.PropertyGroup):
         options=set(),
     )
     has_color: BoolProperty(options={"HIDDEN"})
-    rock: StringProperty(name="Lithology", description="Rock type, such as sandstone")
+    rock: StringProperty(
+        name="Lithology", description="Rock type, such as sandstone", update=changes.property_look
+    )
     age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.coloring)
     structure: StringProperty(name="Structure", description="Bedding, texture, grain size")
     density: FloatProperty(
@@ -61,6 +63,40 @@ class RealModelProperty(bpy.types.PropertyGroup):
         options=set(),
     )
     description: StringProperty(name="Description", description="Further notes")
+    look: EnumProperty(
+        name="Look",
+        description="How the rock looks in rendered pictures",
+        items=[
+            (library_rows.NO_LOOK, "As It Is", "The material stays as it is"),
+            *looks.ITEMS,
+        ],
+        update=changes.property_look,
+        options=set(),
+    )
+    look_scale: FloatProperty(
+        name="Texture Scale",
+        description="Size of the texture; 1 suits the model",
+        default=1.0,
+        min=0.001,
+        soft_max=10.0,
+        update=changes.property_look,
+        options=set(),
+    )
+    look_seed: IntProperty(
+        name="Texture Seed",
+        description="Another texture of the same kind",
+        min=0,
+        update=changes.property_look,
+        options=set(),
+    )
+    hardness: FloatProperty(
+        name="Hardness",
+        description="How well the rock withstands weathering in pictures, at most 1; 0: as its look does",
+        min=0.0,
+        max=1.0,
+        update=changes.property_hardness,
+        options=set(),
+    )
     exact: StringProperty(options={"HIDDEN"})
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulation_lines, layered_mesh, filled_mesh, clean_cells, describe_cells, ordered_faces.
+// simulation_lines, layered_mesh, filled_mesh, clean_cells, describe_cells, inner_faces,
+// ordered_faces.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -189,18 +190,35 @@ py::tuple describe_cells(const Array<std::int64_t>& face_offsets, const Indices&
                                            view_of(begin), view_of(sides));
     }
     return py::make_tuple(to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
-                          to_array(std::move(found.counts)));
+                          to_array(std::move(found.counts)), to_array(std::move(found.lengths)));
 }
 
-py::tuple ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-                        const Array<std::int64_t>& order, const Array<std::uint8_t>& turned) {
+Array<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {
+    const auto both = rows<2>(face_cells, "face_cells");
+    realmodel::Array<std::int64_t> found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = simulation::inner_faces(both, cells);
+    }
+    return to_array(std::move(found));
+}
+
+py::dict ordered_faces(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
+                       const Indices& face_cells, const Array<std::int64_t>& order) {
+    const auto both = rows<2>(face_cells, "face_cells");
     simulation::OrderedFaces found;
     {
         const py::gil_scoped_release unlocked;
-        found = simulation::ordered_faces({view_of(face_offsets), view_of(face_vertices)},
-                                          view_of(order), view_of(turned));
+        found = simulation::ordered_faces({view_of(face_offsets), view_of(face_vertices)}, both,
+                                          view_of(order));
     }
-    return py::make_tuple(to_array(std::move(found.offsets)), to_array(std::move(found.vertices)));
+    py::dict made;
+    made["offsets"] = to_array(std::move(found.offsets));
+    made["vertices"] = to_array(std::move(found.vertices));
+    made["owner"] = to_array(std::move(found.owner));
+    made["neighbor"] = to_array(std::move(found.neighbor));
+    made["turned"] = to_array(std::move(found.turned));
+    return made;
 }
 
 }  // namespace
@@ -261,14 +279,20 @@ Raises InputError kind "bad_index"; Cancelled.)");
 
 begin: (C + 1,) int64, where the sides of these cells begin and end; sides: (S,) int64, as cell_sides has
 them. Returns int64 arrays: of each cell how many faces it has, of each of these how many corners, and the
-corners; the vertices of each cell, every one once, ascending; how many these are (C,). Raises InputError
-kind "bad_index".)");
-    module.def("ordered_faces", &ordered_faces, py::arg("face_offsets"), py::arg("face_vertices"),
-               py::arg("order"), py::arg("turned"),
-               R"(Faces in a new order.
+corners; the vertices of each cell, every one once, ascending; how many these are (C,), and how many numbers
+of the first array describe each cell (C,). Raises InputError kind "bad_index".)");
+    module.def(
+        "inner_faces", &inner_faces, py::arg("face_cells"), py::arg("cells"),
+        R"(The faces between two cells, by the lower of their cells and then the higher: (N,) int64.
 
-order: (N,) int64, numbers of faces; turned: (N,) uint8, whether the face goes the other way round, from the
-same corner on. Returns offsets (N + 1,) and vertices, int32. Raises InputError kinds "bad_index",
+face_cells: (F, 2) int32, the second -1 outside. Raises InputError kind "bad_index".)");
+    module.def("ordered_faces", &ordered_faces, py::arg("face_offsets"), py::arg("face_vertices"),
+               py::arg("face_cells"), py::arg("order"),
+               R"(Faces in a new order, each seen from the lower of its cells.
+
+face_cells: (F, 2) int32, the second -1 outside. order: (N,) int64, numbers of faces. Returns a dict: offsets
+(N + 1,), vertices, owner and neighbor (N,) int32, the lower and the higher cell; turned (N,) uint8, whether
+the face goes the other way round now, from the same corner on. Raises InputError kinds "bad_index",
 "too_large".)");
 }
 

@@ -16,6 +16,7 @@
 #include "realmodel/strata/cell_components.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "rock_arrays.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -69,15 +70,8 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control);
 }
 
-std::span<const std::array<std::int32_t, 2>> cells_of_faces(const Indices& face_cells) {
-    require_columns(face_cells, 2, "face_cells");
-    static_assert(sizeof(std::array<std::int32_t, 2>) == 2 * sizeof(std::int32_t));
-    return {reinterpret_cast<const std::array<std::int32_t, 2>*>(face_cells.data()),
-            static_cast<std::size_t>(face_cells.shape(0))};
-}
-
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
-    const auto faces = cells_of_faces(face_cells);
+    const auto faces = rows<2>(face_cells, "face_cells");
     strata::CellSides found;
     {
         const py::gil_scoped_release release;
@@ -88,7 +82,7 @@ py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progres
 
 Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
                                     const Progress* control) {
-    const auto faces = cells_of_faces(face_cells);
+    const auto faces = rows<2>(face_cells, "face_cells");
     std::vector<std::int32_t> component;
     {
         const py::gil_scoped_release release;

@@ -3,6 +3,7 @@
 
 import bpy
 import numpy as np
+from blender_state import empty_file
 from panel_case import PanelCase, ops, stack
 from realmodel.bl import looks, materials
 from realmodel.core.looks import LOOKS
@@ -103,3 +104,38 @@ class Looks(PanelCase):
     def test_refused_without_blocks(self):
         ops.clear()
         self.refused(ops.rock_looks, "no block has these properties")
+
+    def test_the_library_says_the_look(self):
+        lower, coal = self.model.library
+        coal.look, coal.look_scale, coal.look_seed, coal.hardness = "SALT", 0.3, 7, 0.45
+        self.assertEqual(self.material(2)[looks.KEY], "SALT")
+        self.assertNotIn(looks.KEY, self.material(1))
+        lower.look = "AUTO"
+        self.assertEqual(self.material(1)[looks.KEY], "SHALE")
+        lower.rock = "granite"
+        self.assertEqual(self.material(1)[looks.KEY], "GRANITE")
+        path = str(self.folder / "m.toml")
+        ops.save_project(filepath=path)
+        text = (self.folder / "m_library.toml").read_text()
+        for line in (
+            'look = "auto"',
+            'look = "salt"',
+            "look_scale = 0.3",
+            "look_seed = 7",
+            "hardness = 0.45",
+        ):
+            self.assertEqual(text.count(f"{line}\n"), 1, line)
+        empty_file()
+        ops.open_project(filepath=path)
+        ops.build()
+        self.assertEqual([self.material(n)[looks.KEY] for n in (1, 2)], ["GRANITE", "SALT"])
+        self.assertEqual(list(self.material(2)[looks.TEXTURE]), [float(np.float32(0.3)), 7.0])
+
+    def test_nodes_of_the_user_stay_until_another_look_is_chosen(self):
+        ops.rock_looks(look="SALT")
+        tree = self.material(1).node_tree
+        tree.nodes.new("ShaderNodeValue").name = "mine"
+        ops.build()
+        self.assertIn("mine", tree.nodes)
+        self.model.library[0].look_seed = 3
+        self.assertNotIn("mine", tree.nodes)

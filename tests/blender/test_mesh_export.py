@@ -5,10 +5,11 @@ import time
 
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl.display import shown_models
+from realmodel.bl.export_job import ExportJob
 from realmodel.bl.mesh_job import MeshJob
-from realmodel.core import Cancelled, UsageError, build, load_project
-from realmodel.core.batch_mesh import BatchMesh
+from realmodel.core import Cancelled, OutputFailed, UsageError, build, load_project
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
+from realmodel.core.simulation.mesh_request import MeshRequest
 
 PROJECT = SAMPLES / "two_layers" / "project.toml"
 OPTIONS = {"edge_length": 8.0, "minimum_thickness": 1.0, "layer_thickness": 4.0}
@@ -69,7 +70,7 @@ class MeshExport(PanelCase):
         self.open_two_layers()
         model = shown_models.whole(self.scene)
         path = self.folder / "m.vtu"
-        job = MeshJob(model, BatchMesh(path, 0.25, 0.05, None, 0.1), "m")
+        job = MeshJob(model, MeshRequest(path, 0.25, 0.05, None, 0.1), "m")
         job.start()
         while job.state()[0] == 0 and not job.done:
             time.sleep(0.005)
@@ -79,7 +80,7 @@ class MeshExport(PanelCase):
         with self.assertRaises(Cancelled):
             job.finish()
         self.assertEqual(list(self.folder.iterdir()), [])
-        job = MeshJob(model, BatchMesh(path, 8.0), "m")
+        job = MeshJob(model, MeshRequest(path, 8.0), "m")
         job.start()
         job.wait()
         while not job.done:
@@ -87,7 +88,37 @@ class MeshExport(PanelCase):
         self.assertGreater(job.finish().cells, 100)
         self.assertTrue(path.is_file())
         with self.assertRaisesRegex(UsageError, "meshes are not written as"):
-            MeshJob(model, BatchMesh(self.folder / "m.xyz"), "m")
+            MeshJob(model, MeshRequest(self.folder / "m.xyz"), "m")
+
+    def test_a_model_is_exported_in_a_job_that_stops(self):
+        self.open_two_layers()
+        model = shown_models.whole(self.scene)
+        path = self.folder / "m.csv"
+        job = ExportJob(model, path, cell_size=0.5)
+        job.start()
+        while job.state()[0] == 0 and not job.done:
+            time.sleep(0.005)
+        self.assertFalse(job.done)
+        self.assertEqual(job.state()[1], "writing m.csv")
+        job.cancel()
+        job.wait()
+        with self.assertRaises(Cancelled):
+            job.finish()
+        deadline = time.monotonic() + 20
+        while list(self.folder.iterdir()) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(list(self.folder.iterdir()), [])
+        job = ExportJob(model, path, cell_size=5.0)
+        job.start()
+        while not job.done:
+            time.sleep(0.01)
+        self.assertEqual(job.finish(), path)
+        model.save(self.folder / "e.csv", cell_size=5.0)
+        self.assertEqual(path.read_bytes(), (self.folder / "e.csv").read_bytes())
+        with self.assertRaisesRegex(UsageError, "takes no tolerance"):
+            ExportJob(model, path, tolerance=1.0)
+        with self.assertRaisesRegex(OutputFailed, "there is no folder"):
+            ExportJob(model, self.folder / "none" / "m.vtu")
 
     def test_maps_and_their_interval(self):
         self.open_two_layers()

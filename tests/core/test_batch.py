@@ -138,7 +138,7 @@ def test_cells_of_blocks(layers, out):
         (["p.toml", "--blend", "m.png"], ".blend"),
         (["p.toml", "--render", "m.jpg"], ".png"),
         (["p.toml", "--report", "r.txt"], ".json"),
-        (["p.toml", "--cell-size", "1,x"], "'1,x' is not one to three numbers above 0"),
+        (["p.toml", "--cell-size", "1,x"], "'x' is not a number above 0"),
         (["p.toml", "--export", "m.xyz"], "'.xyz' are not supported; use one of .npz, .vtu"),
         (["p.toml", "--export", "m"], "no extension"),
         (["p.toml", "--export", "m.npz", "--export", "./m.npz"], "two outputs have this name"),

@@ -6,8 +6,8 @@ import csv
 import numpy as np
 import pytest
 from conftest import grid_surface
+from realmodel.batch.cuts import read_polyline
 from realmodel.core import InputRefused, load_project
-from realmodel.core.batch_cuts import read_polyline
 from stacks.project_files import write_off
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
 

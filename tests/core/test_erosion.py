@@ -9,9 +9,9 @@ import pytest
 from conftest import grid_surface
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from realmodel.batch.table import volume_table
 from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters.report import model_report
-from realmodel.core.table import volume_table
 from stacks.generate import random_stack
 from stacks.judge import volume_allowance
 from stacks.model_view import rocks_of

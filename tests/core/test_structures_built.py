@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from realmodel.batch.table import volume_table
 from realmodel.core import (
     Body,
     Fault,
@@ -24,7 +25,6 @@ from realmodel.core.rules import RULES
 from realmodel.core.structures.displacement import displacements
 from realmodel.core.structures.located import OUTSIDE, Locator
 from realmodel.core.structures.proof import closed_forms
-from realmodel.core.table import volume_table
 from realmodel.core.volume_uncertainty import volume_deviations
 from structure_cases import SQUARE, ball, box_body, plane_fault
 

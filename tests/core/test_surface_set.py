@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
+from realmodel.batch.table import surface_table
 from realmodel.core import Body, Fault, Project, Rock, Surface, UsageError, build, build_surfaces, interpolate
-from realmodel.core.table import surface_table
 from structure_cases import plane_fault
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader

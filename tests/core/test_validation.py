@@ -315,15 +315,15 @@ def program(monkeypatch):
 
 
 def spoil_builds(monkeypatch):
-    import realmodel.core as core
+    from realmodel.batch import run
 
-    whole = core.build
+    whole = run.build
 
     def spoilt(*arguments, **options):
         model = whole(*arguments, **options)
         return damaged(model, **unused_vertex(model))
 
-    monkeypatch.setattr(core, "build", spoilt)
+    monkeypatch.setattr(run, "build", spoilt)
 
 
 def test_check_model_prints_the_proof(program, layers, tmp_path, capsys):

@@ -25,6 +25,7 @@ from . import (
     display,
     exaggeration,
     library_rows,
+    looks,
     materials,
     meshes,
     notices,
@@ -37,6 +38,7 @@ from . import (
     surface_figures,
     uncertainty,
     viewports,
+    weathering,
 )
 from .display import visible
 from .origin import KEY as ORIGIN_KEY
@@ -226,6 +228,8 @@ def put(current, prepared, composed, in_place=False):
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
     display.built(current, prepared.bounds, prepared.stage)
+    looks.follow(current)
+    weathering.follow(current)
 
 
 def move_helpers(current, moved):

@@ -7,6 +7,7 @@ from . import (
     display,
     library_rows,
     live,
+    looks,
     method_settings,
     names,
     project_settings,
@@ -16,6 +17,7 @@ from . import (
     surface_figures,
     units,
     viewports,
+    weathering,
 )
 
 
@@ -161,7 +163,20 @@ def property_id(row, _context):
 def property_name(row, _context):
     if not settings.is_filling():
         library_rows.update_material(row)
+        looks.follow(row.id_data, [row])
         live.touch(row.id_data)
+
+
+def property_look(row, _context):
+    """Another look of a property, another lithology where that says which, or another texture."""
+    if not settings.is_filling():
+        looks.follow(row.id_data, [row])
+        weathering.follow(row.id_data)
+
+
+def property_hardness(row, _context):
+    if not settings.is_filling():
+        weathering.follow(row.id_data)
 
 
 def property_color(row, _context):

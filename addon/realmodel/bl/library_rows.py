@@ -7,6 +7,7 @@ from ..core import Library, Property
 from . import materials, settings
 
 _TEXTS = ("rock", "age", "structure", "description")
+NO_LOOK = "NONE"  # the material stays as it is
 
 
 def library_of(scene):
@@ -19,9 +20,16 @@ def library_of(scene):
 
 def _property(row):
     texts = {key: getattr(row, key) or None for key in _TEXTS}
-    density = settings.number(row, "density") or None
+    numbers = {key: settings.number(row, key) or None for key in ("density", "hardness")}
+    look = None if row.look == NO_LOOK else row.look.lower()
+    scale = settings.number(row, "look_scale")
+    numbers |= {
+        "look": look,
+        "look_scale": None if scale == 1.0 else scale,
+        "look_seed": row.look_seed or None,
+    }
     color = hex_color(row.color) if row.has_color else None
-    return Property(row.id, row.name, color=color, density=density, **texts)
+    return Property(row.id, row.name, color=color, **numbers, **texts)
 
 
 def fill(scene, library):
@@ -42,8 +50,11 @@ def add(scene, entry):
         row.name = entry.name
         for key in _TEXTS:
             setattr(row, key, getattr(entry, key) or "")
-        if entry.density is not None:
-            settings.set_number(row, "density", entry.density)
+        for key in ("density", "look_scale", "hardness"):
+            if getattr(entry, key) is not None:
+                settings.set_number(row, key, getattr(entry, key))
+        row.look = NO_LOOK if entry.look is None else entry.look.upper()
+        row.look_seed = entry.look_seed or 0
         if entry.color is not None:
             row.color = entry.rgb
             row.has_color = True
@@ -75,7 +86,9 @@ def remove_made(scene, surface):
     """A surface or a body leaves the list: the entry added for it goes, where nothing was made of it."""
     row = find(scene, surface.property_id)
     users = sum(other.property_id == surface.property_id for other in settings.property_rows(scene))
-    if row is None or users > 1 or row.name != surface.name or row.density or any(map(row.get, _TEXTS)):
+    if row is None or users > 1 or row.name != surface.name:
+        return
+    if row.density or row.hardness or row.look != NO_LOOK or any(map(row.get, _TEXTS)):
         return
     group = scene.realmodel
     group.library.remove(list(group.library).index(row))

@@ -4,22 +4,42 @@
 Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
 the model, so that it goes on from block to block.
 
-What other programs read of a material, they should find: Blender's exporters take the value of the shader's
-Base Color where what is linked to it says nothing to them; that of glTF takes one of two colors that are
-multiplied; that of USD would take the first attribute that it finds on the way, so these are in a group, into
-which it does not look. Textures themselves have to be baked (baking.py).
+What other programs can read of a material, they should find. Blender's exporters take the value of the
+shader's Base Color where what is linked to it says nothing to them; that of glTF one of two colors that are
+multiplied; that of USD would take the first attribute on the way, so these are in a group, into which it does
+not look. Textures themselves have to be baked (scene_export.py).
 """
 
 import bpy
 import numpy as np
 
+from ..core.library import AUTO_LOOK
 from ..core.looks import LOOKS, look_of
 from . import library_rows, materials, meshes, versions
+from .display import explosion
+from .nodes import Nodes
 
 KEY = "realmodel_look"  # on a material: its look
 GROUP = "realmodel_bedding"  # on the node group that has the attributes of blocks
+TEXTURE = "realmodel_look_texture"  # its scale and seed
+AUTO = AUTO_LOOK.upper()
+
+
+def says(key, look):
+    """A look in one line."""
+    return "The color of the property alone" if key == "FLAT" else f"Texture of {look.label.lower()}"
+
+
+ITEMS = (
+    (AUTO, "Automatic", "The look that suits the lithology, else the name of the property"),
+    *((key, look.label, says(key, look)) for key, look in LOOKS.items()),
+)
 UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
+SIZE = "Texture Size"  # the node that says how large a texture unit is
 _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
+_GROOVE = 0.07  # texture units: half the width of a groove or a crack
+_CRYSTAL = 0.3  # clasts smaller than this touch one another
+_NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
 
 def apply(material, look, scale, seed, diagonal):
@@ -74,39 +94,72 @@ def _set_gloss(shader, roughness):
 
 
 def _fill(nodes, shader, look, color, unit, seed):
+    """Nodes of all that a recipe has: `tones` add up to how bright, `heights` to how high (texture units)."""
+    size = nodes.new("ShaderNodeValue")
+    size.name = size.label = SIZE
+    size = size.outputs[0]
+    size.default_value = unit
     place = nodes.of("ShaderNodeTexCoord", "Object")
-    place = nodes.vector("MULTIPLY", place, (1.0 / unit,) * 3)
     rng = np.random.default_rng(seed)
+    place = nodes.vector("SCALE", place, nodes.math("DIVIDE", 1.0, size))
     place = nodes.vector("ADD", place, tuple(rng.uniform(-50.0, 50.0, 3)))
-    parts = []
+    above = _above(nodes, place, size)
+    large = nodes.noise(place, 0.12, 3.0)
+    rough = nodes.noise(place, 1.0 / look.relief_size, 5.0) if look.relief else None
+    worn = nodes.ramp(
+        large, 0.35, 0.6, 0.15, 1.0
+    )  # cracks are filled here, open there, and hardly seen on top
+    worn = nodes.math("MULTIPLY", worn, nodes.math("MULTIPLY_ADD", nodes.attribute("is_top"), -0.7, 1.0))
+    tones, heights, hues = [], [], []
     if look.stain:
-        parts.append((look.stain, nodes.noise(place, 0.12, 3.0)))
+        tones.append(nodes.about(large, 2.0 * look.stain))
     if look.grain:
-        parts.append((look.grain, nodes.noise(place, 1.0 / look.grain_size, 2.0)))
+        tones.append(nodes.about(nodes.noise(place, 1.0 / look.grain_size, 1.0), 2.0 * look.grain))
+    if look.relief:
+        heights.append(nodes.about(rough, 2.0 * look.relief))
+        tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
     if look.lamination:
-        parts.append((look.lamination, nodes.noise(_in_layer(nodes, place, look.lamina, unit), 1.0, 4.0)))
+        lamina = nodes.about(nodes.noise(_in_layer(nodes, place, above, look.lamina), 1.0, 3.0), 1.0)
+        patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
+        lamina = nodes.math("MULTIPLY", lamina, patchy)
+        tones.append(nodes.math("MULTIPLY", lamina, 2.0 * look.lamination))
+        heights.append(nodes.math("MULTIPLY", lamina, look.lamination))
+    beds = None
+    if look.bed:
+        beds, groove = _beds(nodes, above, rough, look.bed)
+        tones.append(nodes.about(nodes.part(beds, 0), 0.22))
+        hues.append(nodes.part(beds, 1))
+        _groove(nodes, look, nodes.math("MULTIPLY", groove, worn), tones, heights)
+    if look.joint:
+        shown = nodes.attribute("is_top") if look.on_top else worn
+        joints, tone = _joints(nodes, place, rough, beds, look)
+        _groove(nodes, look, nodes.math("MULTIPLY", joints, shown), tones, heights)
+        if look.columns:
+            tones.append(nodes.about(tone, 0.15))
     if look.clasts:
-        parts.append((look.clasts, _clasts(nodes, place, look.clast_size)))
-    total = None
-    for strength, value in parts:
-        value = nodes.math("MULTIPLY", nodes.math("SUBTRACT", value, 0.5), 2.0 * strength)
-        total = value if total is None else nodes.math("ADD", total, value)
+        tone, height, hue = _clasts(nodes, place, look)
+        tones.append(tone)
+        heights.append(height)
+        hues.append(hue)
+    elif look.grassy:
+        hues.append(large)
+    tone = nodes.math("MULTIPLY", nodes.total(tones), 1.6)
     tint = nodes.new("ShaderNodeHueSaturation")
     given = nodes.new("ShaderNodeRGB")
     given.name = given.label = materials.COLOR
-    given.outputs[0].default_value = color
-    base = given.outputs[0]
-    if look.top:
-        base = _brown_below(nodes, base)
-    nodes.link(base, tint.inputs["Color"])
-    nodes.link(nodes.math("ADD", nodes.math("MULTIPLY", total, 1.6), 1.0), tint.inputs["Value"])
-    nodes.link(nodes.math("SUBTRACT", 1.05, nodes.math("MULTIPLY", total, 0.5)), tint.inputs["Saturation"])
-    _multiply(nodes, given.outputs[0], tint.outputs["Color"], shader.inputs["Base Color"])
-    if look.bump:
+    given = given.outputs[0]
+    given.default_value = color
+    nodes.link(_brown_below(nodes, given) if look.grassy else given, tint.inputs["Color"])
+    nodes.link(nodes.math("MAXIMUM", nodes.math("ADD", tone, 1.0), 0.15), tint.inputs["Value"])
+    nodes.link(nodes.math("SUBTRACT", 0.95, nodes.math("MULTIPLY", tone, 0.3)), tint.inputs["Saturation"])
+    if look.hue and hues:
+        hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in hues])
+        nodes.link(nodes.math("ADD", hue, 0.5), tint.inputs["Hue"])
+    _multiply(nodes, given, tint.outputs["Color"], shader.inputs["Base Color"])
+    if heights:
         bump = nodes.new("ShaderNodeBump")
-        bump.inputs["Strength"].default_value = 0.7
-        bump.inputs["Distance"].default_value = look.bump * unit * 4.0
-        nodes.link(total, bump.inputs["Height"])
+        nodes.link(size, bump.inputs["Distance"])
+        nodes.link(nodes.total(heights), bump.inputs["Height"])
         nodes.link(bump.outputs["Normal"], shader.inputs["Normal"])
 
 
@@ -123,32 +176,74 @@ def _multiply(nodes, color, seen, socket):
     nodes.link(next(s for s in mix.outputs if s.enabled), socket)
 
 
-def _in_layer(nodes, place, lamina, unit):
-    """Coordinates in which laminae are level: the height above the base of the layer as it was deposited."""
-    height = nodes.attribute("height")
-    above = nodes.math("MULTIPLY", height, nodes.attribute("thickness"))
-    above = nodes.math("MULTIPLY", above, 1.0 / (lamina * unit))
-    apart = nodes.new("ShaderNodeSeparateXYZ")
-    nodes.link(place, apart.inputs[0])
-    age = nodes.math("MULTIPLY", nodes.attribute("age"), 7.3)  # layers differ
+def _above(nodes, place, size):
+    """The height above the base of the layer as it was deposited, where layers differ, in texture units; that
+    in the object where a mesh has no layers."""
+    thickness = nodes.attribute("thickness")
+    above = nodes.math("DIVIDE", nodes.math("MULTIPLY", nodes.attribute("height"), thickness), size)
+    above = nodes.math("ADD", above, nodes.math("MULTIPLY", nodes.attribute("age"), 7.3))
+    without = nodes.math("MULTIPLY", nodes.math("LESS_THAN", thickness, _NO_LAYER), nodes.part(place, 2))
+    return nodes.math("ADD", above, without)
+
+
+def _in_layer(nodes, place, above, lamina):
+    """Coordinates in which laminae are level."""
     joined = nodes.new("ShaderNodeCombineXYZ")
-    nodes.link(nodes.math("MULTIPLY", apart.outputs[0], _FLAT_LAMINAE), joined.inputs[0])
-    nodes.link(nodes.math("MULTIPLY", apart.outputs[1], _FLAT_LAMINAE), joined.inputs[1])
-    nodes.link(nodes.math("ADD", above, age), joined.inputs[2])
+    nodes.link(nodes.math("MULTIPLY", nodes.part(place, 0), _FLAT_LAMINAE), joined.inputs[0])
+    nodes.link(nodes.math("MULTIPLY", nodes.part(place, 1), _FLAT_LAMINAE), joined.inputs[1])
+    nodes.link(nodes.math("MULTIPLY", above, 1.0 / lamina), joined.inputs[2])
     return joined.outputs[0]
 
 
-def _clasts(nodes, place, size):
-    """From 0 to 1: pebbles that differ from one another, dark where they meet."""
-    cells = nodes.new("ShaderNodeTexVoronoi")
-    nodes.link(place, cells.inputs["Vector"])
-    cells.inputs["Scale"].default_value = 1.0 / size
-    apart = nodes.new("ShaderNodeSeparateXYZ")
-    nodes.link(cells.outputs["Color"], apart.inputs[0])
-    dome = nodes.math("SUBTRACT", 1.0, cells.outputs["Distance"])
-    return nodes.math(
-        "MULTIPLY", dome, nodes.math("ADD", nodes.math("MULTIPLY", apart.outputs[0], 0.7), 0.45)
-    )
+def _beds(nodes, above, rough, bed):
+    """The color of each bed, at random, and how deep in the groove between two (0 to 1)."""
+    level = nodes.math("MULTIPLY", above, 1.0 / bed)
+    if rough is not None:
+        level = nodes.math("ADD", level, nodes.about(rough, 0.12 / bed))
+    cell, edge = nodes.cells("1D", level, 1.0, "F1"), nodes.cells("1D", level, 1.0, "DISTANCE_TO_EDGE")
+    return cell.outputs["Color"], nodes.ramp(edge.outputs["Distance"], 0.0, _GROOVE / bed, 1.0, 0.0)
+
+
+def _joints(nodes, place, rough, beds, look):
+    """How deep in a crack (0 to 1), and a number from 0 to 1 of what cracks enclose. In each bed they are
+    elsewhere."""
+    bent = nodes.vector("SCALE", place, 1.0 / look.joint)
+    if beds is not None:
+        bent = nodes.vector("ADD", bent, nodes.vector("SCALE", beds, 40.0))
+    if rough is not None:
+        shift = nodes.new("ShaderNodeCombineXYZ")
+        for axis in range(2):
+            nodes.link(nodes.about(rough, 0.25), shift.inputs[axis])
+        bent = nodes.vector("ADD", bent, shift.outputs[0])
+    edge = nodes.cells("2D", bent, 0.85, "DISTANCE_TO_EDGE")
+    crack = nodes.ramp(edge.outputs["Distance"], 0.0, _GROOVE / look.joint, 1.0, 0.0)
+    return crack, nodes.part(nodes.cells("2D", bent, 0.85, "F1").outputs["Color"], 0)
+
+
+def _groove(nodes, look, groove, tones, heights):
+    tones.append(nodes.math("MULTIPLY", groove, -look.crack))
+    heights.append(nodes.math("MULTIPLY", groove, -0.5 * look.crack))
+
+
+def _clasts(nodes, place, look):
+    """Tone, height and hue of pebbles or crystals that differ from one another."""
+    place = nodes.vector("SCALE", place, 1.0 / look.clast_size)
+    if look.clast_size > _CRYSTAL:  # pebbles are not round
+        bent = nodes.of_noise(place, 0.9, 1.0).outputs["Color"]
+        place = nodes.vector("ADD", place, nodes.vector("SCALE", bent, 1.6))
+    cell = nodes.cells("3D", place, 1.0, "F1")
+    first, second = nodes.part(cell.outputs["Color"], 0), nodes.part(cell.outputs["Color"], 1)
+    if look.clast_size > _CRYSTAL:
+        inside = nodes.ramp(cell.outputs["Distance"], 0.38, 0.66, 1.0, 0.0)
+    else:
+        edge = nodes.cells("3D", place, 1.0, "DISTANCE_TO_EDGE")
+        inside = nodes.ramp(edge.outputs["Distance"], 0.02, 0.14, 0.0, 1.0)
+    if look.packing < 1.0:
+        inside = nodes.math("MULTIPLY", inside, nodes.math("LESS_THAN", second, look.packing))
+    tone = nodes.math("MULTIPLY", nodes.about(first, 2.0 * look.clasts), inside)
+    if look.clast_size > _CRYSTAL:  # between pebbles it is dark
+        tone = nodes.math("ADD", tone, nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, 1.0), 0.15))
+    return tone, nodes.math("MULTIPLY", inside, 0.6 * look.clast_size * look.clasts), first
 
 
 def _brown_below(nodes, color):
@@ -162,54 +257,23 @@ def _brown_below(nodes, color):
     return earth.outputs["Color"]
 
 
-class _Nodes:
-    """Makes nodes of a tree, in columns by their number."""
+class _Nodes(Nodes):
+    """Makes nodes of a material."""
 
-    def __init__(self, tree):
-        self.tree = tree
-        self._bedding = None
-
-    def new(self, kind):
-        node = self.tree.nodes.new(kind)
-        count = len(self.tree.nodes)
-        node.location = (-220.0 * (count // 5), -240.0 * (count % 5))
+    def cells(self, dimensions, place, randomness, feature):
+        node = self.new("ShaderNodeTexVoronoi")
+        node.voronoi_dimensions, node.feature = dimensions, feature
+        self.link(place, node.inputs["W" if dimensions == "1D" else "Vector"])
+        node.inputs["Scale"].default_value = 1.0
+        node.inputs["Randomness"].default_value = randomness
         return node
 
-    def link(self, value, socket):
-        """value: an output, or what an input has without a link."""
-        if isinstance(value, (float, int, tuple)):
-            socket.default_value = value
-        else:
-            self.tree.links.new(value, socket)
-
-    def of(self, kind, output):
-        return self.new(kind).outputs[output]
-
-    def math(self, operation, first, second):
-        node = self.new("ShaderNodeMath")
-        node.operation = operation
-        self.link(first, node.inputs[0])
-        self.link(second, node.inputs[1])
-        return node.outputs[0]
-
-    def vector(self, operation, first, second):
-        node = self.new("ShaderNodeVectorMath")
-        node.operation = operation
-        self.link(first, node.inputs[0])
-        self.link(second, node.inputs[1])
-        return node.outputs[0]
-
-    def noise(self, place, scale, detail):
-        node = self.new("ShaderNodeTexNoise")
-        self.link(place, node.inputs["Vector"])
-        node.inputs["Scale"].default_value, node.inputs["Detail"].default_value = scale, detail
-        return node.outputs[0]
-
     def attribute(self, name):
-        if self._bedding is None:
-            self._bedding = self.new("ShaderNodeGroup")
-            self._bedding.node_tree = _bedding_group()
-        return self._bedding.outputs[name]
+        found = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
+        if found is None:
+            found = self.new("ShaderNodeGroup")
+            found.node_tree = _bedding_group()
+        return found.outputs[name]
 
 
 def _bedding_group():
@@ -219,24 +283,44 @@ def _bedding_group():
         return found
     group = bpy.data.node_groups.new("RealModel Bedding", "ShaderNodeTree")
     group[GROUP] = True
-    nodes = _Nodes(group)
+    nodes = Nodes(group)
     output = nodes.new("NodeGroupOutput")
     for name in meshes.BEDDING:
-        versions.new_output(group, name)
+        versions.add_group_socket(group, name, "NodeSocketFloat", is_output=True)
         node = nodes.new("ShaderNodeAttribute")
         node.attribute_name = meshes.PREFIX + name
         nodes.link(node.outputs["Fac"], output.inputs[name])
     return group
 
 
-def apply_to_scene(scene, rows, look, scale, seed, diagonal):
-    """Gives the materials of some properties, rows of the library, a look; look None: that which suits the
-    rock. Returns how many materials there were."""
-    count = 0
-    for row in rows:
-        chosen = look_of(row.rock, row.name) if look is None else look
+def suiting(row):
+    """The key in LOOKS of the look that suits a row of the library by its names."""
+    return look_of(row.rock, row.name)
+
+
+def of_row(row):
+    """The key in LOOKS of the look of a row of the library; None where it says none."""
+    if row.look == AUTO:
+        return suiting(row)
+    return None if row.look == library_rows.NO_LOOK else row.look
+
+
+def diagonal(scene):
+    """The size of the model, which textures are made for."""
+    return float(np.linalg.norm(np.subtract(*explosion.bounds(scene)))) or 1.0
+
+
+def follow(scene, rows=None, anew=False):
+    """The materials of the library's rows - all, or some - get the looks that the rows say, where they have
+    others. anew: those too that have it already."""
+    for row in scene.realmodel.library if rows is None else rows:
+        look = of_row(row)
+        if look is None:
+            continue
+        texture = [float(row.look_scale), float(row.look_seed)]
         for material in library_rows.scene_materials(scene, row.id):
-            if material.library is None and material.node_tree is not None:
-                apply(material, chosen, scale, seed + row.id, diagonal)
-                count += 1
-    return count
+            same = material.get(KEY) == look and list(material.get(TEXTURE, ())) == texture
+            if (same and not anew) or material.library is not None or material.node_tree is None:
+                continue
+            apply(material, look, row.look_scale, row.look_seed + row.id, diagonal(scene))
+            material[TEXTURE] = texture

@@ -12,7 +12,7 @@ _SHARE = 0.9  # of the progress that making it takes
 class MeshJob(ThreadJob):
     """Makes a simulation mesh and writes it.
 
-    model: realmodel.core.Model. request: realmodel.core.batch_mesh.BatchMesh. unit: of the model's lengths.
+    model: core.Model. request: core.simulation.mesh_request.MeshRequest. unit: of the model's lengths.
     """
 
     def __init__(self, model, request, unit):

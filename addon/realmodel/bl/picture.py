@@ -20,6 +20,7 @@ from .overlay import drawing_for, legend_share, rendered
 from .viewports import towards, view_rotation
 
 KEY = "realmodel_picture"  # on what is set up here: what it is
+TURNTABLE = "turntable"  # the empty that the camera of an animation hangs from
 
 # Azimuths are clockwise from north (+y).
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
@@ -33,6 +34,7 @@ SUN_AZIMUTH = math.radians(112.0)
 SUN_ELEVATION = math.radians(40.0)
 SUN_ANGLE = math.radians(4.0)  # softens the shadows' edges
 SUN_STRENGTH = 2.35
+LOW_SUN = np.array([1.0, 0.70, 0.44])  # its color where it touches the horizon; white from its usual height
 SKY_COLOR = (0.92, 0.96, 1.0)
 SKY_STRENGTH = 0.42
 GROUND_COLOR = "#e8e8e8"
@@ -43,16 +45,26 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(current, points, size, space=None, studio=False, left=0.0):
+def set_up(
+    current,
+    points,
+    size,
+    space=None,
+    studio=False,
+    left=0.0,
+    sun=(SUN_AZIMUTH, SUN_ELEVATION),
+):
     """Gives a scene a camera, light, sky and ground of its own; they are used again the next time. Cameras
     and lights of the user stay.
 
     points: (N, 3) of what is to be seen. size: (width, height) of the picture. space: a 3D viewport that the
     camera is to look as; without one it sees all points. studio: a lamp beside the camera, an even sky and no
     ground, so that all that faces the eye has its own color. left: the part of the picture's width that is
-    kept free where the camera sees all points, for a legend.
+    kept free where the camera sees all points, for a legend. sun: its azimuth and elevation, radians.
     """
+    _remove_turntable(current)
     camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
+    camera.parent = None
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
     if space is None:
@@ -63,15 +75,32 @@ def set_up(current, points, size, space=None, studio=False, left=0.0):
         away = _look_as(camera, space, reach)
     camera.data.clip_start, camera.data.clip_end = away / 1e3, 10.0 * (away + reach)
     current.camera = camera
-    sun = _own(current, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
-    sun.data.energy, sun.data.angle = (2.0, 0.0) if studio else (SUN_STRENGTH, SUN_ANGLE)
+    lamp = _own(current, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
+    lamp.data.energy, lamp.data.angle = (2.0, 0.0) if studio else (SUN_STRENGTH, SUN_ANGLE)
     if studio:
-        sun.matrix_world = camera.matrix_world @ Matrix.Rotation(0.5, 4, "Y")
+        lamp.data.color = (1.0, 1.0, 1.0)
+        lamp.matrix_world = camera.matrix_world @ Matrix.Rotation(0.5, 4, "Y")
     else:
-        sun.rotation_euler = towards(SUN_AZIMUTH, SUN_ELEVATION).to_track_quat("Z", "Y").to_euler()
+        lamp.data.color = LOW_SUN + (1.0 - LOW_SUN) * min(1.0, max(0.0, sun[1]) / SUN_ELEVATION)
+        lamp.rotation_euler = towards(*sun).to_track_quat("Z", "Y").to_euler()
         _put_ground(current, points, 10.0 * (away + reach))
     _set_sky(current, *((1.0, 1.0, 1.0), 0.4) if studio else (SKY_COLOR, SKY_STRENGTH))
     return camera
+
+
+def turntable_of(current):
+    """The empty that the camera of a scene's turntable hangs from, or None."""
+    return next((item for item in current.objects if item.get(KEY) == TURNTABLE), None)
+
+
+def _remove_turntable(current):
+    pivot = turntable_of(current)
+    if pivot is None:
+        return
+    action = pivot.animation_data.action if pivot.animation_data else None
+    bpy.data.objects.remove(pivot)
+    if action is not None and not action.users:
+        bpy.data.actions.remove(action)
 
 
 def _own(current, kind, data):
@@ -216,15 +245,16 @@ def _opened(model):
     return model.cut_by_plane(max(found)[-1] * ahead, ahead).below
 
 
-def camera_matrix(points, size, left=0.0):
+def camera_matrix(points, size, left=0.0, rotation=None):
     """World matrix of a camera that has all points centered in its frame, and its distance.
 
     points: (N, 3) float64. size: (width, height) in pixels. left: the part of
-    the width that is kept free. The place follows from the four planes
+    the width that is kept free. rotation: (3, 3) of the camera, as `view_rotation`
+    where it is not given. The place follows from the four planes
     of the frame: in camera axes, z towards the camera, a point is inside where
     |x - cx| <= tx (d - z) and |y - cy| <= ty (d - z).
     """
-    rotation = view_rotation()
+    rotation = rotation or view_rotation()
     axes = np.array(rotation).T
     local = points @ axes.T
     tangents = (

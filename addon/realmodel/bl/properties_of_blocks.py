@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Another property for blocks that are there: no build is needed for it, only other materials."""
 
-from . import display, library_rows, materials, scene, settings
+from . import display, library_rows, looks, materials, scene, settings, weathering
 
 
 def assign(current, rows, property_id):
@@ -29,5 +29,7 @@ def follow_surfaces(current):
     for row in settings.property_rows(current):
         if row.interface is not None and row.interface.library is None:
             row.interface[scene.PROPERTY] = row.property_id
+    looks.follow(current)
+    weathering.follow(current)
     display.colors_changed(current)
     scene.remove_unused_materials()

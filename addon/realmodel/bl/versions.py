@@ -144,12 +144,57 @@ def make_matt(principled):
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
 
 
-def new_output(group, name):
-    """Gives a node group an output, a number; groups got an interface of their own in 4.0."""
-    if hasattr(group, "interface"):
-        group.interface.new_socket(name, in_out="OUTPUT", socket_type="NodeSocketFloat")
+def add_group_socket(group, name, kind, default=None, low=None, high=None, is_output=False):
+    """Gives a node group a socket of a kind, the name of its class; kinds of
+    numbers are subtypes from 4.0 on."""
+    if bpy.app.version < (4, 0, 0):
+        socket = (group.outputs if is_output else group.inputs).new(kind, name)
     else:
-        group.outputs.new("NodeSocketFloat", name)
+        plain = next((p for p in ("NodeSocketFloat", "NodeSocketInt") if kind.startswith(p)), kind)
+        way = "OUTPUT" if is_output else "INPUT"
+        socket = group.interface.new_socket(name, in_out=way, socket_type=plain)
+        if plain != kind:
+            socket.subtype = kind[len(plain) :].upper()
+    for key, value in (("default_value", default), ("min_value", low), ("max_value", high)):
+        if value is not None:
+            setattr(socket, key, value)
+
+
+def set_group_input(modifier, name, value):
+    """Sets an input of a modifier of geometry nodes."""
+    key = _group_key(modifier, name)
+    if hasattr(modifier, "properties"):  # from 5.2 on
+        getattr(modifier.properties.inputs, key).value = value
+    else:
+        modifier[key] = value
+    modifier.id_data.update_tag()
+
+
+def group_input(modifier, name):
+    """What an input of a modifier of geometry nodes is set to."""
+    key = _group_key(modifier, name)
+    return (
+        getattr(modifier.properties.inputs, key).value if hasattr(modifier, "properties") else modifier[key]
+    )
+
+
+def _group_key(modifier, name):
+    group = modifier.node_group
+    if bpy.app.version < (4, 0, 0):
+        sockets = group.inputs
+    else:
+        sockets = [s for s in group.interface.items_tree if s.item_type == "SOCKET" and s.in_out == "INPUT"]
+    return next(socket.identifier for socket in sockets if socket.name == name)
+
+
+def add_asset_library(name, folder):
+    """Adds a folder to the asset libraries of the preferences."""
+    known = bpy.context.preferences.filepaths.asset_libraries
+    if hasattr(known, "new"):
+        known.new(name=name, directory=folder)
+    else:
+        bpy.ops.preferences.asset_library_add(directory=folder)
+        known[-1].name = name
 
 
 def leave_sky_to_bounces(world):
@@ -187,6 +232,18 @@ def plain_colors(scene):
     scene.view_settings.look = "None"
     scene.view_settings.exposure = 0.0
     scene.view_settings.gamma = 1.0
+
+
+def curves(datablock):
+    """The F-curves of a datablock's keyframes, or None where it has none; actions have slots since 4.4."""
+    animated = datablock.animation_data
+    if animated is None or animated.action is None:
+        return None
+    if bpy.app.version < (4, 4, 0):
+        return animated.action.fcurves
+    strips = [strip for layer in animated.action.layers for strip in layer.strips]
+    found = [strip.channelbag(animated.action_slot) for strip in strips] if animated.action_slot else []
+    return next((bag.fcurves for bag in found if bag is not None), None)
 
 
 def text_size(font, size):

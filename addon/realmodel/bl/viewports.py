@@ -25,9 +25,10 @@ def towards(azimuth, elevation):
     return Vector((flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)))
 
 
-def view_rotation():
-    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks."""
-    back = towards(CAMERA_AZIMUTH, CAMERA_ELEVATION)
+def view_rotation(azimuth=CAMERA_AZIMUTH, elevation=CAMERA_ELEVATION):
+    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks.
+    azimuth, elevation: where it is from, radians."""
+    back = towards(azimuth, elevation)
     right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
     return Matrix((right, back.cross(right), back)).transposed()
 

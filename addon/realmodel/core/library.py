@@ -9,14 +9,19 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from .errors import InputRefused
+from .looks import LOOKS
 from .toml_table import Table, TomlDocument
 
 _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
+AUTO_LOOK = "auto"  # the look that suits the rock by its name
+LOOK_NAMES = (AUTO_LOOK, *(key.lower() for key in LOOKS))
 
 
 @dataclass(frozen=True)
 class Property:
-    """One entry: `id` unique, `color` "#rrggbb" (sRGB), `density` in the user's units."""
+    """One entry: `id` unique, `color` "#rrggbb" (sRGB), `density` in the user's units. For pictures: `look`
+    one of LOOK_NAMES, the size of its texture (1 suits the model) and its seed; `hardness`, above 0 and at
+    most 1, says how well the rock withstands weathering."""
 
     id: int
     name: str
@@ -26,6 +31,10 @@ class Property:
     color: str | None = None
     density: float | None = None
     description: str | None = None
+    look: str | None = None
+    look_scale: float | None = None
+    look_seed: int | None = None
+    hardness: float | None = None
 
     @property
     def rgb(self) -> tuple[float, float, float] | None:
@@ -75,6 +84,19 @@ def _check_property(entry: Property, seen: set[int]) -> None:
         raise InputRefused(f"color '{entry.color}' is not a color", item=item, advice='write it as "#rrggbb"')
     if entry.density is not None and not entry.density > 0:
         raise InputRefused(f"density must be above 0, not {entry.density:g}", item=item)
+    _check_look(entry, item)
+
+
+def _check_look(entry: Property, item: str) -> None:
+    if entry.look is not None and entry.look not in LOOK_NAMES:
+        known = ", ".join(LOOK_NAMES)
+        raise InputRefused(f"look '{entry.look}' is unknown", item=item, advice=f"choose from {known}")
+    if entry.look_scale is not None and not 0 < entry.look_scale < float("inf"):
+        raise InputRefused(f"look_scale must be above 0, not {entry.look_scale:g}", item=item)
+    if entry.look_seed is not None and not 0 <= entry.look_seed < 2**31:
+        raise InputRefused(f"look_seed must be from 0 to {2**31 - 1}, not {entry.look_seed}", item=item)
+    if entry.hardness is not None and not 0 < entry.hardness <= 1:
+        raise InputRefused(f"hardness must be above 0 and at most 1, not {entry.hardness:g}", item=item)
 
 
 def load_library(path: str | Path) -> Library:
@@ -89,8 +111,8 @@ def load_library(path: str | Path) -> Library:
         try:
             _check_property(entry, seen)
         except InputRefused as error:
-            key = "color" if "color" in error.what else "density" if "density" in error.what else "id"
-            raise table.refuse(error.what, key, error.advice) from error
+            word = error.what.split()[0]
+            raise table.refuse(error.what, word if word in table else "id", error.advice) from error
         seen.add(entry.id)
         properties.append(entry)
     return Library(properties, Path(path))
@@ -102,8 +124,9 @@ def _read_property(table: Table) -> Property:
     for key in ("rock", "age", "structure", "color", "description"):
         if key in table:
             values[key] = _loose_text(table, key)
-    if "density" in table:
-        values["density"] = table.number("density")
+    for key in ("density", "look_scale", "hardness"):
+        values[key] = table.number(key)
+    values |= {"look": table.text("look"), "look_seed": table.integer("look_seed")}
     return Property(**values)
 
 

@@ -9,91 +9,226 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Look:
-    """Strengths are shares of the brightness of a property's color, sizes are in texture units.
+    """How a rock looks. color: "#rrggbb" of a material that is of no property. words: with which names of
+    such rocks begin.
 
-    lamination: of laminae, which follow the layer as it was deposited; lamina: how thick one is. stain,
-    grain: of large and of fine mottling; grain_size. clasts: of pebbles or crystals that differ from one
-    another; clast_size. bump: how high all that stands out, texture units. roughness: of the surface. top:
-    grass grows on faces that are ground, other faces are brown.
+    Strengths are shares of the brightness of a property's color; sizes, depths and heights are in texture
+    units.
+
+    lamination: of laminae, which follow the layer as it was deposited; lamina: how thick one is. bed: how
+    thick beds are (0: none), which differ in tone and are parted by grooves. joint: the size of what upright
+    cracks divide each bed into (0: none); columns: as columns, through all beds; on_top: only on faces that
+    are ground. crack: how dark and deep cracks and grooves are. stain, grain: of large and of fine mottling;
+    grain_size. clasts: of pebbles or crystals that differ from one another; clast_size; packing: the share of
+    the rock that they take. hue: by how much beds and clasts differ in hue. relief: how high the surface is
+    rough; relief_size. roughness: how matt. grassy: on faces that are ground, other faces are brown.
+    hardness: from 0 to 1, how well the rock withstands weathering.
     """
 
     label: str
+    color: str
     words: tuple[str, ...] = ()
+    hardness: float = 0.5
     lamination: float = 0.0
     lamina: float = 0.5
+    bed: float = 0.0
+    joint: float = 0.0
+    columns: bool = False
+    on_top: bool = False
+    crack: float = 0.5
     stain: float = 0.12
-    grain: float = 0.1
-    grain_size: float = 0.05
+    grain: float = 0.08
+    grain_size: float = 0.06
     clasts: float = 0.0
     clast_size: float = 0.5
-    bump: float = 0.0
+    packing: float = 1.0
+    hue: float = 0.0
+    relief: float = 0.2
+    relief_size: float = 2.0
     roughness: float = 0.9
-    top: bool = False
+    grassy: bool = False
 
 
 LOOKS = {
-    "FLAT": Look("Flat", stain=0.0, grain=0.0, roughness=1.0),
-    "SANDSTONE": Look("Sandstone", ("sandstone", "sand stone", "arkose", "grès"), 0.3, 0.45, bump=0.06),
+    "FLAT": Look("Flat", "#c0b8a8", stain=0.0, grain=0.0, relief=0.0, roughness=1.0),
+    "SANDSTONE": Look(
+        "Sandstone",
+        "#c08a5e",
+        ("sandstone", "sand stone", "arkose", "grès"),
+        0.6,
+        lamination=0.24,
+        lamina=0.35,
+        bed=2.2,
+        joint=7.0,
+        hue=0.006,
+        relief=0.6,
+        crack=0.4,
+    ),
     "LIMESTONE": Look(
         "Limestone",
+        "#cbc2a8",
         ("limestone", "dolomite", "chalk", "marble", "carbonate"),
-        0.12,
-        1.2,
-        bump=0.04,
+        0.75,
+        lamination=0.05,
+        bed=1.5,
+        joint=2.6,
+        crack=0.4,
+        stain=0.2,
         grain=0.05,
+        hue=0.004,
+        relief=0.5,
+        relief_size=1.2,
     ),
     "SHALE": Look(
         "Shale",
+        "#7a7f86",
         ("shale", "mudstone", "claystone", "siltstone", "slate", "marl", "schist", "phyllite"),
-        0.45,
-        0.15,
-        grain=0.04,
-        bump=0.05,
+        0.25,
+        lamination=0.3,
+        lamina=0.12,
+        bed=0.5,
+        crack=0.18,
+        grain=0.05,
+        hue=0.005,
+        relief=0.35,
+        relief_size=0.8,
     ),
     "CONGLOMERATE": Look(
-        "Conglomerate", ("conglomerate", "breccia"), 0.2, 1.0, clasts=0.2, clast_size=0.6, bump=0.05
+        "Conglomerate",
+        "#a98c72",
+        ("conglomerate", "breccia"),
+        0.7,
+        lamination=0.08,
+        bed=4.0,
+        clasts=0.3,
+        clast_size=0.9,
+        packing=0.6,
+        hue=0.012,
+        relief=0.5,
+        crack=0.2,
     ),
     "GRANITE": Look(
         "Granite",
+        "#c0a79c",
         ("granite", "gneiss", "diorite", "gabbro", "intrusive", "basement", "pluton"),
-        stain=0.1,
-        grain=0.12,
-        clasts=0.5,
-        clast_size=0.18,
-        bump=0.02,
-        roughness=0.75,
+        0.95,
+        joint=11.0,
+        columns=True,
+        crack=0.3,
+        stain=0.14,
+        grain=0.05,
+        clasts=0.55,
+        clast_size=0.14,
+        hue=0.012,
+        relief=0.9,
+        relief_size=4.0,
+        roughness=0.7,
     ),
     "BASALT": Look(
         "Basalt",
+        "#55555a",
         ("basalt", "lava", "andesite", "volcanic", "tuff", "rhyolite"),
-        stain=0.25,
-        grain=0.2,
-        grain_size=0.12,
-        bump=0.08,
-        roughness=0.7,
+        0.9,
+        joint=1.5,
+        columns=True,
+        crack=0.4,
+        stain=0.2,
+        grain=0.15,
+        relief=0.35,
+        relief_size=0.7,
+        roughness=0.75,
     ),
     "GRAVEL": Look(
         "Gravel",
+        "#a39a8c",
         ("gravel", "pebble", "debris", "scree", "till", "moraine"),
-        clasts=0.4,
-        clast_size=0.6,
-        bump=0.1,
+        0.3,
+        clasts=0.34,
+        clast_size=0.8,
+        packing=0.95,
+        hue=0.012,
+        relief=0.4,
     ),
-    "SAND": Look("Sand", ("sand", "dune"), 0.1, 0.3, stain=0.08, grain=0.16, bump=0.02),
-    "CLAY": Look("Clay", ("clay", "mud", "silt", "loess", "loam"), 0.08, 0.4, grain=0.04, bump=0.02),
-    "COAL": Look("Coal", ("coal", "lignite", "peat"), 0.5, 0.2, grain=0.1, bump=0.04, roughness=0.4),
+    "SAND": Look(
+        "Sand", "#dcc48e", ("sand", "dune"), 0.1, 0.06, 0.3, grain=0.14, relief=0.12, relief_size=1.2
+    ),
+    "CLAY": Look(
+        "Clay",
+        "#a5785c",
+        ("clay", "mud", "silt", "loess", "loam"),
+        0.15,
+        lamination=0.06,
+        lamina=0.4,
+        joint=0.9,
+        on_top=True,
+        crack=0.22,
+        grain=0.04,
+        relief=0.4,
+    ),
+    "COAL": Look(
+        "Coal",
+        "#38363a",
+        ("coal", "lignite", "peat"),
+        0.35,
+        lamination=0.4,
+        lamina=0.12,
+        bed=0.6,
+        joint=0.7,
+        grain=0.1,
+        relief=0.25,
+        relief_size=0.5,
+        roughness=0.4,
+        crack=0.25,
+    ),
     "SALT": Look(
         "Salt",
+        "#dcd3d0",
         ("salt", "halite", "gypsum", "anhydrite", "evaporite"),
-        0.15,
-        0.8,
-        clasts=0.1,
-        clast_size=0.3,
+        0.2,
+        lamination=0.12,
+        lamina=0.8,
+        stain=0.1,
+        clasts=0.12,
+        clast_size=0.4,
+        relief=0.25,
+        relief_size=0.8,
         roughness=0.35,
     ),
-    "SOIL": Look("Soil", ("soil", "humus"), stain=0.3, grain=0.35, grain_size=0.4, bump=0.1),
-    "GRASS": Look("Grass", ("grass", "meadow"), stain=0.3, grain=0.45, grain_size=0.3, bump=0.15, top=True),
-    "WATER": Look("Water", ("water", "lake", "sea"), stain=0.05, grain=0.0, bump=0.03, roughness=0.05),
+    "SOIL": Look(
+        "Soil",
+        "#6a4a32",
+        ("soil", "humus"),
+        0.1,
+        stain=0.2,
+        grain=0.3,
+        grain_size=0.25,
+        relief=0.8,
+        relief_size=0.9,
+    ),
+    "GRASS": Look(
+        "Grass",
+        "#6d8a3c",
+        ("grass", "meadow"),
+        0.3,
+        stain=0.35,
+        grain=0.4,
+        grain_size=0.3,
+        hue=0.03,
+        relief=0.5,
+        relief_size=0.5,
+        grassy=True,
+    ),
+    "WATER": Look(
+        "Water",
+        "#3c6a84",
+        ("water", "lake", "sea"),
+        1.0,
+        stain=0.05,
+        grain=0.0,
+        relief=0.05,
+        relief_size=1.5,
+        roughness=0.05,
+    ),
 }
 DEFAULT = "SANDSTONE"
 

@@ -16,13 +16,14 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..bl import results, scene_export
 from ..bl.display import shown_models
+from ..bl.export_job import ExportJob
 from ..bl.mesh_job import MeshJob
 from ..core import InputRefused, UsageError
 from ..core.atomic import Outputs
-from ..core.batch_mesh import BatchMesh
-from ..core.exporters import FORMATS, save_model
+from ..core.exporters import FORMATS
 from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import write_report
+from ..core.simulation.mesh_request import MeshRequest
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, not_building, object_mode
 
@@ -104,12 +105,40 @@ class Exporting(Reporting, ExportHelper):
         return path
 
 
-class REALMODEL_OT_export(Exporting, bpy.types.Operator):
-    """Export the built model with its cells"""
+class ExportingInBackground(InBackground, Exporting):
+    """Writes a file with progress and Esc, once the file browser has given its name. `command`: the operator
+    among bpy.ops.realmodel."""
+
+    command = ""
+
+    is_chosen: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    _browsed = False  # the file browser was opened; Blender then calls execute alone
+
+    def invoke(self, context, event):
+        if self.is_chosen:
+            return InBackground.invoke(self, context, event)
+        self._browsed = True
+        return Exporting.invoke(self, context, event)
+
+    def execute(self, context):
+        if not self._browsed or bpy.app.background:
+            return super().execute(context)
+        given = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
+        getattr(bpy.ops.realmodel, self.command)("INVOKE_DEFAULT", is_chosen=True, **given)
+        return {"FINISHED"}
+
+    def act(self, context):
+        InBackground.act(self, context)
+
+
+class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
+    """Export the built model with its cells. Esc cancels"""
 
     bl_idname = "realmodel.export"
     bl_label = "Export Model"
-    needs = (a_model,)
+    command = "export"
+    needs = (a_model, not_building)
 
     format: format_menu(_MODELS)
     filter_glob: format_filter(_MODELS)
@@ -137,23 +166,25 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
         default=0.0,
     )
 
-    def write(self, context, path):
-        size = self.cell_size[:] if any(self.cell_size) else None
-        model = shown_models.whole(context.scene)
-        save_model(
-            model,
-            path,
-            cell_size=size,
+    def begin(self, context):
+        return ExportJob(
+            shown_models.whole(context.scene),
+            self.target(),
+            cell_size=self.cell_size[:] if any(self.cell_size) else None,
             contour_interval=self.contour_interval or None,
             tolerance=self.cell_tolerance or None,
         )
 
+    def tell_done(self, path):
+        self.report({"INFO"}, f"Wrote {path}")
 
-class REALMODEL_OT_export_mesh(InBackground, Exporting, bpy.types.Operator):
+
+class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     """Export a mesh of the built model for solvers, with limits of edge length and thickness. Esc cancels"""
 
     bl_idname = "realmodel.export_mesh"
     bl_label = "Export Simulation Mesh"
+    command = "export_mesh"
     needs = (a_model, not_building)
 
     format: format_menu(_MESHES)
@@ -184,28 +215,9 @@ class REALMODEL_OT_export_mesh(InBackground, Exporting, bpy.types.Operator):
             ("TETRAHEDRA", "Tetrahedra", "Tetrahedra alone"),
         ),
     )
-    is_chosen: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    _browsed = False  # the file browser was opened; Blender then calls execute alone
-
-    def invoke(self, context, event):
-        if self.is_chosen:
-            return InBackground.invoke(self, context, event)
-        self._browsed = True
-        return Exporting.invoke(self, context, event)
-
-    def execute(self, context):
-        if not self._browsed or bpy.app.background:
-            return super().execute(context)
-        given = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
-        bpy.ops.realmodel.export_mesh("INVOKE_DEFAULT", is_chosen=True, **given)
-        return {"FINISHED"}
-
-    def act(self, context):
-        InBackground.act(self, context)
 
     def begin(self, context):
-        self._request = BatchMesh(
+        self._request = MeshRequest(
             self.target(),
             self.edge_length or None,
             self.minimum_thickness or None,

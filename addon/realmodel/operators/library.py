@@ -2,14 +2,11 @@
 """The library of properties: its rows, its files, and giving a property to blocks."""
 
 import bpy
-import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..bl import display, library_rows, live, looks, properties_of_blocks, settings
-from ..bl.display import explosion
-from ..core import InputRefused, Property, load_library
-from ..core.looks import LOOKS
+from ..core import Property, load_library
 from ..core.project_writer import save_library
 from .reporting import Reporting, a_library, chosen_path, selected_blocks
 
@@ -72,6 +69,7 @@ class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
         )
         library_rows.fill(scene, [*kept, *library])
         library_rows.update_materials(scene)
+        looks.follow(scene)
         display.colors_changed(scene)
         live.touch(scene)
         self.report({"INFO"}, f"Read {len(library)} properties")
@@ -111,53 +109,7 @@ class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
         self.report({"INFO"}, f"{entry.name}: {', '.join(row.name for row in rows)}")
 
 
-_AUTOMATIC = ("AUTO", "Automatic", "The look that suits the lithology, else the name of the property")
-
-
-def _says(key, look):
-    return "The color of the property alone" if key == "FLAT" else f"Texture of {look.label.lower()}"
-
-
-class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
-    """Give the materials of the library's rocks a look: procedural textures that follow the layers"""
-
-    bl_idname = "realmodel.rock_looks"
-    bl_label = "Rock Looks"
-    needs = (a_library,)
-
-    look: EnumProperty(
-        name="Look",
-        description="How the rocks look in rendered pictures",
-        items=[_AUTOMATIC, *((key, look.label, _says(key, look)) for key, look in LOOKS.items())],
-    )
-    only_active: BoolProperty(
-        name="Active Only", description="Only the active property of the library; otherwise all"
-    )
-    scale: FloatProperty(
-        name="Scale",
-        description="Size of the texture; 1 suits the model",
-        default=1.0,
-        min=0.001,
-        soft_max=10.0,
-    )
-    seed: IntProperty(name="Seed", description="Another texture of the same kind", min=0)
-
-    def invoke(self, context, _event):
-        return context.window_manager.invoke_props_dialog(self)
-
-    def act(self, context):
-        group = context.scene.realmodel
-        rows = list(group.library)
-        if self.only_active:
-            rows = rows[min(group.active_property, len(rows) - 1) :][:1]
-        diagonal = float(np.linalg.norm(np.subtract(*explosion.bounds(context.scene)))) or 1.0
-        look = None if self.look == "AUTO" else self.look
-        if not looks.apply_to_scene(context.scene, rows, look, self.scale, self.seed, diagonal):
-            raise InputRefused("no block has these properties", advice="build the model first")
-
-
 CLASSES = (
-    REALMODEL_OT_rock_looks,
     REALMODEL_OT_library_add,
     REALMODEL_OT_library_remove,
     REALMODEL_OT_library_import,

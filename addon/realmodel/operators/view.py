@@ -6,7 +6,7 @@ from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, overlay, picture, project_settings, settings, units
+from ..bl import display, project_settings, settings, units
 from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
 from .reporting import (
@@ -128,51 +128,6 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
         width = self.width or round(self.height * usual[0] / usual[1])
         height = self.height or round(self.width * usual[1] / usual[0])
         return max(1, width), max(1, height)
-
-
-class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
-    """Add a camera, sun, sky and ground for the model and choose the renderer, so that Render Image (F12)
-    gives a good picture. Your own cameras and lights stay"""
-
-    bl_idname = "realmodel.set_up_picture"
-    bl_label = "Set Up Camera and Sun"
-    needs = (a_model,)
-
-    view: EnumProperty(
-        name="View",
-        description="Where the camera looks from",
-        items=(
-            ("VIEWPORT", "Viewport", "As the viewport does"),
-            ("MODEL", "Whole Model", "From the southeast, at the whole model"),
-        ),
-    )
-
-    def act(self, context):
-        scene = context.scene
-        found = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
-        render = scene.render
-        picture.set_up(
-            scene,
-            viewpoints.model_points(scene),
-            (render.resolution_x, render.resolution_y),
-            None if found is None else found[2],
-            left=overlay.legend_share(scene, (render.resolution_x, render.resolution_y)),
-        )
-        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
-
-
-class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
-    """Render the model with its camera; where the scene has none, set up camera and sun first"""
-
-    bl_idname = "realmodel.render_picture"
-    bl_label = "Render Picture"
-    needs = (a_model,)
-
-    def act(self, context):
-        if context.scene.camera is None:
-            bpy.ops.realmodel.set_up_picture()
-        how = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"  # with a window it stays alive
-        bpy.ops.render.render(how)
 
 
 class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
@@ -378,8 +333,6 @@ CLASSES = (
     REALMODEL_OT_capture,
     REALMODEL_OT_edit_surface,
     REALMODEL_OT_edit_done,
-    REALMODEL_OT_set_up_picture,
-    REALMODEL_OT_render_picture,
     REALMODEL_OT_hide_property,
     REALMODEL_OT_coordinates,
     REALMODEL_OT_set_origin,

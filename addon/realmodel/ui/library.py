@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..bl import library_rows
 from .panel import TabPanel, hint
 
 
@@ -29,10 +30,20 @@ class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
         if not len(group.library):
             return
         entry = group.library[min(group.active_property, len(group.library) - 1)]
-        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description"):
+        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description", "look"):
             layout.prop(entry, key)
+        if entry.look not in {library_rows.NO_LOOK, "FLAT"}:
+            line = layout.row(align=True)
+            line.prop(entry, "look_scale", text="Scale")
+            line.prop(entry, "look_seed", text="Seed")
+        layout.prop(entry, "hardness")
         layout.operator("realmodel.assign_property", icon="MATERIAL")
-        layout.operator("realmodel.rock_looks", text="Rock Looks...", icon="SHADING_RENDERED")
+        line = layout.row(align=True)
+        line.operator("realmodel.rock_looks", text="Rock Looks...", icon="SHADING_RENDERED")
+        line.operator("realmodel.install_looks", text="", icon="ASSET_MANAGER")
+        line = layout.row(align=True)
+        line.operator("realmodel.weathering", icon="MOD_NOISE")
+        line.operator("realmodel.weathering_remove", text="", icon="X")
 
 
 CLASSES = (REALMODEL_PT_library,)

@@ -74,6 +74,8 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "edit_surface", "Edit Active Surface", {}
         yield "fault_body_edit", "Edit Active Fault or Body", {}
         yield "assign_property", "Assign Active Property", {}
+        yield "weathering", None, {}
+        yield "weathering_remove", None, {}
         yield None
         for operation, name, *_ in OPERATIONS:
             yield "boolean", f"Boolean: {name}", {"operation": operation}
@@ -99,7 +101,10 @@ class REALMODEL_MT_view(_Menu, bpy.types.Menu):
         yield None
         yield "coordinates", None, {}
         yield "capture", None, {}
+        yield None
         yield "set_up_picture", None, {}
+        yield "turntable", None, {}
+        yield "animate_stages", None, {}
         yield "render_picture", None, {}
 
 

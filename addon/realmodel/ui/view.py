@@ -167,8 +167,20 @@ class REALMODEL_PT_view_camera(OfABuiltModel, TabPanel, bpy.types.Panel):
         row.operator("realmodel.view_next", text="", icon="LOOP_FORWARDS")
         row.operator("realmodel.view_all", text="Frame", icon="ZOOM_ALL")
         layout.operator("realmodel.capture", text="Capture...", icon="RESTRICT_RENDER_OFF")
-        layout.operator("realmodel.set_up_picture", icon="CAMERA_DATA")
+
+
+class REALMODEL_PT_view_picture(OfABuiltModel, TabPanel, bpy.types.Panel):
+    bl_label = "Picture and Animation"
+    bl_idname = "REALMODEL_PT_view_picture"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, _context, _group):
+        layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
         layout.operator("realmodel.render_picture", icon="RENDER_STILL")
+        row = layout.row(align=True)
+        row.operator("realmodel.turntable", icon="CON_FOLLOWPATH")
+        row.operator("realmodel.animate_stages", icon="KEYFRAME_HLT")
 
 
 class REALMODEL_PT_view_coordinates(OfABuiltModel, TabPanel, bpy.types.Panel):
@@ -210,5 +222,6 @@ CLASSES = (
     REALMODEL_PT_view_properties,
     REALMODEL_PT_view_section,
     REALMODEL_PT_view_camera,
+    REALMODEL_PT_view_picture,
     REALMODEL_PT_view_coordinates,
 )

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "arrangement/polygons.hpp"
@@ -37,7 +39,8 @@ public:
             const HalfEdge& e = edges_[index(i)];
             return std::array{std::min(e.from, e.to), std::max(e.from, e.to)};
         };
-        std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> order;
+        auto& order = order_;
+        order.clear();
         for (std::int32_t i = 0; index(i) < edges_.size(); ++i)
             order.push_back({key(i), i});
         std::sort(order.begin(), order.end());
@@ -73,27 +76,32 @@ public:
             e.twin = -1;
         }
     }
-    /// The outlines, in the order of their first half-edges.
-    std::vector<std::vector<HalfEdge>> outlines() const {
-        std::vector<std::vector<HalfEdge>> found;
-        std::vector<bool> done(edges_.size(), false);
+    /// Calls visit(half-edges) for the outlines, in the order of their first half-edges.
+    template <class Visit>
+    void each_outline(const Visit& visit) {
+        done_.assign(edges_.size(), 0);
         for (std::size_t start = 0; start < edges_.size(); ++start) {
-            if (done[start] || edges_[start].twin >= 0) continue;
-            auto& outline = found.emplace_back();
+            if (done_[start] != 0 || edges_[start].twin >= 0) continue;
+            outline_.clear();
             std::size_t e = start;
             do {
-                done[e] = true;
-                outline.push_back(edges_[e]);
+                done_[e] = 1;
+                outline_.push_back(edges_[e]);
                 e = index(edges_[e].next);
                 while (edges_[e].twin >= 0)
                     e = index(edges_[index(edges_[e].twin)].next);
             } while (e != start);
+            visit(std::span<const HalfEdge>(outline_));
         }
-        return found;
     }
+    /// Takes all polygons away: their memory is kept for others.
+    void clear() { edges_.clear(); }
 
 private:
     std::vector<HalfEdge> edges_;
+    std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> order_;
+    std::vector<std::uint8_t> done_;  ///< of half-edges
+    std::vector<HalfEdge> outline_;
 };
 
 }  // namespace realmodel::arrangement

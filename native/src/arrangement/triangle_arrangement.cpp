@@ -8,6 +8,7 @@
 
 #include "arrangement/triangle_regions.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -44,8 +45,8 @@ std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
 
 }  // namespace
 
-std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
-    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+TriangleArrangement::Triangle TriangleArrangement::triangle_of(
+    const std::array<SpacePointId, 3>& corners) const {
     Triangle t;
     t.corners = corners;
     const std::array<Position, 3> at{points_.rounded(corners[0]), points_.rounded(corners[1]),
@@ -60,10 +61,34 @@ std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners
         t.facing = exact::orient2d(points_, axis, corners[0], corners[1], corners[2]);
         if (t.facing != 0) break;
     }
-    for (std::size_t i = 0; i < 3; ++i)
-        of_edge_.push_back({unordered(corners[i], corners[(i + 1) % 3]), number});
-    triangles_.push_back(std::move(t));
+    return t;
+}
+
+std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
+    const std::int32_t number = checked_number(triangles_.size(), "triangles");
+    add_all({&corners, 1}, 1, nullptr);
     return number;
+}
+
+void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                                  const Progress* progress) {
+    const std::size_t before = triangles_.size();
+    checked_number(before + corners.size(), "triangles");
+    triangles_.resize(before + corners.size());
+    of_edge_.resize(3 * triangles_.size());
+    parallel_ranges(
+        corners.size(), kChunk, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                triangles_[before + i] = triangle_of(corners[i]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    of_edge_[3 * (before + i) + k] = {
+                        unordered(corners[i][k], corners[i][(k + 1) % 3]),
+                        static_cast<std::int32_t>(before + i)};
+                }
+            }
+        },
+        0.02);
 }
 
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,
@@ -263,12 +288,19 @@ void TriangleArrangement::exchange_segments() {
 /// Finds the nodes of one triangle on lines in it.
 class TriangleArrangement::NodesOnLines {
 public:
+    explicit NodesOnLines(const TriangleArrangement& arrangement)
+        : arrangement_(arrangement), points_(arrangement.points_) {}
     NodesOnLines(const TriangleArrangement& arrangement, const Triangle& t)
-        : arrangement_(arrangement),
-          points_(arrangement.points_),
-          t_(t),
-          axis_((t.axis + 1) % 3),
-          in_order_(t.points) {
+        : NodesOnLines(arrangement) {
+        take(t);
+    }
+
+    /// Goes on to another triangle.
+    void take(const Triangle& t) {
+        t_ = &t;
+        axis_ = (t.axis + 1) % 3;
+        tree_.reset();
+        in_order_.assign(t.points.begin(), t.points.end());
         if (in_order_.size() > kLarge) {
             std::vector<Box> boxes(in_order_.size());
             for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -282,15 +314,15 @@ public:
     }
 
     /// The nodes between two others, in order from the first to the second.
-    std::vector<SpacePointId> operator()(const std::array<SpacePointId, 2>& line) const {
+    void find(const std::array<SpacePointId, 2>& line, std::vector<SpacePointId>& found) const {
         const SpacePointId a = line[0], b = line[1];
-        std::vector<SpacePointId> found;
+        found.clear();
         const auto visit = [&](SpacePointId p) {
             if (is_between(p, a, b)) found.push_back(p);
         };
-        std::ranges::for_each(t_.corners, visit);
+        std::ranges::for_each(t_->corners, visit);
         const auto visit_point = [&](SpacePointId p) {
-            if (std::ranges::find(t_.corners, p) == t_.corners.end()) visit(p);
+            if (std::ranges::find(t_->corners, p) == t_->corners.end()) visit(p);
         };
         if (tree_) {
             tree_->find(box_of(points_, line),
@@ -303,11 +335,11 @@ public:
             for (; next != in_order_.end() && coordinate(*next) <= high; ++next)
                 visit_point(*next);
         }
+        if (found.size() < 2) return;
         const int direction = compare(points_, a, b);
         std::sort(found.begin(), found.end(), [this, direction](SpacePointId p, SpacePointId q) {
             return compare(points_, p, q) * direction > 0;
         });
-        return found;
     }
 
 private:
@@ -319,15 +351,15 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             if (r[k] < std::min(s[k], e[k]) || r[k] > std::max(s[k], e[k])) return false;
         }
-        if (!points_.was_constructed_on(p, a, b) && arrangement_.orientation(t_, a, b, p) != 0)
+        if (!points_.was_constructed_on(p, a, b) && arrangement_.orientation(*t_, a, b, p) != 0)
             return false;
         return compare(points_, a, p) * compare(points_, p, b) > 0;
     }
 
     const TriangleArrangement& arrangement_;
     const exact::SpacePoints& points_;
-    const Triangle& t_;
-    std::size_t axis_;
+    const Triangle* t_ = nullptr;
+    std::size_t axis_ = 0;
     /// The triangle's points: in the order of one coordinate, unless there is a tree of them.
     std::vector<SpacePointId> in_order_;
     std::optional<spatial::BoxTree> tree_;
@@ -477,11 +509,13 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
 }
 
 /// The points on the edges and segments of a triangle, for the others that share these.
-void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message>& messages) const {
+void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
+                                      std::vector<Message>& messages) const {
     const Triangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
-    messages_of(triangle, NodesOnLines(*this, t), 0, t.line_count(), messages);
+    nodes_on.take(t);
+    messages_of(triangle, nodes_on, 0, t.line_count(), messages);
 }
 
 /// The points on some lines of a triangle.
@@ -497,8 +531,9 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
             return;
         messages.push_back({to, p});
     };
+    std::vector<SpacePointId> on;
     for (std::size_t i = begin; i < end; ++i) {
-        const auto on = nodes_on(t.line(i));
+        nodes_on.find(t.line(i), on);
         if (i < t.segments.size()) {
             for (const SpacePointId p : on)
                 send(t.segments[i].other, p);
@@ -525,9 +560,10 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
         const std::vector<std::int32_t> large = large_triangles(changed);
         parallel_ranges(changed.size(), kChunk, threads, progress,
                         [&](std::size_t begin, std::size_t end) {
+                            NodesOnLines nodes_on(*this);
                             for (std::size_t i = begin; i < end; ++i) {
                                 if (!std::ranges::binary_search(large, changed[i]))
-                                    messages_of(changed[i], messages[begin / kChunk]);
+                                    messages_of(changed[i], nodes_on, messages[begin / kChunk]);
                             }
                         });
         for (const std::int32_t triangle : large) {
@@ -559,12 +595,13 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
 
 /// What some lines of a triangle are divided into.
 void TriangleArrangement::find_edges(const Triangle& t, const NodesOnLines& nodes_on,
-                                     std::size_t begin, std::size_t end,
-                                     std::vector<Edge>& edges) const {
+                                     std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
+    std::vector<SpacePointId> on;
     for (std::size_t i = begin; i < end; ++i) {
         const auto [a, b] = t.line(i);
+        nodes_on.find({a, b}, on);
         SpacePointId last = a;
-        for (const SpacePointId p : nodes_on({a, b})) {
+        for (const SpacePointId p : on) {
             edges.push_back(unordered(last, p));
             last = p;
         }
@@ -572,19 +609,46 @@ void TriangleArrangement::find_edges(const Triangle& t, const NodesOnLines& node
     }
 }
 
-/// @param edges  all that its lines are divided into; put in order
-void TriangleArrangement::find_regions(std::int32_t triangle, std::vector<Edge>& edges,
-                                       std::vector<Region>& regions) const {
-    const Triangle& t = triangles_[index(triangle)];
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (RegionLoops& loops : regions_of_graph(points_, {t.axis, t.facing}, edges))
-        regions.push_back({triangle, std::move(loops)});
-}
+/// Finds the regions of one triangle after another in the same memory.
+class TriangleArrangement::RegionFinder {
+public:
+    explicit RegionFinder(const TriangleArrangement& arrangement)
+        : arrangement_(arrangement), nodes_on_(arrangement), graph_(arrangement.points_) {}
+
+    void add_regions(std::int32_t triangle, Regions& regions) {
+        const Triangle& t = arrangement_.triangles_[index(triangle)];
+        if (t.facing == 0) return;
+        if (t.points.empty() && t.segments.empty()) {
+            regions.loops.add_loop(t.corners);
+            regions.loops.end_region();
+            regions.triangles.push_back(triangle);
+            return;
+        }
+        edges_.clear();
+        nodes_on_.take(t);
+        find_edges(t, nodes_on_, 0, t.line_count(), edges_);
+        add_regions(triangle, edges_, regions);
+    }
+    /// @param edges  all that its lines are divided into; put in order
+    void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
+        const Triangle& t = arrangement_.triangles_[index(triangle)];
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        graph_.add_regions({t.axis, t.facing}, edges, regions.loops);
+        regions.triangles.resize(regions.loops.size(), triangle);
+    }
+
+private:
+    const TriangleArrangement& arrangement_;
+    NodesOnLines nodes_on_;
+    PlaneGraph graph_;
+    std::vector<Edge> edges_;
+};
 
 /// The regions of each large triangle.
-std::vector<std::vector<Region>> TriangleArrangement::regions_of_large(
-    std::span<const std::int32_t> large, int threads, const Progress* progress) const {
+std::vector<Regions> TriangleArrangement::regions_of_large(std::span<const std::int32_t> large,
+                                                           int threads,
+                                                           const Progress* progress) const {
     std::vector<std::vector<Edge>> edges(large.size());
     for (std::size_t n = 0; n < large.size(); ++n) {
         const Triangle& t = triangles_[index(large[n])];
@@ -598,11 +662,79 @@ std::vector<std::vector<Region>> TriangleArrangement::regions_of_large(
             0.02);
         edges[n] = joined(found);
     }
-    std::vector<std::vector<Region>> regions(large.size());
+    std::vector<Regions> regions(large.size());
     parallel_chunks(
         large.size(), threads, progress,
-        [&](std::size_t n) { find_regions(large[n], edges[n], regions[n]); }, 0.02);
+        [&](std::size_t n) { RegionFinder(*this).add_regions(large[n], edges[n], regions[n]); },
+        0.02);
     return regions;
+}
+
+namespace {
+
+/// The regions of several ranges of triangles, one after another.
+Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progress) {
+    std::vector<std::size_t> regions, loops, nodes;  // before each range
+    for (const Regions& range : ranges) {
+        regions.push_back(range.size());
+        loops.push_back(range.loops.loop_begins.size() - 1);
+        nodes.push_back(range.loops.nodes.size());
+    }
+    Regions all;
+    const std::size_t count = count_before(regions);
+    checked_number(count, "regions of triangles");
+    all.triangles.resize(count);
+    all.loops.region_begins.resize(count + 1);
+    all.loops.loop_begins.resize(count_before(loops) + 1);
+    all.loops.nodes.resize(count_before(nodes));
+    parallel_chunks(ranges.size(), threads, progress, [&](std::size_t i) {
+        const Regions range = std::move(ranges[i]);
+        std::ranges::copy(range.triangles, all.triangles.begin() + regions[i]);
+        std::ranges::copy(range.loops.nodes, all.loops.nodes.begin() + nodes[i]);
+        const auto moved = [](const Array<std::size_t>& begins, std::size_t by, std::size_t* to) {
+            for (std::size_t k = 1; k < begins.size(); ++k)
+                to[k] = begins[k] + by;
+        };
+        moved(range.loops.region_begins, loops[i], all.loops.region_begins.data() + regions[i]);
+        moved(range.loops.loop_begins, nodes[i], all.loops.loop_begins.data() + loops[i]);
+    });
+    return all;
+}
+
+}  // namespace
+
+void TriangleArrangement::find_all_regions(int threads, const Progress* progress) {
+    std::vector<std::int32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<std::int32_t> large = large_triangles(all);
+    auto of_large = regions_of_large(large, threads, progress);
+    // large triangles are ranges of their own
+    struct Range {
+        std::size_t begin, end, large;
+    };
+    constexpr std::size_t kSmall = SIZE_MAX;
+    std::vector<Range> ranges;
+    for (std::size_t begin = 0, next = 0; begin < triangles_.size();) {
+        if (next < large.size() && index(large[next]) == begin) {
+            ranges.push_back({begin, begin + 1, next++});
+        } else {
+            const std::size_t end = next < large.size() ? index(large[next]) : triangles_.size();
+            ranges.push_back({begin, std::min(end, begin + kChunk), kSmall});
+        }
+        begin = ranges.back().end;
+    }
+    std::vector<Regions> found(ranges.size());
+    parallel_workers(ranges.size(), threads, progress, [&] {
+        return [&, finder = RegionFinder(*this)](std::size_t r) mutable {
+            if (ranges[r].large != kSmall) {
+                found[r] = std::move(of_large[ranges[r].large]);
+                return;
+            }
+            for (std::size_t i = ranges[r].begin; i < ranges[r].end; ++i)
+                finder.add_regions(static_cast<std::int32_t>(i), found[r]);
+        };
+    });
+    regions_ = joined(found, threads, progress);
 }
 
 void TriangleArrangement::divide(int threads, const Progress* progress) {
@@ -613,37 +745,7 @@ void TriangleArrangement::divide(int threads, const Progress* progress) {
     intersect_segments(threads, progress);
     sort_all(threads, progress);
     exchange_points(threads, progress);
-    std::vector<std::int32_t> all(triangles_.size());
-    std::iota(all.begin(), all.end(), 0);
-    const std::vector<std::int32_t> large = large_triangles(all);
-    auto of_large = regions_of_large(large, threads, progress);
-    std::vector<std::vector<Region>> found((triangles_.size() + kChunk - 1) / kChunk);
-    each_triangle(threads, progress, [&](std::size_t i) {
-        const Triangle& t = triangles_[i];
-        const auto number = static_cast<std::int32_t>(i);
-        auto& regions = found[i / kChunk];
-        if (t.facing == 0) return;
-        if (t.points.empty() && t.segments.empty()) {
-            regions.push_back({number, {{t.corners[0], t.corners[1], t.corners[2]}}});
-            return;
-        }
-        const auto own = std::ranges::lower_bound(large, number);
-        if (own != large.end() && *own == number) {
-            std::ranges::move(of_large[static_cast<std::size_t>(own - large.begin())],
-                              std::back_inserter(regions));
-            return;
-        }
-        std::vector<Edge> edges;
-        find_edges(t, NodesOnLines(*this, t), 0, t.line_count(), edges);
-        find_regions(number, edges, regions);
-    });
-    std::size_t count = 0;
-    for (const auto& regions : found)
-        count += regions.size();
-    checked_number(count, "regions of triangles");
-    regions_.reserve(count);
-    for (auto& regions : found)
-        std::move(regions.begin(), regions.end(), std::back_inserter(regions_));
+    find_all_regions(threads, progress);
 }
 
 }  // namespace realmodel::arrangement

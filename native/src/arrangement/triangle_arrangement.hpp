@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arrangement/polygons.hpp"
+#include "arrangement/region_loops.hpp"
 #include "exact/space_predicates.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -18,7 +19,16 @@ using exact::SpacePointId;
 /// the other way round.
 struct Region {
     std::int32_t triangle;
-    std::vector<std::vector<SpacePointId>> loops;
+    Loops<SpacePointId> loops;
+};
+
+/// The regions of triangles, in the order of these.
+struct Regions {
+    Array<std::int32_t> triangles;
+    LoopTable<SpacePointId> loops;
+
+    std::size_t size() const { return triangles.size(); }
+    Region operator[](std::size_t region) const { return {triangles[region], loops[region]}; }
 };
 
 /// Triangles in any position, divided exactly where they cross each other: every region's edges are
@@ -31,6 +41,9 @@ public:
     /// The number of the triangle. One without area stays an edge that others share.
     /// @throws InputError kind too_large
     std::int32_t add(const std::array<SpacePointId, 3>& corners);
+    /// The same for many, numbered in their order.
+    void add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
+                 const Progress* progress);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
@@ -54,7 +67,7 @@ public:
     /// Divides all triangles. With it no more can be added.
     void divide(int threads, const Progress* progress);
 
-    const std::vector<Region>& regions() const { return regions_; }
+    const Regions& regions() const { return regions_; }
     const std::array<SpacePointId, 3>& corners(std::int32_t triangle) const {
         return triangles_[index(triangle)].corners;
     }
@@ -104,6 +117,7 @@ private:
     using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
 
+    Triangle triangle_of(const std::array<SpacePointId, 3>& corners) const;
     int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }
@@ -126,21 +140,22 @@ private:
     bool do_cross(const Triangle& t, const SegmentPair& pair) const;
     void intersect_segments(int threads, const Progress* progress);
     void exchange_points(int threads, const Progress* progress);
-    void messages_of(std::int32_t triangle, std::vector<Message>& messages) const;
+    void messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
+                     std::vector<Message>& messages) const;
     void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
                      std::size_t end, std::vector<Message>& messages) const;
-    void find_edges(const Triangle& t, const NodesOnLines& nodes_on, std::size_t begin,
-                    std::size_t end, std::vector<Edge>& edges) const;
-    void find_regions(std::int32_t triangle, std::vector<Edge>& edges,
-                      std::vector<Region>& regions) const;
-    std::vector<std::vector<Region>> regions_of_large(std::span<const std::int32_t> large,
-                                                      int threads, const Progress* progress) const;
+    static void find_edges(const Triangle& t, const NodesOnLines& nodes_on, std::size_t begin,
+                           std::size_t end, std::vector<Edge>& edges);
+    class RegionFinder;
+    void find_all_regions(int threads, const Progress* progress);
+    std::vector<Regions> regions_of_large(std::span<const std::int32_t> large, int threads,
+                                          const Progress* progress) const;
 
     exact::SpacePoints& points_;
     std::vector<Triangle> triangles_;
     /// The edges of all triangles, in order, with the triangle of each.
     std::vector<std::pair<std::array<SpacePointId, 2>, std::int32_t>> of_edge_;
-    std::vector<Region> regions_;
+    Regions regions_;
     std::vector<std::array<std::int32_t, 2>> in_one_plane_;
 };
 

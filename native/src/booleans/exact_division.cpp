@@ -43,10 +43,10 @@ private:
 };
 
 /// A loop from its least node on, in the direction of the lesser of that node's neighbors.
-std::vector<SpacePointId> canonical(const std::vector<SpacePointId>& loop) {
+std::vector<SpacePointId> canonical(std::span<const SpacePointId> loop) {
     std::vector<SpacePointId> best;
     for (const bool backward : {false, true}) {
-        std::vector<SpacePointId> turned(loop);
+        std::vector<SpacePointId> turned(loop.begin(), loop.end());
         if (backward) std::reverse(turned.begin(), turned.end());
         const SpacePointId least = *std::min_element(turned.begin(), turned.end());
         for (std::size_t i = 0; i < turned.size(); ++i) {
@@ -209,7 +209,7 @@ std::vector<Corners> ExactDivision::divided(const Region& region) const {
     arrangement::Position normal{0, 0, 0};
     normal[axis] = facing;
     const View view(normal);
-    for (const auto& nodes : region.loops) {
+    for (const auto nodes : region.loops) {
         cutting::Loop& loop = loops.emplace_back();
         for (const SpacePointId p : nodes) {
             positions.push_back(pieces_.points.rounded(p));
@@ -294,9 +294,9 @@ void ExactDivision::divide_regions() {
     for (std::size_t t = 0; t < piece_of_.size(); ++t) {
         const PieceId id = piece(static_cast<std::int32_t>(t));
         std::vector<Piece> made;
-        for (; r < regions.size() && index(regions[r].triangle) == t; ++r) {
+        for (; r < regions.size() && index(regions.triangles[r]) == t; ++r) {
             if (as[r] < 0) {
-                const auto& own = regions[r].loops[0];
+                const auto own = regions[r].loops[0];
                 made.push_back(make({own[0], own[1], own[2]}));
                 continue;
             }

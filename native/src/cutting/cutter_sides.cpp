@@ -227,7 +227,7 @@ void CutterSides::settle() {
         const std::int8_t side =
             settled(static_cast<std::int32_t>(r), [&] { return side_at(r, true); });
         if (overlay_.surface().is_closed || side == kBelow) continue;
-        const auto& outline = overlay_.loops(r)[0];
+        const auto outline = overlay_.loops(r)[0];
         refuse("two_sides",
                "a point of the model is above one part of the surface and below another",
                {outline[0], outline[1]});

@@ -69,7 +69,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
             poll(progress, r);
             if (!counts(r) || winding_[2 * r] >= 0) continue;
             if (beyond) {
-                const auto& outline = overlay.loops(r)[0];
+                const auto outline = overlay.loops(r)[0];
                 if (std::all_of(outline.begin(), outline.end(), [&](NodeId node) {
                         return overlay.model_box().contains(overlay.position(node));
                     }))

@@ -128,13 +128,13 @@ void FaceSplitter::split_by_triangles(std::span<const NodeId> face, FaceParts& p
         });
     }
     joined.part([&](std::int32_t p, std::int32_t q) { return side_of(p) == side_of(q); });
-    for (const auto& outline : joined.outlines()) {
+    joined.each_outline([&](std::span<const arrangement::JoinedPolygons::HalfEdge> outline) {
         for (const auto& edge : outline) {
             if (edge.from >= 0) parts.polygons.nodes.push_back(edge.from);
         }
         parts.polygons.close();
         parts.sides.push_back(side_of(outline[0].polygon));
-    }
+    });
 }
 
 }  // namespace realmodel::cutting

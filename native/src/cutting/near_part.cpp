@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
@@ -17,6 +18,42 @@ namespace {
 /// How far from a surface a cell may be that is taken to be near.
 double margin_of(const CellBoxes& cells, const NearestSide& surface) {
     return 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+}
+
+/// Widens a box around another one while other threads do so, too.
+void include_at_once(spatial::Box& box, const spatial::Box& other) {
+    const auto widen = [](double& own, double to, const auto& is_beyond) {
+        const std::atomic_ref shared(own);
+        double known = shared.load(std::memory_order_relaxed);
+        while (is_beyond(to, known) &&
+               !shared.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
+        }
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+        widen(box.low[k], other.low[k], std::less<>());
+        widen(box.high[k], other.high[k], std::greater<>());
+    }
+}
+
+/// The faces, in order, of which one of the cells is one that is asked for.
+/// @param is_asked  of cells; several threads may ask at once
+template <class IsAsked>
+std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked, int threads,
+                                   const Progress* progress) {
+    constexpr std::size_t kChunk = 1 << 15;
+    std::vector<std::vector<std::int32_t>> found((model.face_count() + kChunk - 1) / kChunk);
+    parallel_ranges(model.face_count(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
+                            if ((one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other)))
+                                found[begin / kChunk].push_back(static_cast<std::int32_t>(f));
+                        }
+                    });
+    std::vector<std::int32_t> all;
+    for (const auto& chunk : found)
+        all.insert(all.end(), chunk.begin(), chunk.end());
+    return all;
 }
 
 }  // namespace
@@ -70,19 +107,21 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
                         }
                     });
     constexpr std::uint8_t kAll = 63;
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
-        spatial::Box box;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = model.cell(f, k);
-            if (cell < 0 || of_cell[index(cell)] != kAll) continue;
-            if (box.low[0] > box.high[0]) {
-                for (const NodeId v : model.face(f))
-                    box.include(model.vertex(v));
-            }
-            boxes[index(cell)].include(box);
-        }
-    }
+    parallel_ranges(model.face_count(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            spatial::Box box;
+                            for (std::size_t k = 0; k < 2; ++k) {
+                                const std::int32_t cell = model.cell(f, k);
+                                if (cell < 0 || of_cell[index(cell)] != kAll) continue;
+                                if (box.low[0] > box.high[0]) {
+                                    for (const NodeId v : model.face(f))
+                                        box.include(model.vertex(v));
+                                }
+                                include_at_once(boxes[index(cell)], box);
+                            }
+                        }
+                    });
 }
 
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
@@ -98,42 +137,53 @@ std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& 
 }
 
 std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
-                                            std::span<const std::uint8_t> is_near,
+                                            std::span<const std::uint8_t> is_near, int threads,
                                             const Progress* progress) {
+    constexpr std::size_t kChunk = 1 << 15;
     DisjointSets joined(model.cell_count());
     const auto is_far = [&](std::int32_t c) { return c >= 0 && is_near[index(c)] == 0; };
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
-        if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
-            joined.join(model.cell(f, 0), model.cell(f, 1));
-    }
+    parallel_ranges(model.face_count(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
+                                joined.join(model.cell(f, 0), model.cell(f, 1));
+                        }
+                    });
     std::vector<std::int8_t> sides(model.cell_count(), kOn);
-    // of the first cell of what is connected: a vertex
-    constexpr NodeId kNotFirst = -2, kNone = -1;
-    std::vector<NodeId> vertex(model.cell_count(), kNotFirst);
+    // of the first cell of what is connected: its last face, whose first vertex stands for it
+    constexpr std::int32_t kNotFirst = -2, kNone = -1;
+    std::vector<std::int32_t> face(model.cell_count(), kNotFirst);
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
-        if (is_far(c) && joined.find(c) == c) vertex[index(c)] = kNone;
+        if (is_far(c) && joined.find(c) == c) face[index(c)] = kNone;
     }
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = model.cell(f, k);
-            if (cell >= 0 && vertex[index(cell)] != kNotFirst)
-                vertex[index(cell)] = model.face(f)[0];
-        }
-    }
+    parallel_ranges(
+        model.face_count(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const std::int32_t cell = model.cell(f, k);
+                    if (cell < 0) continue;
+                    const std::atomic_ref last(face[index(cell)]);
+                    auto known = last.load(std::memory_order_relaxed);
+                    const auto own = static_cast<std::int32_t>(f);
+                    while (known != kNotFirst && known < own &&
+                           !last.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
+                    }
+                }
+            }
+        });
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (!is_far(c)) continue;
-        if (vertex[index(c)] == kNotFirst) {
+        if (face[index(c)] == kNotFirst) {
             sides[index(c)] = sides[index(joined.find(c))];
-        } else if (vertex[index(c)] != kNone) {
-            sides[index(c)] = surface.side(model.vertex(vertex[index(c)]));
+        } else if (face[index(c)] != kNone) {
+            sides[index(c)] = surface.side(model.vertex(model.face(index(face[index(c)]))[0]));
         }
     }
     return sides;
 }
 
-NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near)
+NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near, int threads,
+                   const Progress* progress)
     : model_(model), number_(model.cell_count(), -1) {
     for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
         if (is_near[index(c)] == 0) continue;
@@ -141,13 +191,16 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         cells_.push_back(c);
         cell_block_.push_back(model.cell_block[index(c)]);
     }
+    faces_ = faces_of(
+        model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, threads,
+        progress);
     std::vector<NodeId> own_vertex(model.vertex_count(), -1);
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
+    for (const std::int32_t face : faces_) {
+        const auto f = index(face);
         std::array<std::int32_t, 2> own{-1, -1};
         for (std::size_t k = 0; k < 2; ++k) {
             if (model.cell(f, k) >= 0) own[k] = number_[index(model.cell(f, k))];
         }
-        if (own[0] < 0 && own[1] < 0) continue;
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
@@ -162,7 +215,6 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         face_cells_.push_back(own[0] >= 0 ? own[0] : own[1]);
         face_cells_.push_back(own[0] >= 0 ? own[1] : -1);
         face_surface_.push_back(model.face_surface[f]);
-        faces_.push_back(static_cast<std::int32_t>(f));
         beyond_.push_back(own[0] < 0 ? model.cell(f, 0) : own[1] < 0 ? model.cell(f, 1) : -1);
     }
 }
@@ -256,6 +308,8 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
         whole.near_.origins.push_back(piece);
     }
     if (beside != 0) return std::nullopt;
+    whole.first_cap_ = index(std::ranges::count_if(
+        whole.near_.origins, [](const Piece& piece) { return piece.face >= 0; }));
     return whole;
 }
 

@@ -17,16 +17,36 @@ class WholePieces {
 public:
     /// Calls visit(polygon, piece) for all of them, in the order of the model's faces; caps last.
     template <class Visit>
-    void each(const Visit& visit) const;
+    void each(const Visit& visit) const {
+        for (std::size_t chunk = 0; chunk < chunks(); ++chunk)
+            each_of(chunk, visit);
+    }
+    /// The same in chunks, of which several threads may visit some each.
+    std::size_t chunks() const { return chunks_of(model_.face_count()) + chunks_of(cap_count()); }
+    template <class Visit>
+    void each_of(std::size_t chunk, const Visit& visit) const;
     /// Those of the part alone.
     const Pieces& near() const { return near_; }
 
 private:
     friend class NearPart;
     static constexpr std::int32_t kNear = -2;
+    static constexpr std::size_t kChunk = 1 << 14;
+
+    static std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+    std::size_t cap_count() const { return near_.size() - first_cap_; }
+    /// The first of the part's pieces that is of a face from this one on.
+    std::size_t first_from(std::size_t face) const {
+        const auto begin = near_.origins.begin();
+        return static_cast<std::size_t>(
+            std::partition_point(begin, begin + static_cast<std::ptrdiff_t>(first_cap_),
+                                 [face](const Piece& p) { return index(p.face) < face; }) -
+            begin);
+    }
 
     ComplexView model_;
     Pieces near_;
+    std::size_t first_cap_ = 0;           ///< in `near_`
     std::vector<std::int32_t> far_part_;  ///< of cells: -1 left out, kNear of the part
     std::span<const std::int8_t> sides_;
 };
@@ -36,7 +56,8 @@ private:
 class NearPart {
 public:
     /// @param is_near  of the model's cells: not 0 if it is one of them
-    NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near);
+    NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near, int threads,
+             const Progress* progress);
 
     ComplexView view() const;
     /// The model's cell that one of the part is.
@@ -77,19 +98,23 @@ std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& 
 /// is connected beside the surface is on one side.
 /// @param is_near  of cells, not 0: near, or not asked for
 std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
-                                            std::span<const std::uint8_t> is_near,
+                                            std::span<const std::uint8_t> is_near, int threads,
                                             const Progress* progress);
 
 template <class Visit>
-void WholePieces::each(const Visit& visit) const {
-    std::size_t next = 0;
-    const auto visit_near = [&] {
-        visit(near_.polygons[next], near_[next]);
-        ++next;
-    };
-    for (std::size_t f = 0; f < model_.face_count(); ++f) {
-        while (next < near_.size() && near_[next].face >= 0 && index(near_[next].face) <= f)
-            visit_near();
+void WholePieces::each_of(std::size_t chunk, const Visit& visit) const {
+    const auto visit_near = [&](std::size_t i) { visit(near_.polygons[i], near_[i]); };
+    if (const std::size_t of_faces = chunks_of(model_.face_count()); chunk >= of_faces) {
+        const std::size_t begin = first_cap_ + (chunk - of_faces) * kChunk;
+        for (std::size_t i = begin; i < std::min(near_.size(), begin + kChunk); ++i)
+            visit_near(i);
+        return;
+    }
+    const std::size_t begin = chunk * kChunk, end = std::min(model_.face_count(), begin + kChunk);
+    std::size_t next = first_from(begin);
+    for (std::size_t f = begin; f < end; ++f) {
+        while (next < first_cap_ && index(near_[next].face) <= f)
+            visit_near(next++);
         Piece piece{static_cast<std::int32_t>(f),
                     {model_.cell(f, 0), model_.cell(f, 1)},
                     {kOn, kOn},
@@ -102,8 +127,6 @@ void WholePieces::each(const Visit& visit) const {
         if (piece.parts[0] == kNear || piece.parts[1] == kNear) continue;
         if (piece.parts[0] >= 0 || piece.parts[1] >= 0) visit(model_.face(f), piece);
     }
-    while (next < near_.size())
-        visit_near();
 }
 
 }  // namespace realmodel::cutting

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "base/parallel.hpp"
 #include "cutting/part_rounding.hpp"
 
 namespace realmodel::cutting {
@@ -362,10 +363,20 @@ NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
 /// Divides polygons that rounding has bent, and those that are there already, in triangles about a
 /// node of their own: an edge between two others may be one already.
 void PartRounding::divide_bent() {
+    // a node that is added moves no other
+    std::vector<std::uint8_t> is_whole(pieces_.size());
+    parallel_ranges(
+        pieces_.size(), 1 << 12, threads_, progress_,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p)
+                is_whole[p] = is_doubled_[p] == 0 && !is_bent(p) ? 1 : 0;
+        },
+        0.05);
+    if (std::ranges::count(is_whole, 0) == 0) return;
     Pieces divided;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
-        if (is_doubled_[p] == 0 && !is_bent(p)) {
+        if (is_whole[p] != 0) {
             divided.add(nodes, pieces_[p]);
             continue;
         }

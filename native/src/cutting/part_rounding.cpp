@@ -2,11 +2,14 @@
 #include "cutting/part_rounding.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
+
+#include "base/parallel.hpp"
 
 namespace realmodel::cutting {
 
@@ -14,12 +17,15 @@ using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
-                           const std::array<bool, 2>& touches, bool joins_models)
+                           const std::array<bool, 2>& touches, int threads,
+                           const Progress* progress, bool joins_models)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
       half_cells_(half_cells),
       touches_(touches),
+      threads_(threads),
+      progress_(progress),
       joins_models_(joins_models) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
@@ -46,6 +52,27 @@ bool PartRounding::is_changed(std::int32_t part) const {
 bool PartRounding::is_wall(std::size_t piece) const {
     const std::int32_t face = pieces_[piece].face;
     return face >= 0 && model_.face_surface[index(face)] == kWall;
+}
+
+/// The first of so many things that is what is asked for, their number where none is. Several
+/// threads ask at once.
+template <class IsIt>
+std::size_t PartRounding::first_where(std::size_t count, const IsIt& is_it) const {
+    std::atomic<std::size_t> first{count};
+    parallel_ranges(
+        count, 1 << 12, threads_, progress_,
+        [&](std::size_t begin, std::size_t end) {
+            if (first.load(std::memory_order_relaxed) < begin) return;
+            std::size_t i = begin;
+            while (i < end && !is_it(i))
+                ++i;
+            auto known = first.load(std::memory_order_relaxed);
+            while (i < end && i < known &&
+                   !first.compare_exchange_weak(known, i, std::memory_order_relaxed)) {
+            }
+        },
+        0.05);
+    return first;
 }
 
 void PartRounding::run() {
@@ -320,14 +347,20 @@ std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doub
     // how many have the same hash, up to 2
     std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces_.size() + 1), 0);
     constexpr std::size_t kFar = SIZE_MAX;
-    std::vector<std::size_t> slot(pieces_.size(), kFar);
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const auto nodes = pieces_.polygons[p];
-        if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
-            continue;
-        slot[p] = hash_of(nodes) & (count.size() - 1);
-        auto& own = count[slot[p]];
-        own = static_cast<std::uint8_t>(std::min(own + 1, 2));
+    Array<std::size_t> slot(pieces_.size());
+    parallel_ranges(
+        pieces_.size(), 1 << 12, threads_, progress_,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto nodes = pieces_.polygons[p];
+                const bool is_near = std::ranges::all_of(
+                    nodes, [this](NodeId node) { return is_near_[index(node)] != 0; });
+                slot[p] = is_near ? hash_of(nodes) & (count.size() - 1) : kFar;
+            }
+        },
+        0.05);
+    for (const std::size_t own : slot) {
+        if (own != kFar) count[own] = static_cast<std::uint8_t>(std::min(count[own] + 1, 2));
     }
     std::vector<std::pair<std::vector<NodeId>, std::size_t>> found;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
@@ -442,30 +475,51 @@ void PartRounding::give_extents() {
         }
         return false;
     };
-    std::vector<NodeId> nodes;
-    for (std::size_t part = 0; part < half_cells_.size(); ++part) {
-        if (!is_changed(static_cast<std::int32_t>(part))) continue;
-        nodes.clear();
+    const auto box_of = [this](std::size_t part) {
         Box box;
         for (const std::int32_t piece : pieces_of_[part]) {
-            for (const NodeId node : pieces_.polygons[index(piece)]) {
-                nodes.push_back(node);
+            for (const NodeId node : pieces_.polygons[index(piece)])
                 box.include(at(node));
-            }
         }
+        return box;
+    };
+    const auto is_thin = [&](std::size_t part) {
+        if (!is_changed(static_cast<std::int32_t>(part))) return false;
+        const Box box = box_of(part);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (box.low[axis] == box.high[axis]) return true;
+        }
+        return false;
+    };
+    std::vector<NodeId> nodes;
+    for (std::size_t part = first_where(half_cells_.size(), is_thin); part < half_cells_.size();
+         ++part) {
+        if (!is_thin(part)) continue;
+        nodes.clear();
+        for (const std::int32_t piece : pieces_of_[part]) {
+            const auto polygon = pieces_.polygons[index(piece)];
+            nodes.insert(nodes.end(), polygon.begin(), polygon.end());
+        }
+        const Box box = box_of(part);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (box.low[axis] == box.high[axis] && !widen(nodes, axis, true))
                 widen(nodes, axis, false);
         }
     }
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        if (!is_wall(p) && !(joins_models_ && pieces_[p].face < 0)) continue;
+    const auto upright = [this](std::size_t p) { return is_upright(p); };
+    for (std::size_t p = first_where(pieces_.size(), upright); p < pieces_.size(); ++p) {
         const auto corners = pieces_.polygons[p];
-        const bool upright = std::all_of(corners.begin(), corners.end(), [&](NodeId node) {
-            return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];
-        });
-        if (upright && !widen(corners, 0, false)) widen(corners, 1, false);
+        if (is_upright(p) && !widen(corners, 0, false)) widen(corners, 1, false);
     }
+}
+
+/// Whether a piece is a wall, or may be one, and without extent in plan.
+bool PartRounding::is_upright(std::size_t piece) const {
+    if (!is_wall(piece) && !(joins_models_ && pieces_[piece].face < 0)) return false;
+    const auto corners = pieces_.polygons[piece];
+    return std::ranges::all_of(corners, [&](NodeId node) {
+        return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];
+    });
 }
 
 /// Parts that lost all of their polygons to others are no more.

@@ -27,8 +27,8 @@ public:
     /// itself:
     ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
-                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
-                 bool joins_models = false);
+                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches, int threads,
+                 const Progress* progress, bool joins_models = false);
     void run();
 
 private:
@@ -37,6 +37,8 @@ private:
     Position& moving(NodeId node) { return new_positions_[index(node) - model_.vertex_count()]; }
     bool is_changed(std::int32_t part) const;
     bool is_wall(std::size_t piece) const;
+    template <class IsIt>
+    std::size_t first_where(std::size_t count, const IsIt& is_it) const;
 
     void find_pieces_of_parts();
     void level_base();
@@ -62,6 +64,7 @@ private:
     void set_touching_apart();
     void set_apart();
     void move_aside(NodeId node);
+    bool is_upright(std::size_t piece) const;
     void give_extents();
     struct Outer;
     int winding(std::size_t piece) const;
@@ -79,6 +82,8 @@ private:
     Pieces& pieces_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
+    int threads_;
+    const Progress* progress_;
     bool joins_models_;
 
     std::vector<Position> vertices_;      ///< of the model, as `at` gives them

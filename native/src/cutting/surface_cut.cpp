@@ -19,7 +19,7 @@ namespace {
 std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
                        std::span<const std::uint8_t> is_near,
                        std::span<const std::int8_t> sides_beside, int threads, Progress* progress) {
-    const NearPart part(model, is_near);
+    const NearPart part(model, is_near, threads, progress);
     const ComplexView near = part.view();
     SurfaceOverlay overlay(near, surface, threads, progress);
     if (progress != nullptr) progress->begin(0.3, 0.5, "finding what the surface goes through");
@@ -28,7 +28,9 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
     if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, progress);
     if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches).run();
+    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches, threads,
+                 progress)
+        .run();
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
@@ -46,7 +48,7 @@ Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Pro
         const NearestSide nearest(surface);
         const CellBoxes cells(model, {&nearest, 1}, threads, progress);
         is_near = cells_near(cells, nearest, threads, progress);
-        sides = sides_of_far_cells(model, nearest, is_near, progress);
+        sides = sides_of_far_cells(model, nearest, is_near, threads, progress);
     }
     if (auto halves = cut(model, surface, is_near, sides, threads, progress))
         return *std::move(halves);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
@@ -219,7 +218,20 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     };
     for (const NodeId v : vertices)
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
+    // only where a triangle of the surface is near
+    std::vector<std::uint8_t> has_near(vertices.size(), 0);
+    parallel_ranges(
+        vertices.size(), 1 << 10, threads_, progress_,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Box box;
+                box.include(model_.vertex(vertices[i]));
+                tree_->find(box, [&](std::int32_t) { has_near[i] = 1; });
+            }
+        },
+        0.02);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (has_near[i] == 0) continue;
         poll(progress_, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
         const auto found = point_on_surface(model_.vertex(vertices[i]));
@@ -230,31 +242,68 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
 }
 
+namespace {
+
+constexpr std::size_t kFaces = 1 << 9;  // triangulated at a time
+
+/// Calls visit(chunk, face, triangle) for the triangles of some faces, on several threads.
+template <class Visit>
+void each_triangle_of(const ComplexView& model, std::span<const std::int32_t> faces, int threads,
+                      const Progress* progress, const Visit& visit) {
+    parallel_ranges(
+        faces.size(), kFaces, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            std::vector<std::array<std::int32_t, 3>> triangles;
+            for (std::size_t i = begin; i < end; ++i) {
+                triangulate_face(model, index(faces[i]), triangles);
+                for (const auto& t : triangles)
+                    visit(begin / kFaces, faces[i], t);
+            }
+        },
+        0.02);
+}
+
+std::size_t chunks_of(std::span<const std::int32_t> faces) {
+    return (faces.size() + kFaces - 1) / kFaces;
+}
+
+}  // namespace
+
+/// The edges of triangles without area; the vertices of the faces have exact points.
+std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
+    std::span<const std::int32_t> faces) const {
+    std::vector<std::vector<std::array<NodeId, 2>>> found(chunks_of(faces));
+    each_triangle_of(model_, faces, threads_, progress_,
+                     [&](std::size_t chunk, std::int32_t, const std::array<std::int32_t, 3>& t) {
+                         const SpacePointId a = vertex_point_[index(t[0])],
+                                            b = vertex_point_[index(t[1])],
+                                            c = vertex_point_[index(t[2])];
+                         bool flat = true;
+                         for (std::size_t axis = 0; axis < 3 && flat; ++axis)
+                             flat = exact::orient2d(points_, axis, a, b, c) == 0;
+                         for (std::size_t i = 0; flat && i < 3; ++i)
+                             found[chunk].push_back(unordered(t[i], t[(i + 1) % 3]));
+                     });
+    std::vector<std::array<NodeId, 2>> edges;
+    for (const auto& chunk : found)
+        edges.insert(edges.end(), chunk.begin(), chunk.end());
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
 /// A triangle without area has no region in the overlay: the corner in its middle comes to lie on
 /// its long edge, and so on an edge of the face beyond, which must know it.
 void SurfaceOverlay::activate_beside_flat_triangles() {
-    std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::int32_t> fresh = active_faces_;
     while (!fresh.empty()) {
-        std::set<std::array<NodeId, 2>> edges;
-        for (const std::int32_t f : fresh) {
-            triangulate_face(model_, index(f), triangles);
-            for (const auto& t : triangles) {
-                const SpacePointId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
-                bool flat = true;
-                for (std::size_t axis = 0; axis < 3 && flat; ++axis)
-                    flat = exact::orient2d(points_, axis, a, b, c) == 0;
-                for (std::size_t i = 0; flat && i < 3; ++i)
-                    edges.insert({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
-            }
-        }
+        const auto edges = edges_of_flat_triangles(fresh);
         fresh.clear();
         if (edges.empty()) return;
         for (std::size_t f = 0; f < model_.face_count(); ++f) {
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
                 const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (!edges.contains(unordered(a, b))) continue;
+                if (!std::ranges::binary_search(edges, unordered(a, b))) continue;
                 active_[f] = 1;
                 fresh.push_back(static_cast<std::int32_t>(f));
             }
@@ -306,19 +355,34 @@ void SurfaceOverlay::overlay_all() {
 
 /// The triangles of active faces, then those of the surface.
 void SurfaceOverlay::add_triangles() {
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    for (const std::int32_t f : active_faces_) {
-        triangulate_face(model_, index(f), triangles);
-        for (const auto& t : triangles) {
-            arrangement_.add({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
-                              vertex_point_[index(t[2])]});
-            face_of_.push_back(f);
+    struct Triangles {
+        std::vector<std::array<SpacePointId, 3>> corners;
+        std::vector<std::int32_t> faces;
+    };
+    std::vector<Triangles> found(chunks_of(active_faces_));
+    each_triangle_of(
+        model_, active_faces_, threads_, progress_,
+        [&](std::size_t chunk, std::int32_t face, const auto& t) {
+            found[chunk].corners.push_back({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
+                                            vertex_point_[index(t[2])]});
+            found[chunk].faces.push_back(face);
+        });
+    std::vector<std::array<SpacePointId, 3>> corners;
+    for (const Triangles& own : found) {
+        corners.insert(corners.end(), own.corners.begin(), own.corners.end());
+        face_of_.insert(face_of_.end(), own.faces.begin(), own.faces.end());
+    }
+    first_cutter_ = checked_number(face_of_.size(), "triangles");
+    std::vector<SpacePointId> of_vertex(surface_.vertices.size(), kNone);
+    for (const auto& triangle : surface_.triangles) {
+        auto& own = corners.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            SpacePointId& known = of_vertex[index(triangle[i])];
+            if (!known.has_value()) known = points_.add(surface_.vertices[index(triangle[i])]);
+            own[i] = known;
         }
     }
-    first_cutter_ = static_cast<std::int32_t>(face_of_.size());
-    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t)
-        arrangement_.add(
-            {points_.add(corner(t, 0)), points_.add(corner(t, 1)), points_.add(corner(t, 2))});
+    arrangement_.add_all(corners, threads_, progress_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
@@ -329,18 +393,18 @@ void SurfaceOverlay::name_nodes() {
     }
     // edges and sides number regions and then faces in one row
     checked_number(size() + model_.face_count(), "faces and their parts");
-    for (const arrangement::Region& region : arrangement_.regions()) {
-        auto& loops = loops_.emplace_back(region.loops.size());
-        for (std::size_t i = 0; i < loops.size(); ++i) {
-            for (const SpacePointId p : region.loops[i]) {
-                NodeId& node = out[index(p)];
-                if (node < 0) {
-                    node = add_node(points_.rounded(p));
-                    exact_of_new_.push_back(p);
-                }
-                loops[i].push_back(node);
-            }
+    const auto& of_points = arrangement_.regions().loops;
+    loops_.loop_begins = of_points.loop_begins;
+    loops_.region_begins = of_points.region_begins;
+    loops_.nodes.resize(of_points.nodes.size());
+    for (std::size_t i = 0; i < of_points.nodes.size(); ++i) {
+        const SpacePointId p = of_points.nodes[i];
+        NodeId& node = out[index(p)];
+        if (node < 0) {
+            node = add_node(points_.rounded(p));
+            exact_of_new_.push_back(p);
         }
+        loops_.nodes[i] = node;
     }
 }
 
@@ -397,7 +461,7 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
-    const auto& outline = loops_[region][0];
+    const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::vector<SpacePointId> own;
     for (const NodeId node : outline)
@@ -417,7 +481,7 @@ SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
         if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     SpacePointId farthest = kNone;
-    for (const auto& loop : loops_[region]) {
+    for (const auto loop : loops_[region]) {
         for (const NodeId node : loop) {
             const SpacePointId p = exact(node);
             if (p == a || p == b || p == c) continue;

@@ -13,6 +13,7 @@
 
 namespace realmodel::cutting {
 
+using arrangement::Loops;
 using exact::SpacePointId;
 
 /// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
@@ -39,9 +40,7 @@ public:
         return index(face_of_[index(triangle(region))]);
     }
     /// The region's outline, then its holes, in nodes.
-    const std::vector<std::vector<NodeId>>& loops(std::size_t region) const {
-        return loops_[region];
-    }
+    Loops<NodeId> loops(std::size_t region) const { return loops_[region]; }
     /// Whether a face has regions; the others are away from the surface.
     bool is_active(std::size_t face) const { return active_[face] != 0; }
     const std::vector<std::int32_t>& active_faces() const { return active_faces_; }
@@ -87,12 +86,14 @@ public:
 
 private:
     std::int32_t triangle(std::size_t region) const {
-        return arrangement_.regions()[region].triangle;
+        return arrangement_.regions().triangles[region];
     }
     void find_active_faces();
     void name_vertices();
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
+    std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(
+        std::span<const std::int32_t> faces) const;
     SpacePointId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
@@ -127,7 +128,7 @@ private:
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
     std::vector<SpacePointId> exact_of_new_;  ///< the exact point of each new node
     std::vector<Position> new_positions_;
-    std::vector<std::vector<std::vector<NodeId>>> loops_;  ///< of regions, in nodes
+    arrangement::LoopTable<NodeId> loops_;  ///< of regions, in nodes
 };
 
 template <class Visit>

@@ -53,7 +53,7 @@ void SurfaceParts::leave_out(std::size_t face) {
 }
 
 /// Adds a patch with a slot for each of its face's cells; nothing where it is left out.
-void SurfaceParts::add_patch(Patch&& patch) {
+void SurfaceParts::add_patch(Patch patch) {
     const auto face = index(patch.face);
     if (patch.half == kOn) {
         leave_out(face);
@@ -61,8 +61,77 @@ void SurfaceParts::add_patch(Patch&& patch) {
     }
     for (std::size_t k = 0; k < 2; ++k)
         patch.slots[k] = add_slot(overlay_.model().cell(face, k), patch.half, k == 0 ? 1 : -1);
-    patches_.push_back(std::move(patch));
+    patches_.push_back(patch);
 }
+
+/// Joins the regions of faces along edges that are none of the surface's, of one face after another
+/// in the same memory.
+class SurfaceParts::FaceDivider {
+public:
+    FaceDivider(const SurfaceOverlay& overlay, const CutterWinding& winding)
+        : overlay_(overlay), winding_(winding) {}
+
+    void divide(std::int32_t face, std::span<const std::int32_t> regions, DividedFaces& divided) {
+        joined_.clear();
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            for (const auto loop : overlay_.loops(index(regions[i])))
+                joined_.add(loop, static_cast<std::int32_t>(i));
+        }
+        joined_.pair([this](const std::array<NodeId, 2>& edge, std::int32_t, std::int32_t) {
+            return !winding_.is_edge(edge);
+        });
+        DisjointSets together(regions.size());
+        joined_.each_pair([&](std::int32_t i, std::int32_t j) { together.join(i, j); });
+        // patches in the order of their outlines, which may take turns
+        patch_of_.assign(regions.size(), -1);  // by the first region of each
+        outlines_.clear();
+        edges_.clear();
+        std::int32_t count = 0;
+        joined_.each_outline([&](std::span<const arrangement::JoinedPolygons::HalfEdge> outline) {
+            std::int32_t& own = patch_of_[index(together.find(outline[0].polygon))];
+            if (own < 0) own = count++;
+            outlines_.push_back({own, edges_.size(), outline.size()});
+            edges_.insert(edges_.end(), outline.begin(), outline.end());
+        });
+        std::ranges::stable_sort(outlines_, {}, &Outline::patch);
+        regions_.clear();
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            const std::int32_t own = patch_of_[index(together.find(static_cast<std::int32_t>(i)))];
+            if (own >= 0) regions_.push_back({own, regions[i]});
+        }
+        std::ranges::stable_sort(regions_, {}, &std::pair<std::int32_t, std::int32_t>::first);
+        auto outline = outlines_.begin();
+        auto region = regions_.begin();
+        for (std::int32_t patch = 0; patch < count; ++patch) {
+            for (; outline != outlines_.end() && outline->patch == patch; ++outline) {
+                for (const auto& edge : std::span(edges_).subspan(outline->begin, outline->size)) {
+                    divided.loops.nodes.push_back(edge.from);
+                    divided.beside.push_back(regions[index(edge.polygon)]);
+                }
+                divided.loops.end_loop();
+            }
+            divided.loops.end_region();
+            for (; region != regions_.end() && region->first == patch; ++region)
+                divided.regions.push_back(region->second);
+            divided.region_begins.push_back(divided.regions.size());
+            divided.face.push_back(face);
+        }
+    }
+
+private:
+    struct Outline {
+        std::int32_t patch;
+        std::size_t begin, size;  ///< in `edges_`
+    };
+
+    const SurfaceOverlay& overlay_;
+    const CutterWinding& winding_;
+    arrangement::JoinedPolygons joined_;
+    std::vector<std::int32_t> patch_of_;
+    std::vector<Outline> outlines_;
+    std::vector<arrangement::JoinedPolygons::HalfEdge> edges_;
+    std::vector<std::pair<std::int32_t, std::int32_t>> regions_;  ///< the patch and each of its
+};
 
 /// Active faces are divided on all threads; patches are numbered in the order of faces.
 void SurfaceParts::make_patches(Progress* progress) {
@@ -74,66 +143,35 @@ void SurfaceParts::make_patches(Progress* progress) {
         }
     });
     const auto& active = overlay_.active_faces();
-    std::vector<std::vector<Patch>> divided(active.size());
     constexpr std::size_t kChunk = 1 << 8;
+    divided_.resize((active.size() + kChunk - 1) / kChunk);
     parallel_ranges(
         active.size(), kChunk, overlay_.threads(), progress,
         [&](std::size_t begin, std::size_t end) {
+            FaceDivider divider(overlay_, winding_);
             for (std::size_t i = begin; i < end; ++i)
-                divided[i] = divide_face(index(active[i]), of_face[index(active[i])]);
+                divider.divide(active[i], of_face[index(active[i])], divided_[begin / kChunk]);
         },
         1.0);
-    std::size_t next = 0;
+    auto chunk = divided_.begin();
+    std::size_t next = 0;  // patch in the chunk
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
+        const auto face = static_cast<std::int32_t>(f);
         if (!overlay_.is_active(f)) {
-            add_patch({static_cast<std::int32_t>(f), sides_.of_face(f), {}, {}, {}});
+            add_patch({face, sides_.of_face(f)});
             continue;
         }
-        for (Patch& patch : divided[next])
-            add_patch(std::move(patch));
-        divided[next++] = {};
-    }
-}
-
-/// Joins the regions of a face along edges that are none of the surface's.
-std::vector<SurfaceParts::Patch> SurfaceParts::divide_face(
-    std::size_t face, std::span<const std::int32_t> regions) const {
-    arrangement::JoinedPolygons joined;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        for (const auto& loop : overlay_.loops(index(regions[i])))
-            joined.add(loop, static_cast<std::int32_t>(i));
-    }
-    joined.pair([this](const std::array<NodeId, 2>& edge, std::int32_t, std::int32_t) {
-        return !winding_.is_edge(edge);
-    });
-    DisjointSets together(regions.size());
-    joined.each_pair([&](std::int32_t i, std::int32_t j) { together.join(i, j); });
-    std::vector<Patch> patches;
-    std::vector<std::int32_t> patch_of(regions.size(), -1);  // by the first region of each
-    for (const auto& outline : joined.outlines()) {
-        const std::int32_t first = together.find(outline[0].polygon);
-        std::int32_t& own = patch_of[index(first)];
-        if (own < 0) {
-            own = static_cast<std::int32_t>(patches.size());
-            patches.push_back({static_cast<std::int32_t>(face),
-                               sides_.of_region(index(regions[index(first)])),
-                               {},
-                               {},
-                               {}});
+        while (chunk != divided_.end() && next == chunk->face.size()) {
+            ++chunk;
+            next = 0;
         }
-        Patch& patch = patches[index(own)];
-        auto& loop = patch.loops.emplace_back();
-        for (const auto& edge : outline) {
-            loop.push_back(edge.from);
-            patch.beside.push_back(regions[index(edge.polygon)]);
+        for (; chunk != divided_.end() && next < chunk->face.size() && chunk->face[next] == face;
+             ++next) {
+            const auto region = index(chunk->regions_of(next)[0]);
+            add_patch({face, sides_.of_region(region), &*chunk, next});
         }
     }
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        const std::int32_t own = patch_of[index(together.find(static_cast<std::int32_t>(i)))];
-        if (own >= 0) patches[index(own)].regions.push_back(regions[i]);
-    }
-    return patches;
 }
 
 /// Calls visit(use) for all edges of the slots of cells that reach the surface.
@@ -142,7 +180,7 @@ void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
     for (const std::int32_t slot : patch.slots) {
         if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) continue;
         const Slot& own = slots_[index(slot)];
-        if (patch.regions.empty()) {
+        if (patch.divided == nullptr) {
             const auto face = index(patch.face);
             each_edge(std::array{overlay_.model().face(face)},
                       static_cast<std::int32_t>(overlay_.size() + face), [&](const EdgeUse& use) {
@@ -151,8 +189,11 @@ void SurfaceParts::each_use(const Patch& patch, const Visit& visit) const {
             continue;
         }
         std::size_t edge = 0;
-        each_edge(patch.loops, 0, [&](EdgeUse use) {
-            use.item = patch.beside[edge++];
+        const auto loops = patch.loops();
+        const std::size_t first =
+            static_cast<std::size_t>(loops[0].data() - patch.divided->loops.nodes.data());
+        each_edge(loops, 0, [&](EdgeUse use) {
+            use.item = patch.divided->beside[first + edge++];
             visit(SlotUse{own.cell, own.half, use, slot});
         });
     }
@@ -364,10 +405,10 @@ void SurfaceParts::attach_hollows(const Progress* progress) {
             };
             if (patch < 0) {
                 add(overlay_.loops(index(region)));
-            } else if (patches_[index(patch)].regions.empty()) {
+            } else if (patches_[index(patch)].divided == nullptr) {
                 add(std::array{overlay_.model().face(index(patches_[index(patch)].face))});
             } else {
-                add(patches_[index(patch)].loops);
+                add(patches_[index(patch)].loops());
             }
         }
         return shells;

@@ -35,14 +35,31 @@ private:
         std::int8_t
             sign;  ///< 1: turns counter-clockwise seen from outside of the cell, -1 does not
     };
-    /// Regions of one face that no edge of the surface lies between.
+    /// What the faces of a chunk are divided into, by the numbers of patches in it.
+    struct DividedFaces {
+        std::vector<std::int32_t> face;  ///< of patches
+        arrangement::LoopTable<NodeId> loops;
+        std::vector<std::int32_t> beside;  ///< of the edges of all loops: the region
+        std::vector<std::int32_t> regions;
+        std::vector<std::size_t> region_begins{0};
+
+        std::span<const std::int32_t> regions_of(std::size_t patch) const {
+            return {regions.data() + region_begins[patch],
+                    regions.data() + region_begins[patch + 1]};
+        }
+    };
+    class FaceDivider;
+    /// Regions of one face that no edge of the surface lies between; or a whole face, which has no
+    /// regions.
     struct Patch {
         std::int32_t face;
         std::int8_t half;
-        std::vector<std::int32_t> regions;  ///< none: the whole face, which has none
-        std::vector<std::vector<NodeId>> loops;
-        std::vector<std::int32_t> beside;  ///< of the edges of all loops: the region
+        const DividedFaces* divided = nullptr;  ///< nullptr: the whole face
+        std::size_t number = 0;                 ///< in `divided`
         std::array<std::int32_t, 2> slots{-1, -1};
+
+        Loops<NodeId> loops() const { return divided->loops[number]; }
+        std::span<const std::int32_t> regions() const { return divided->regions_of(number); }
     };
     /// The slots of one region of the surface: what is below it, then what is above.
     struct Caps {
@@ -62,10 +79,9 @@ private:
     };
 
     void make_patches(Progress* progress);
-    std::vector<Patch> divide_face(std::size_t face, std::span<const std::int32_t> regions) const;
     void make_caps();
     void leave_out(std::size_t face);
-    void add_patch(Patch&& patch);
+    void add_patch(Patch patch);
     std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
     template <class Visit>
     void each_use(const Patch& patch, const Visit& visit) const;
@@ -92,6 +108,7 @@ private:
     const CutterWinding& winding_;
     const PartSides& sides_;
     std::vector<Slot> slots_;
+    std::vector<DividedFaces> divided_;  ///< of chunks of active faces
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
     Array<SlotUse> uses_;  ///< in order: those of one cell, half and edge side by side
@@ -104,7 +121,7 @@ private:
 /// The region that some of the overlay's loops bound, in convex polygons (`is_wall`: one polygon if
 /// it has one outline), which are added. `normal` is that of the face or triangle they lie on.
 /// False where they cross each other as seen along it: rounding has bent the face over itself.
-bool divide_loops(SurfaceOverlay& overlay, const Position& normal,
-                  const std::vector<std::vector<NodeId>>& loops, bool is_wall, Polygons& polygons);
+bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
+                  bool is_wall, Polygons& polygons);
 
 }  // namespace realmodel::cutting

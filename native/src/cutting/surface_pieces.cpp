@@ -45,19 +45,19 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
 
 }  // namespace
 
-bool divide_loops(SurfaceOverlay& overlay, const Position& normal,
-                  const std::vector<std::vector<NodeId>>& loops, bool is_wall, Polygons& polygons) {
+bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
+                  bool is_wall, Polygons& polygons) {
     const View view(normal);
     std::vector<Loop> corners;
     std::vector<Position> positions;
-    for (const auto& loop : loops) {
+    for (const auto loop : loops) {
         Loop& own = corners.emplace_back();
         for (const NodeId p : loop) {
             positions.push_back(overlay.position(p));
             own.push_back({p, view(positions.back())});
         }
     }
-    std::vector<NodeId> sorted = loops[0];
+    std::vector<NodeId> sorted(loops[0].begin(), loops[0].end());
     std::sort(sorted.begin(), sorted.end());
     const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
     if (is_wall && loops.size() == 1 && simple) {
@@ -115,7 +115,7 @@ void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_
 void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
     const ComplexView& model = overlay_.model();
     const auto face = index(patch.face);
-    if (patch.regions.empty()) {
+    if (patch.divided == nullptr) {
         polygons.add(model.face(face));
         return;
     }
@@ -124,9 +124,9 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
         corners.push_back(model.vertex(v));
     const bool is_wall = model.face_surface[face] == kWall;
     Polygons whole;
-    if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, whole)) {
+    if (!divide_loops(overlay_, polygon_normal(corners), patch.loops(), is_wall, whole)) {
         whole.clear();
-        for (const std::int32_t region : patch.regions) {
+        for (const std::int32_t region : patch.regions()) {
             const auto [axis, facing] = overlay_.view_of(index(region));
             Position normal{0, 0, 0};
             normal[axis] = facing;

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
+#include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::simulation {
@@ -26,57 +30,150 @@ std::span<const std::int32_t> loop_of(const FaceLoops& faces, std::int64_t face)
 
 }  // namespace
 
+namespace {
+
+constexpr std::size_t kCells = 2048;  ///< described at a time
+constexpr std::size_t kFaces = 8192;  ///< put in order at a time
+constexpr std::size_t kFewCorners = 64;
+
+/// Sorts the corners of a cell and leaves each once. @return how many there are then
+std::size_t each_once(std::int64_t* corners, std::size_t count) {
+    if (count > kFewCorners) {
+        std::sort(corners, corners + count);
+        return static_cast<std::size_t>(std::unique(corners, corners + count) - corners);
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int64_t own = corners[i];
+        std::size_t at = kept;
+        while (at > 0 && corners[at - 1] > own)
+            --at;
+        if (at > 0 && corners[at - 1] == own) continue;
+        std::copy_backward(corners + at, corners + kept, corners + kept + 1);
+        corners[at] = own;
+        ++kept;
+    }
+    return kept;
+}
+
+}  // namespace
+
 CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::int64_t> begin,
                                 std::span<const std::int64_t> sides) {
     CellDescriptions made;
-    for (std::size_t c = 0; c + 1 < begin.size(); ++c) {
-        if (begin[c] < 0 || begin[c] > begin[c + 1] ||
-            begin[c + 1] > static_cast<std::int64_t>(sides.size()))
-            refuse(static_cast<std::int64_t>(c), "the cell has sides that do not exist");
-        const std::size_t first = made.vertices.size();
-        made.faces.push_back(begin[c + 1] - begin[c]);
-        for (const std::int64_t side :
-             sides.subspan(index(begin[c]), index(begin[c + 1] - begin[c]))) {
-            const auto loop = loop_of(faces, side >> 1);
-            made.faces.push_back(static_cast<std::int64_t>(loop.size()));
-            if ((side & 1) == 0) {
-                for (const std::int32_t v : loop)
-                    made.faces.push_back(v);
-            } else {
-                for (std::size_t i = loop.size(); i-- > 0;)
-                    made.faces.push_back(loop[i]);
-            }
-            for (const std::int32_t v : loop)
-                made.vertices.push_back(v);
+    const std::size_t cells = begin.empty() ? 0 : begin.size() - 1;
+    made.lengths.resize(cells);
+    made.counts.resize(cells);
+    const auto sides_of = [&](std::size_t c) {
+        return sides.subspan(index(begin[c]), index(begin[c + 1] - begin[c]));
+    };
+    std::vector<std::size_t> first_number((cells + kCells - 1) / kCells);
+    parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
+        std::size_t total = 0;
+        for (std::size_t c = from; c < to; ++c) {
+            if (begin[c] < 0 || begin[c] > begin[c + 1] ||
+                begin[c + 1] > static_cast<std::int64_t>(sides.size()))
+                refuse(static_cast<std::int64_t>(c), "the cell has sides that do not exist");
+            std::size_t own = 1;
+            for (const std::int64_t side : sides_of(c))
+                own += 1 + loop_of(faces, side >> 1).size();
+            made.lengths[c] = static_cast<std::int64_t>(own);
+            total += own;
         }
-        std::int64_t* const own = made.vertices.data() + first;
-        std::sort(own, made.vertices.data() + made.vertices.size());
-        const auto count = static_cast<std::size_t>(
-            std::unique(own, made.vertices.data() + made.vertices.size()) - own);
-        made.vertices.resize(first + count);
-        made.counts.push_back(static_cast<std::int64_t>(count));
-    }
+        first_number[from / kCells] = total;
+    });
+    made.faces.resize(count_before(first_number));
+    std::vector<std::vector<std::int64_t>> vertices(first_number.size());
+    parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
+        std::int64_t* number = made.faces.data() + first_number[from / kCells];
+        auto& corners = vertices[from / kCells];
+        for (std::size_t c = from; c < to; ++c) {
+            const auto own = sides_of(c);
+            const std::size_t first = corners.size();
+            *number++ = static_cast<std::int64_t>(own.size());
+            for (const std::int64_t side : own) {
+                const auto loop = loop_of(faces, side >> 1);
+                *number++ = static_cast<std::int64_t>(loop.size());
+                number = (side & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
+                                         : std::reverse_copy(loop.begin(), loop.end(), number);
+                corners.insert(corners.end(), loop.begin(), loop.end());
+            }
+            const std::size_t count = each_once(corners.data() + first, corners.size() - first);
+            corners.resize(first + count);
+            made.counts[c] = static_cast<std::int64_t>(count);
+        }
+    });
+    std::vector<std::size_t> first_corner;
+    for (const auto& own : vertices)
+        first_corner.push_back(own.size());
+    made.vertices.resize(count_before(first_corner));
+    parallel_chunks(vertices.size(), 0, nullptr, [&](std::size_t chunk) {
+        std::copy(vertices[chunk].begin(), vertices[chunk].end(),
+                  made.vertices.data() + first_corner[chunk]);
+        vertices[chunk] = {};
+    });
     return made;
 }
 
-OrderedFaces ordered_faces(const FaceLoops& faces, std::span<const std::int64_t> order,
-                           std::span<const std::uint8_t> turned) {
-    if (turned.size() != order.size())
-        refuse(static_cast<std::int64_t>(turned.size()), "turned: one for each face, not");
-    OrderedFaces made;
-    made.offsets.push_back(0);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const auto loop = loop_of(faces, order[i]);
-        made.vertices.push_back(loop[0]);
-        if (turned[i] == 0) {
-            for (const std::int32_t v : loop.subspan(1))
-                made.vertices.push_back(v);
-        } else {
-            for (std::size_t k = loop.size(); k-- > 1;)
-                made.vertices.push_back(loop[k]);
+Array<std::int64_t> inner_faces(std::span<const std::array<std::int32_t, 2>> face_cells,
+                                std::size_t cells) {
+    struct Inner {
+        std::int32_t higher;
+        std::uint32_t face;
+        auto operator<=>(const Inner&) const = default;
+    };
+    check_total(face_cells.size(), UINT32_MAX);
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(face_cells.size(), (chunk + 1) * kFaces);
+        for (std::size_t f = chunk * kFaces; f < end; ++f) {
+            const auto [low, high] = std::minmax(face_cells[f][0], face_cells[f][1]);
+            if (high < 0 || index(high) >= cells) refuse(high, "there is no such cell");
+            if (low >= 0) put(index(low), Inner{high, static_cast<std::uint32_t>(f)});
         }
-        made.offsets.push_back(checked_number(made.vertices.size(), "corners of faces"));
-    }
+    };
+    const auto sorted = sorted_in_buckets<Inner>(cells, (face_cells.size() + kFaces - 1) / kFaces,
+                                                 produce, 0, nullptr);
+    Array<std::int64_t> order(sorted.values.size());
+    parallel_ranges(order.size(), kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i)
+            order[i] = sorted.values[i].face;
+    });
+    return order;
+}
+
+OrderedFaces ordered_faces(const FaceLoops& faces,
+                           std::span<const std::array<std::int32_t, 2>> face_cells,
+                           std::span<const std::int64_t> order) {
+    if (face_cells.size() + 1 != faces.offsets.size())
+        refuse(static_cast<std::int64_t>(face_cells.size()), "cells: two for each face, not of");
+    OrderedFaces made;
+    const std::size_t count = order.size();
+    made.offsets.resize(count + 1);
+    made.owner.resize(count);
+    made.neighbor.resize(count);
+    made.turned.resize(count);
+    parallel_ranges(count, kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            made.offsets[i] = static_cast<std::int32_t>(loop_of(faces, order[i]).size());
+            const auto [a, b] = face_cells[index(order[i])];
+            made.turned[i] = b >= 0 && a > b ? 1 : 0;
+            made.owner[i] = made.turned[i] != 0 ? b : a;
+            made.neighbor[i] = made.turned[i] != 0 ? a : b;
+        }
+    });
+    running_totals(made.offsets, INT32_MAX, 0, nullptr);
+    made.vertices.resize(index(made.offsets[count]));
+    parallel_ranges(count, kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const auto loop = loop_of(faces, order[i]);
+            std::int32_t* const own = made.vertices.data() + made.offsets[i];
+            own[0] = loop[0];
+            if (made.turned[i] == 0)
+                std::copy(loop.begin() + 1, loop.end(), own + 1);
+            else
+                std::reverse_copy(loop.begin() + 1, loop.end(), own + 1);
+        }
+    });
     return made;
 }
 

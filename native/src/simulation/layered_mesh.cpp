@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
@@ -28,6 +29,9 @@ constexpr double kSteepFace = 0.5;           ///< cosine: of 60 degrees
 constexpr double kNoDeterminant = 1e-8;      ///< inner faces in two directions only
 constexpr double kThickEnd = 3;  ///< minimum thicknesses: no block gives up an end as thick
 constexpr int kRepairs = 30;
+constexpr double kEasedFace = 0.8;  ///< cosine: flatter faces are not what makes lines lean
+constexpr double kEasedShare = 0.1;
+constexpr int kEasings = 40;
 
 using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
 
@@ -49,8 +53,9 @@ public:
         find_parted();
     }
 
-    void fill(std::size_t t) {
-        if (!load(t)) return;
+    /// @return whether anything stands on the triangle
+    bool fill(std::size_t t) {
+        if (!load(t)) return false;
         const auto layer_blocks = levels_.layer_blocks(rock_);
         for (std::size_t i = 0; i < 3; ++i)
             front_[i] = own_[i][0];
@@ -73,6 +78,7 @@ public:
         if (last_block_ >= 0) add_flat_face(-1);
         elements_[t] = static_cast<std::int32_t>(fronts_.size()) - 1;
         find_weak();
+        return true;
     }
 
     /// Faces on steps that only one side has belong to the outside; those that both have are told
@@ -98,6 +104,21 @@ public:
             add_side(face->corners, face->surface);
     }
 
+    /// Of each steep face that the line between the centers of its elements crosses at too small an
+    /// angle: by how much its corners would move to make it less steep. @pre fill(t) was the last
+    void find_steep(std::vector<PostLevels::Move>& moves) const {
+        for (std::size_t e = 0; e + 2 < fronts_.size(); ++e) {
+            if (!leans_at(e, kEasedFace, true)) continue;
+            const Front& face = fronts_[e + 1];
+            double mean = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                mean += position(i, face[i])[2] / 3;
+            for (std::size_t i = 0; i < 3; ++i)
+                moves.push_back(
+                    {node_[i], face[i], kEasedShare * (mean - position(i, face[i])[2])});
+        }
+    }
+
     /// How many elements each column has.
     std::span<const std::int32_t> elements() const { return elements_; }
 
@@ -107,10 +128,37 @@ public:
         for (const auto& [t, removal] : weak_alone_) {
             if (is_narrow[t] != 0) weak_.push_back(removal);
         }
+        if (weak_.empty()) add_spare();
         return weak_;
     }
 
 private:
+    /// Heights of weak_last_ as long as no column around them has less than two elements then: one
+    /// alone in its column would have no neighbor above, which is worse.
+    void add_spare() {
+        if (weak_last_.empty()) return;
+        const auto around = bucketize<std::int32_t>(plan_.nodes(), [&](const auto& put) {
+            for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+                for (const std::int32_t n : plan_.mesh().triangles[t])
+                    put(index(n), static_cast<std::int32_t>(t));
+            }
+        });
+        std::sort(weak_last_.begin(), weak_last_.end());
+        std::int32_t done = -1;
+        for (const PostLevels::Removal& removal : weak_last_) {
+            const auto triangles = around[index(removal.node)];
+            if (removal.node == done ||
+                std::any_of(triangles.begin(), triangles.end(), [&](std::int32_t t) {
+                    return elements_[index(t)] == 1 || elements_[index(t)] == 2;
+                }))
+                continue;
+            done = removal.node;
+            for (const std::int32_t t : triangles)
+                --elements_[index(t)];
+            weak_.push_back(removal);
+        }
+    }
+
     struct SideFace {
         std::array<std::int32_t, 4> key, corners;  // of a triangle the last corner is -1
         std::size_t number;
@@ -315,12 +363,11 @@ private:
             const double independence = determinant(low, high, is_first, is_last);
             const bool is_weak = independence < kWeakDeterminant,
                        leans = moved_corners(e) < 3 &&
-                               ((!is_first && leans_at(e - 1)) || (!is_last && leans_at(e)));
+                               ((!is_first && leans_at(e - 1, kSteepFace, false)) ||
+                                (!is_last && leans_at(e, kSteepFace, false)));
             if (!is_weak && !leans) continue;
             for (std::size_t i = 0; i < 3; ++i) {
-                // an element alone in its column would have no neighbor above, which is worse
-                if (low[i] == high[i] || (!is_weak && own_[i].back() - own_[i].front() == 2))
-                    continue;
+                if (low[i] == high[i]) continue;
                 const bool upper = is_first && !is_last;  // which of its heights goes
                 const std::int32_t gone = upper ? high[i] : low[i];
                 const double rise = position(i, high[i])[2] - position(i, low[i])[2];
@@ -331,6 +378,8 @@ private:
                 const PostLevels::Removal removal{node_[i], gone, upper ? low[i] : high[i]};
                 if (is_first && is_last)
                     weak_alone_.emplace_back(t_, removal);
+                else if (!is_weak && own_[i].back() - own_[i].front() == 2)
+                    weak_last_.push_back(removal);
                 else
                     weak_.push_back(removal);
             }
@@ -359,9 +408,9 @@ private:
     }
 
     /// Whether the line between the centers of an element and the next one leans by more than
-    /// kMostLean from the direction across the face between them, though the face itself is not as
-    /// steep.
-    bool leans_at(std::size_t e) const {
+    /// kMostLean from the direction across the face between them. Asked of faces that are steeper,
+    /// or flatter, than an angle of this cosine.
+    bool leans_at(std::size_t e, double cosine, bool steeper) const {
         const auto below = center(e), above = center(e + 1), area = flat_area(fronts_[e + 1]);
         double dot = 0, line = 0, across = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -369,7 +418,7 @@ private:
             line += (above[k] - below[k]) * (above[k] - below[k]);
             across += area[k] * area[k];
         }
-        if (area[2] < kSteepFace * std::sqrt(across)) return false;
+        if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
         return dot < kMostLean * std::sqrt(line * across);
     }
 
@@ -517,7 +566,7 @@ private:
     Front front_{};
     std::vector<Front> fronts_;               ///< of the column, upward
     std::vector<std::int32_t> front_blocks_;  ///< of what lies above each
-    std::vector<PostLevels::Removal> weak_;
+    std::vector<PostLevels::Removal> weak_, weak_last_;
     std::vector<std::pair<std::size_t, PostLevels::Removal>> weak_alone_;  ///< with their triangles
     std::vector<std::int32_t> elements_;                                   ///< of each column
     bool has_step_ = false;
@@ -526,6 +575,37 @@ private:
     std::vector<SideFace> step_faces_;
     std::vector<std::uint8_t> is_parted_;  ///< of each layer of each post
 };
+
+/// Faces that are steep, so that the centers of neighbors lie far from the direction across them,
+/// are made less steep, by moves of less than the minimum thickness. @return whether there were any
+bool ease_steep(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
+                double minimum_thickness, PostLevels& levels, Progress* progress) {
+    const PostLevels before = levels;
+    std::vector<std::uint8_t> is_moved(plan.nodes(), 1), has_flat_base(plan.nodes(), 0);
+    for (std::size_t p = 0; p < plan.post_count(); ++p) {
+        if (columns.rock(p) >= 0 && columns.surfaces(p)[0] == kBase)
+            has_flat_base[index(plan.post_node(p))] = 1;
+    }
+    LayeredMesh scratch;
+    for (int round = 0; round < kEasings; ++round) {
+        std::vector<PostLevels::Move> moves;
+        scratch = {};
+        scratch.volumes.assign(blocks.rock.size(), 0);
+        ColumnFiller filler(plan, blocks, columns, levels, minimum_thickness, scratch);
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            const auto& nodes = plan.mesh().triangles[t];
+            poll(progress, t);
+            if (std::none_of(nodes.begin(), nodes.end(),
+                             [&](std::int32_t n) { return is_moved[index(n)] != 0; }))
+                continue;
+            if (filler.fill(t)) filler.find_steep(moves);
+        }
+        is_moved.assign(plan.nodes(), 0);
+        if (!levels.ease(moves, before, minimum_thickness, has_flat_base, is_moved))
+            return round > 0;
+    }
+    return true;
+}
 
 /// Calls visit(corner) for the corners of all elements and faces.
 template <class Visit>
@@ -554,6 +634,7 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
     PostLevels levels(plan, lines, blocks, columns, layering);
     LayeredMesh made;
     std::vector<std::uint8_t> is_narrow;
+    bool is_eased = false;
     for (int repair = 0;; ++repair) {
         check_total(levels.height_count(), INT32_MAX);
         made = {};
@@ -569,7 +650,13 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
             filler.fill(t);
         }
         if (repair == 0) is_narrow = narrow_strips(plan, filler.elements());
-        if (repair < kRepairs && levels.remove(plan, filler.weak(is_narrow)) > 0) continue;
+        if (repair < kRepairs && !is_eased && levels.remove(plan, filler.weak(is_narrow)) > 0)
+            continue;
+        if (!is_eased &&
+            ease_steep(plan, blocks, columns, layering.minimum_thickness, levels, progress)) {
+            is_eased = true;
+            continue;
+        }
         filler.finish_steps(VerticalFaults(model, lines.steps));
         break;
     }

@@ -18,7 +18,9 @@ namespace {
 
 constexpr double kLeastAngle = 20.0 * M_PI / 180;
 constexpr double kSharpAngle = 25.0 * M_PI / 180;  ///< made better, if it can be
-constexpr int kImprovements = 8;
+constexpr int kImprovements = 12;
+constexpr double kStep =
+    0.05;  ///< of an edge: how far nodes are moved where their middle is no better
 
 double least_angle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
     double least = M_PI;
@@ -44,11 +46,7 @@ PlanTopology::PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh)
     if (turn_border_triangles()) link();
     mark_segments();
     find_posts();
-    if (divide_between_steps()) {
-        link();
-        mark_segments();
-        find_posts();
-    }
+    if (divide_between_steps()) refresh();
     improve();
     spread_rocks();
 }
@@ -128,15 +126,89 @@ bool PlanTopology::turn_border_triangles() {
 }
 
 void PlanTopology::improve() {
+    turn_and_move();
+    const auto sharp = [&] {
+        return std::count_if(mesh_.triangles.begin(), mesh_.triangles.end(), [&](const auto& own) {
+            return least_angle(mesh_.vertices[index(own[0])], mesh_.vertices[index(own[1])],
+                               mesh_.vertices[index(own[2])]) < kLeastAngle;
+        });
+    };
+    const auto before = sharp();
+    if (before == 0) return;
+    const meshing::PlanarMesh mesh = mesh_;
+    if (!divide_lines()) return;
+    refresh();
+    turn_and_move();
+    if (sharp() < before) return;
+    mesh_ = mesh;
+    refresh();
+}
+
+void PlanTopology::refresh() {
+    link();
+    mark_segments();
+    find_posts();
+}
+
+/// Divides edges on lines and at the border that lie across from an obtuse angle beside one that is
+/// too sharp.
+bool PlanTopology::divide_lines() {
+    const auto at = [&](std::int32_t n) -> const PlanPoint& { return mesh_.vertices[index(n)]; };
+    std::vector<std::uint8_t> is_used(triangles(), 0);
+    bool any = false;
+    for (std::size_t t = 0, count = triangles(); t < count; ++t) {
+        const auto own = mesh_.triangles[t];
+        if (is_used[t] != 0 || least_angle(at(own[0]), at(own[1]), at(own[2])) >= kLeastAngle)
+            continue;
+        std::size_t i = 0;
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const PlanPoint &p = at(own[k]), &q = at(own[(k + 1) % 3]);
+            const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
+            if (length > longest) i = k;
+            longest = std::max(longest, length);
+        }
+        const std::int32_t n = neighbor_[t][i], a = own[i], b = own[(i + 1) % 3];
+        if ((segment_[t][i] < 0 && n >= 0) || (n >= 0 && is_used[index(n)] != 0)) continue;
+        const std::int32_t apex = own[(i + 2) % 3],
+                           far = n < 0 ? -1 : corner_across(index(n), a, b);
+        // on a step the middle is divided, so it may have no edge to another such node
+        if (n >= 0 && is_step(t, i) && (is_divided(apex) || is_divided(far))) continue;
+        const auto middle = static_cast<std::int32_t>(nodes());
+        const PlanPoint p = at(a), q = at(b);
+        mesh_.vertices.push_back({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2});
+        mesh_.triangles[t] = {apex, a, middle};
+        mesh_.triangles.push_back({apex, middle, b});
+        is_used[t] = 1;
+        if (n >= 0) {
+            mesh_.triangles[index(n)] = {far, b, middle};
+            mesh_.triangles.push_back({far, middle, a});
+            is_used[index(n)] = 1;
+        }
+        any = true;
+    }
+    return any;
+}
+
+void PlanTopology::turn_and_move() {
     for (int round = 0; round < kImprovements; ++round) {
         const bool turned = turn_edges();
-        if (turned) {
-            link();
-            mark_segments();
-            find_posts();
-        }
+        if (turned) refresh();
         if (!move_nodes() && !turned) break;
     }
+}
+
+/// Nodes that are neither on lines nor at the border.
+std::vector<std::uint8_t> PlanTopology::free_nodes() const {
+    std::vector<std::uint8_t> is_free(nodes(), 1);
+    for (std::size_t t = 0; t < triangles(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (segment_[t][i] < 0 && neighbor_[t][i] >= 0) continue;
+            is_free[index(mesh_.triangles[t][i])] = 0;
+            is_free[index(mesh_.triangles[t][(i + 1) % 3])] = 0;
+        }
+    }
+    return is_free;
 }
 
 /// Turns the edge between two triangles, where that makes the least of their angles larger.
@@ -209,13 +281,9 @@ bool PlanTopology::move_nodes() {
         any = true;
     }
     if (!any) return false;
-    for (std::size_t t = 0; t < triangles(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (segment_[t][i] < 0 && neighbor_[t][i] >= 0) continue;
-            wanted[index(mesh_.triangles[t][i])] = 0;
-            wanted[index(mesh_.triangles[t][(i + 1) % 3])] = 0;
-        }
-    }
+    const std::vector<std::uint8_t> is_free = free_nodes();
+    for (std::size_t n = 0; n < nodes(); ++n)
+        wanted[n] &= is_free[n];
     const auto around = bucketize<std::int32_t>(nodes(), [&](const auto& put) {
         for (std::size_t c = 0; c < 3 * triangles(); ++c) {
             if (wanted[index(node(c))] != 0) put(index(node(c)), static_cast<std::int32_t>(c / 3));
@@ -245,13 +313,25 @@ bool PlanTopology::move_nodes() {
         const PlanPoint start = mesh_.vertices[n];
         PlanPoint best = start;
         double largest = 1.01 * least_around();
-        for (const double share : {1.0, 0.5, 0.25}) {
-            for (std::size_t axis = 0; axis < 2; ++axis)
-                mesh_.vertices[n][axis] = start[axis] + share * (middle[axis] - start[axis]);
+        const auto try_at = [&](double x, double y) {
+            mesh_.vertices[n] = {x, y};
             const double own = least_around();
-            if (own <= largest) continue;
+            if (own <= largest) return;
             largest = own;
-            best = mesh_.vertices[n];
+            best = {x, y};
+        };
+        for (const double share : {1.0, 0.5, 0.25})
+            try_at(start[0] + share * (middle[0] - start[0]),
+                   start[1] + share * (middle[1] - start[1]));
+        const std::int32_t any_corner = mesh_.triangles[index(around[n][0])][0],
+                           other = mesh_.triangles[index(around[n][0])][1];
+        const double step =
+            kStep * std::hypot(at(any_corner)[0] - at(other)[0], at(any_corner)[1] - at(other)[1]);
+        if (best == start) {
+            for (const double x : {-step, 0.0, step}) {
+                for (const double y : {-step, 0.0, step})
+                    try_at(start[0] + x, start[1] + y);
+            }
         }
         mesh_.vertices[n] = best;
         moved = moved || best != start;

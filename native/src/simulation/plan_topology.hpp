@@ -50,11 +50,15 @@ private:
     void find_posts();
     bool turn_border_triangles();
     bool divide_between_steps();
+    void refresh();
     void improve();
+    void turn_and_move();
+    bool divide_lines();
     bool turn_edges();
     std::int32_t corner_across(std::size_t t, std::int32_t a, std::int32_t b) const;
     bool has_border_corner(std::size_t t, std::size_t n, std::size_t i) const;
     bool move_nodes();
+    std::vector<std::uint8_t> free_nodes() const;
 
     const PlanLines& lines_;
     meshing::PlanarMesh mesh_;

@@ -260,6 +260,53 @@ std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& r
     return count;
 }
 
+bool PostLevels::ease(const std::vector<Move>& moves, const PostLevels& before, double most,
+                      std::span<const std::uint8_t> has_flat_base,
+                      std::span<std::uint8_t> is_moved) {
+    constexpr double kLeast = 1e-3;  // of `most`: what is worth another round
+    struct Asked {
+        double by = 0;
+        std::int32_t count = 0, lowest = INT32_MAX;
+    };
+    std::vector<Asked> asked(node_offset_.size() - 1);
+    for (const Move& move : moves) {
+        Asked& own = asked[index(move.node)];
+        own.by += move.by;
+        ++own.count;
+        own.lowest = std::min(own.lowest, move.height);
+    }
+    bool any = false;
+    for (std::size_t n = 0; n < asked.size(); ++n) {
+        if (asked[n].count == 0) continue;
+        const std::size_t first = node_offset_[n], end = node_offset_[n + 1];
+        const double by = asked[n].by / asked[n].count, bottom = height_[first],
+                     span = height_[first + index(asked[n].lowest)] - bottom;
+        const auto move = [&](std::size_t at) {
+            const double own = height_[at];
+            double share = 1;
+            if (has_flat_base[n] != 0 && own - bottom < span) share = (own - bottom) / span;
+            if (has_flat_base[n] != 0 && at == first) share = 0;
+            double to =
+                std::clamp(own + share * by, before.height_[at] - most, before.height_[at] + most);
+            if (at > first) to = std::max(to, std::min(own, height_[at - 1] + most));
+            if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - most));
+            if (std::abs(to - own) < kLeast * most) return;
+            height_[at] = to;
+            is_moved[n] = 1;
+            any = true;
+        };
+        // what moves first makes room for the next
+        if (by < 0) {
+            for (std::size_t at = first; at < end; ++at)
+                move(at);
+        } else {
+            for (std::size_t at = end; at-- > first;)
+                move(at);
+        }
+    }
+    return any;
+}
+
 void PostLevels::join(Divided& node, std::int32_t from, std::int32_t to) {
     node.heights[index(from)] = (node.heights[index(from)] + node.heights[index(to)]) / 2;
     node.heights.erase(node.heights.begin() + from + 1, node.heights.begin() + to + 1);

@@ -45,6 +45,18 @@ public:
     /// Removes heights, the first of each node. @return how many
     std::size_t remove(const PlanTopology& plan, std::vector<Removal>& removals);
 
+    /// A height of a node that should rise by so much.
+    struct Move {
+        std::int32_t node, height;
+        double by;
+    };
+    /// Moves heights by the means of what is asked, those between in proportion, but no farther
+    /// than `most` from `before`, and no nearer to others than `most` or than they are. The lowest
+    /// stay.
+    /// @param is_moved  set for the nodes where a height moved  @return whether any did
+    bool ease(const std::vector<Move>& moves, const PostLevels& before, double most,
+              std::span<const std::uint8_t> has_flat_base, std::span<std::uint8_t> is_moved);
+
 private:
     struct Divided {
         std::vector<std::int32_t> posts;

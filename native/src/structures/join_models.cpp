@@ -159,7 +159,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
                            std::span<const PartModel> models, std::span<const Structure> structures,
                            std::span<const std::uint8_t> acts, int threads, Progress* progress) {
     const ComplexView all = together.view();
-    const cutting::NearPart part(all, together.is_near);
+    const cutting::NearPart part(all, together.is_near, threads, progress);
     const ComplexView near = part.view();
     std::vector<std::int32_t> model_of_cell;
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
@@ -177,7 +177,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     cutting::SurfaceParts made(overlay, winding, wanted, progress);
     begin(progress, 0.85, 0.92, "rounding what was cut");
     cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          true)
+                          threads, progress, true)
         .run();
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);

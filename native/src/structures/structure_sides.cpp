@@ -66,7 +66,7 @@ void StructureSides::refuse(const char* kind, const char* text, std::int32_t str
 }
 
 Position StructureSides::middle_of(std::size_t region) const {
-    const auto& outline = overlay_.loops(region)[0];
+    const auto outline = overlay_.loops(region)[0];
     Position middle{0, 0, 0};
     for (const NodeId node : outline) {
         for (std::size_t k = 0; k < 3; ++k)

@@ -156,9 +156,10 @@ bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t l
 /// Whether a region of the surface is narrower than rounding may have made it.
 bool WantedParts::is_sliver(std::size_t region) const {
     double length = 0, area = 0, rounding = 0;
-    for (const auto& loop : overlay_.loops(region)) {
+    const auto loops = overlay_.loops(region);
+    for (std::size_t k = 0; k < loops.size(); ++k) {
         std::vector<Position> corners;
-        for (const NodeId node : loop)
+        for (const NodeId node : loops[k])
             corners.push_back(overlay_.position(node));
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Position step = cutting::minus(corners[(i + 1) % corners.size()], corners[i]);
@@ -166,7 +167,7 @@ bool WantedParts::is_sliver(std::size_t region) const {
         }
         const Position normal = cutting::polygon_normal(corners);
         const double size = std::sqrt(cutting::dot(normal, normal));
-        area += &loop == overlay_.loops(region).data() ? size : -size;
+        area += k == 0 ? size : -size;
         rounding = std::max(rounding, cutting::rounding_of(corners));
     }
     return area <= kSliver * rounding * length;

@@ -25,18 +25,19 @@ public:
         }
         triangles.divide(1, nullptr);
     }
-    std::vector<const Region*> regions_of(std::int32_t triangle) const {
-        std::vector<const Region*> found;
-        for (const Region& region : triangles.regions()) {
-            if (region.triangle == triangle) found.push_back(&region);
+    std::vector<Region> regions_of(std::int32_t triangle) const {
+        std::vector<Region> found;
+        for (std::size_t r = 0; r < triangles.regions().size(); ++r) {
+            const Region region = triangles.regions()[r];
+            if (region.triangle == triangle) found.push_back(region);
         }
         return found;
     }
     /// The nodes of a triangle's regions.
     std::set<Position> nodes_of(std::int32_t triangle) const {
         std::set<Position> found;
-        for (const Region* region : regions_of(triangle)) {
-            for (const auto& loop : region->loops) {
+        for (const Region& region : regions_of(triangle)) {
+            for (const auto loop : region.loops) {
                 for (const SpacePointId p : loop)
                     found.insert(points.rounded(p));
             }
@@ -120,7 +121,7 @@ TEST(TriangleArrangement, ANodeOnAnEdgeIsOneOfTheTriangleBeyond) {
     EXPECT_TRUE(a.nodes_of(one).contains(Position{2, 2, 0}));
     EXPECT_TRUE(a.nodes_of(cutter).contains(Position{2, 2, 0}));
     EXPECT_TRUE(a.nodes_of(beyond).contains(Position{2, 2, 0}));
-    EXPECT_EQ(a.regions_of(beyond)[0]->loops[0].size(), 4U);
+    EXPECT_EQ(a.regions_of(beyond)[0].loops[0].size(), 4U);
 }
 
 TEST(TriangleArrangement, EdgesOfRegionsAreUsedOnceEitherWayWithinATriangle) {
@@ -132,8 +133,8 @@ TEST(TriangleArrangement, EdgesOfRegionsAreUsedOnceEitherWayWithinATriangle) {
         a.add({{{-1, 1.0 * i, -1}, {20, 1.0 * i, -1}, {3, 1.0 * i + 0.25, 9.0 - i}}});
     a.divide(15);
     std::map<std::array<SpacePointId, 2>, int> uses;
-    for (const Region* region : a.regions_of(level)) {
-        for (const auto& loop : region->loops) {
+    for (const Region& region : a.regions_of(level)) {
+        for (const auto loop : region.loops) {
             for (std::size_t i = 0; i < loop.size(); ++i)
                 ++uses[{loop[i], loop[(i + 1) % loop.size()]}];
         }
@@ -169,8 +170,10 @@ TEST(TriangleArrangement, ALargeTriangleIsDividedAsSmallOnesAreOnAnyNumberOfThre
         const auto regions = a.regions_of(level);
         ASSERT_EQ(regions.size(), 1U + (kAlong - 1) * (kAcross - 1));
         std::vector<std::vector<SpacePointId>> loops;
-        for (const Region* region : regions)
-            loops.insert(loops.end(), region->loops.begin(), region->loops.end());
+        for (const Region& region : regions) {
+            for (const auto loop : region.loops)
+                loops.emplace_back(loop.begin(), loop.end());
+        }
         EXPECT_EQ(std::ranges::count_if(loops, [](const auto& loop) { return loop.size() == 4; }),
                   (kAlong - 1) * (kAcross - 1));
         // those that cross it know the nodes on their segments

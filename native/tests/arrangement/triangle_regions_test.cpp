@@ -24,11 +24,13 @@ public:
     void edge(double x, double y, double to_x, double to_y) {
         edges.push_back(unordered(at(x, y), at(to_x, to_y)));
     }
-    std::vector<RegionLoops> regions(int facing = 1) {
+    LoopTable<SpacePointId> regions(int facing = 1) {
         std::sort(edges.begin(), edges.end());
-        return regions_of_graph(points, {2, facing}, edges);
+        LoopTable<SpacePointId> found;
+        PlaneGraph(points).add_regions({2, facing}, edges, found);
+        return found;
     }
-    double twice_area(const std::vector<SpacePointId>& loop) const {
+    double twice_area(std::span<const SpacePointId> loop) const {
         double sum = 0;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Position &p = points.rounded(loop[i]),
@@ -40,9 +42,10 @@ public:
     /// Twice the areas of the regions, holes taken away, in order of size.
     std::vector<double> areas() {
         std::vector<double> result;
-        for (const RegionLoops& loops : regions()) {
+        const auto found = regions();
+        for (std::size_t r = 0; r < found.size(); ++r) {
             double sum = 0;
-            for (const auto& loop : loops)
+            for (const auto loop : found[r])
                 sum += twice_area(loop);
             result.push_back(sum);
         }
@@ -77,7 +80,9 @@ TEST(TriangleRegions, AHoleIsARegionAndTakenFromTheOneAround) {
     g.square(1, 1, 2);
     g.square(5, 1, 3);
     EXPECT_EQ(g.areas(), (std::vector<double>{8, 18, 200 - 26}));
-    for (const RegionLoops& loops : g.regions()) {
+    const auto regions = g.regions();
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const auto loops = regions[r];
         EXPECT_GT(g.twice_area(loops[0]), 0);
         for (std::size_t i = 1; i < loops.size(); ++i)
             EXPECT_LT(g.twice_area(loops[i]), 0);
@@ -114,6 +119,25 @@ TEST(TriangleRegions, ASlitAndALooseEdgeMakeNoRegion) {
     EXPECT_EQ(regions[0].size(), 2U);
     EXPECT_EQ(regions[0][0].size(), 6U);
     EXPECT_EQ(regions[0][1].size(), 2U);
+}
+
+TEST(TriangleRegions, GraphsOneAfterAnotherAddTheirRegions) {
+    Graph g;
+    g.square(0, 0, 10);
+    g.square(1, 1, 2);
+    std::sort(g.edges.begin(), g.edges.end());
+    const auto holes = g.edges;
+    g.edges.clear();
+    g.square(20, 0, 3);
+    const LoopTable<SpacePointId> square = g.regions();
+    LoopTable<SpacePointId> found;
+    PlaneGraph graph(g.points);
+    graph.add_regions({2, 1}, holes, found);
+    graph.add_regions({2, 1}, g.edges, found);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0].size() + found[1].size(), 3U);
+    EXPECT_TRUE(std::ranges::equal(found[2][0], square[0][0]));
+    EXPECT_EQ(found[2].size(), 1U);
 }
 
 TEST(TriangleRegions, ManyHolesInManyRegions) {

@@ -78,7 +78,7 @@ TEST(NearPart, TheOthersAreOnOneSideEach) {
     const NearestSide nearest(surface);
     const CellBoxes cells(model, {&nearest, 1}, 1, nullptr);
     const auto sides =
-        sides_of_far_cells(model, nearest, cells_near(cells, nearest, 1, nullptr), nullptr);
+        sides_of_far_cells(model, nearest, cells_near(cells, nearest, 1, nullptr), 2, nullptr);
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         EXPECT_EQ(sides[index(c)], x < 1 ? kAbove : x < 2 ? kOn : kBelow);
@@ -89,7 +89,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
     const CellComplex model = row();
     const ComplexView all = model;
     const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near);
+    const NearPart part(model, is_near, 2, nullptr);
     const ComplexView near = part.view();
     ASSERT_EQ(near.cell_count(), 2U);
     Pieces pieces;
@@ -129,7 +129,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
 TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
     const CellComplex model = row();
     const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near);
+    const NearPart part(model, is_near, 2, nullptr);
     Pieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;
     const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);

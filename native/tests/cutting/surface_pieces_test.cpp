@@ -114,10 +114,13 @@ TEST(SurfacePieces, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
     const CutterSurface surface = level_cutter(9);
     SurfaceOverlay overlay(model, surface, 1, nullptr);
     const std::vector<NodeLoop> front{loop_of({0, 1, 2, 3, 4, 5, 6, 7})};
+    arrangement::LoopTable<NodeId> loops;
+    loops.add_loop(front[0]);
+    loops.end_region();
     Polygons wall, other;
-    EXPECT_TRUE(divide_loops(overlay, {0, -1, 0}, front, true, wall));
+    EXPECT_TRUE(divide_loops(overlay, {0, -1, 0}, loops[0], true, wall));
     EXPECT_EQ(loops_of(wall), front);
-    EXPECT_TRUE(divide_loops(overlay, {0, -1, 0}, front, false, other));
+    EXPECT_TRUE(divide_loops(overlay, {0, -1, 0}, loops[0], false, other));
     EXPECT_EQ(other.size(), 3U);  // the foot and the towers
 }
 

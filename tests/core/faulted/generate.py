@@ -26,6 +26,8 @@ PLACES = [(1.0, (0, 0, 0))] * 5 + [  # scale, shift
     (40.115, (4500000.37, 5300000.11, 311.7)),
 ]
 FADES = 3.0  # so far from where a fault is not its throw is less
+PLANES = ("lattice", "plane", "flat", "few")
+BRANCHES = 0.25  # of faults after a plane
 RAGGED = 0.3  # of faults that reach no farther than they must
 
 
@@ -73,8 +75,13 @@ def _youngest(rock, names, fault):
 
 def _faults(rng, names, masses):
     """(FaultCase, throw) each."""
-    found = []
+    found, planes = [], []
     for n in range(rng.choice([0, 1, 1, 1, 2, 2, 3])):
+        if planes and rng.random() < BRANCHES:
+            fault = _branch_of_plane(rng, n, rng.choice(planes))
+            if fault is not None:
+                found.append((fault, _throw(rng)))
+                continue
         kind = rng.choice(shapes.KINDS)
         dies_out = kind not in ("listric", "overturned", "rough", "wall") and rng.random() < 0.3
         tip = rng.uniform(-2, 2) if dies_out else None
@@ -95,8 +102,14 @@ def _faults(rng, names, masses):
             own &= _needed(vertices, triangles, uv, len(masses), rng.random() < RAGGED)
         fault.triangles, fault.beyond = triangles[own], triangles[~own]
         if len(fault.triangles):
-            found.append((fault, rng.choice([0.0, 0.5, 1.0, -1.0, rng.uniform(-1.6, 1.6)])))
+            found.append((fault, _throw(rng)))
+            if kind in PLANES and (dies_out or not len(fault.beyond)):
+                planes.append(fault)
     return found
+
+
+def _throw(rng):
+    return rng.choice([0.0, 0.5, 1.0, -1.0, rng.uniform(-1.6, 1.6)])
 
 
 def _needed(vertices, triangles, uv, masses, ragged):
@@ -119,7 +132,7 @@ def _areas(corners):
 def _branch(rng, fault, found, own):
     """Lets a fault end at another one."""
     other, _ = rng.choice(found)
-    if other.dies_out or len(other.beyond):
+    if len(other.beyond) and not other.dies_out:
         return
     beside = _Side(other)(fault.vertices[fault.triangles].mean(axis=1))
     corner = _Side(other)(fault.vertices)
@@ -132,11 +145,21 @@ def _branch(rng, fault, found, own):
     crossed = reaches & (corner[fault.triangles] * kept <= 0).any(axis=1)
     if area[crossed].sum() > 0.3 * area[reaches].sum():
         return
-    if _comes_back(fault, reaches, other):
+    if _comes_back(fault, reaches, other) or not _meets(fault, reaches, other):
         return
     fault.ends_at = [other.name]
     fault.youngest, fault.rocks = other.youngest, list(other.rocks)
     own &= reaches
+
+
+def _branch_of_plane(rng, number, other):
+    """A fault that ends at a plane; None where it only passes what is beyond that one's tip."""
+    a, b, c = other.vertices[other.triangles[0]]
+    vertices, triangles, uv, end = shapes.branch_surface(rng, a, np.cross(b - a, c - a))
+    own = (uv[triangles, 1] <= end).all(axis=1)
+    fault = FaultCase(f"F{number}", vertices, triangles[own], triangles[~own])
+    fault.ends_at, fault.youngest, fault.rocks = [other.name], other.youngest, list(other.rocks)
+    return fault if _meets(fault, np.ones(len(fault.triangles), bool), other) else None
 
 
 def _border(triangles):
@@ -150,10 +173,21 @@ def _border(triangles):
 
 def _comes_back(fault, reaches, other):
     """Whether the line at which a branch is cut off passes the other fault: it would end before that."""
-    corners = other.vertices[other.triangles]
+    corners = other.vertices[np.concatenate([other.triangles, other.beyond])]
     for a, b in _border(fault.triangles[reaches]) - _border(fault.triangles):
         begin, end = fault.vertices[[a]], fault.vertices[b]
         if any(signs.crossings(begin, end, each[None])[0].any() for each in corners):
+            return True
+    return False
+
+
+def _meets(fault, reaches, other):
+    """Whether a branch passes the other fault itself, not only what is beyond its tip."""
+    one, two = fault.vertices[fault.triangles[reaches]], other.vertices[other.triangles]
+    for edges, corners in ((one, two), (two, one)):
+        begin = edges.reshape(-1, 3)
+        end = np.roll(edges, -1, axis=1).reshape(-1, 3)
+        if any(signs.crossings(begin[[k]], end[k], corners)[0].any() for k in range(len(begin))):
             return True
     return False
 
@@ -180,7 +214,7 @@ def _fill(rng, rock, r, names, made):
     is_covered = bool(rock.rings) and rock.base_elevation is not None
     for k, name in enumerate(names[r]):
         active = [f for f, fault in enumerate(faults) if _youngest(rock, names[r], fault) >= k]
-        height = _height(rng, k, [(sides[f], made[f][1], faults[f]) for f in active])
+        height = _height(rng, k, [(made[f][1], _tips(faults, f)) for f in active])
         surface = SurfaceCase(name, rng.choice(RULES) if rng.random() < 0.6 else "erosional")
         own = [(faults[f], sides[f]) for f in active]
         if interpolates and rng.random() < 0.8:
@@ -200,8 +234,16 @@ def _fill(rng, rock, r, names, made):
     return is_covered
 
 
+def _tips(faults, number):
+    """(T, 3, 3) beyond the tips of a fault, and of those at which it ends: there it displaces nothing."""
+    fault = faults[number]
+    named = [fault, *(other for other in faults if other.name in fault.ends_at)]
+    return np.concatenate([np.empty((0, 3, 3)), *(f.vertices[f.beyond] for f in named if f.dies_out)])
+
+
 def _height(rng, k, faults):
-    """Heights of surface k at plan points, by the sides of the faults that displace it."""
+    """Heights of surface k at plan points, by the sides of the faults that displace it. faults: (throw, what
+    is beyond the tip) of each."""
     level = STEP * k + (rng.uniform(-2.5, 0.5) if rng.random() < 0.4 else 0.0)
     if rng.random() < 0.3:
         level = round(level)
@@ -218,11 +260,11 @@ def _height(rng, k, faults):
             z = z + 0.5 * np.sin(x * 0.7 + c) * np.cos(y * 0.6)
         elif kind == "rough":
             z = z + 0.6 * np.random.default_rng(seed).uniform(-1, 1, len(plan))
-        for side, (_, throw, fault) in zip(row, faults, strict=True):
+        for side, (throw, beyond) in zip(row, faults, strict=True):
             share = 1.0
-            if fault.dies_out:  # nothing is displaced where it is not
+            if len(beyond):
                 at_level = np.column_stack([plan, np.full(len(plan), level)])
-                away = distances(at_level, fault.vertices[fault.beyond])
+                away = distances(at_level, beyond)
                 share = np.clip(away / FADES, 0, 1) ** 2
             z = z + throw * side / 2 * share
         return np.round(z, 6)

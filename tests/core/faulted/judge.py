@@ -106,7 +106,10 @@ class Judgement:
         self.case, self.model, self.random = case, model, np.random.default_rng(seed)
         self.count = count
         self.contract = Contract(case, model.structures, model.rock_inputs) if model.structures else None
-        self.parting = [f for f, fault in enumerate(case.faults) if not fault.dies_out]
+        dying = {fault.name for fault in case.faults if fault.dies_out}
+        self.parting = [f for f, fault in enumerate(case.faults) if not dying & {fault.name, *fault.ends_at}]
+        around = [f.name for f in case.faults if f.name not in dying and dying & set(f.ends_at)]
+        self.around = re.compile("|".join(f"(above|below) {name}" for name in around) or "$^")
         self.faces = Faces(model)
         self.rounding = NEAR * np.spacing(np.abs(model.vertices).max())
         first = np.cumsum([0, *(len(rock.surfaces) for rock in case.rocks)])
@@ -218,7 +221,8 @@ class Judgement:
         return str(blocks[block]) if 0 <= block < len(blocks) else {AIR: "air"}.get(block, str(block))
 
     def _sides_of_cells(self, points, rows, rock, of_point):
-        """No cell straddles a fault that acts, and compartments are named by these sides."""
+        """No cell straddles a fault that acts, and compartments are named by these sides. Round a branch of a
+        fault that dies out, past the tip of that one, a cell may reach."""
         failures, seen = [], {}
         for n in np.flatnonzero(of_point >= 0):
             cell = int(of_point[n])
@@ -242,11 +246,19 @@ class Judgement:
             name = ", ".join(words)
             if len(self.case.rocks) > 1:
                 name = f"{mass}: {name}" if name else mass
-            given = self.model.compartment_names[self.model.cell_compartment[cell]]
+            given = self._without_branches(
+                self.model.compartment_names[self.model.cell_compartment[cell]], mass
+            )
             if given != (name or mass) and not self._near(points[at]):
                 place = points[at].tolist()
                 failures.append(f"compartment: cell {cell} is in '{given}', at {place} is '{name or mass}'")
         return failures[:6]
+
+    def _without_branches(self, name, mass):
+        """The name of a compartment without the branches that cells may go round."""
+        first, colon, rest = name.rpartition(": ")
+        words = [word for word in rest.split(", ") if not self.around.fullmatch(word)]
+        return first + colon * bool(words) + ", ".join(words) or mass
 
     def _neighbors(self, face, inner, outer, points):
         """Beside a face are the cells that it names."""

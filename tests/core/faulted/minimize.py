@@ -36,6 +36,7 @@ def _set(of, **values):
 def _pop_surface(case, r, k):
     """Leaves out a surface; what names it names the one before or after."""
     surfaces = case.rocks[r].surfaces
+    case.is_full = case.is_full and 0 < k < len(surfaces) - 1
     gone = surfaces.pop(k).name
     for entry in (*case.faults, *case.bodies):
         key = "youngest" if hasattr(entry, "youngest") else "after"

@@ -77,6 +77,24 @@ def fault_surface(rng, kind, tip=None):
     return vertices, _grid(len(u), len(v), rng), uv
 
 
+def branch_surface(rng, point, normal):
+    """As fault_surface, of a plane that passes the one through a point at right angles to a normal: v is 0
+    where they meet; and the least v above 0 of a line of edges."""
+    strike, dip = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(35, 90))
+    across = np.array([math.sin(dip) * math.cos(strike), math.sin(dip) * math.sin(strike), math.cos(dip)])
+    along = np.cross(across, normal)
+    along /= np.linalg.norm(along)
+    up = np.cross(across, along)
+    origin = np.array([rng.uniform(2.5, 7.5), rng.uniform(2.5, 7.5), rng.uniform(0, 5)])
+    # to the other plane within its own
+    origin = origin + ((point - origin) @ normal / (up @ normal)) * up
+    end = rng.choice([0.01, 0.3, 1.0])
+    u, v = _between(rng, -9, 9, rng.randint(1, 3)), [-FAR, *rng.choice([[], [-6.0], [-7.0, -3.5]]), end, FAR]
+    uv = np.array([(a, b) for a in u for b in v], float)
+    vertices = origin + uv[:, :1] * along + uv[:, 1:] * up
+    return vertices, _grid(len(u), len(v), rng), uv, end
+
+
 def box(low, high):
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
     triangles = [

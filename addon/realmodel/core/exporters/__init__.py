@@ -181,6 +181,13 @@ def format_for(path: str | Path) -> ModelFormat:
     return by_ending(path, FORMATS, "files ending in {} are not supported")
 
 
+def check_tolerance(path: str | Path, tolerance: float | None) -> None:
+    """Raises UsageError where the format is unknown, or has no cells that a tolerance would clean."""
+    known = format_for(path)
+    if tolerance is not None and not known.has_cells:
+        raise UsageError(f"{path}: {known.label} has no polyhedral cells: it takes no tolerance")
+
+
 def output_target(path: str | Path) -> Path:
     """The path, links followed, where an output will stand, of a model or another. Raises OutputFailed."""
     known = FORMATS.get(Path(path).suffix.lower())
@@ -220,12 +227,18 @@ def save_model(
     """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular grids;
     contour_interval: of maps; tolerance: of formats with the model's cells, to clean these. Raises
     UsageError."""
-    known = format_for(path)
-    if tolerance is not None and not known.has_cells:
-        raise UsageError(f"{path}: {known.label} has no polyhedral cells: it takes no tolerance")
+    check_tolerance(path, tolerance)
     cells = None if tolerance is None else model.cleaned_cells(tolerance, threads=model.threads)
     with Outputs() as outputs:
         write_model(model, path, outputs, step, cell_size, contour_interval, cells)
 
 
-__all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]
+__all__ = [
+    "FORMATS",
+    "ModelFormat",
+    "check_tolerance",
+    "format_for",
+    "output_target",
+    "save_model",
+    "write_model",
+]

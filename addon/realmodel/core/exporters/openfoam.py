@@ -72,66 +72,54 @@ def write_openfoam(mesh: PolyhedralMesh, folder: Path, step: Callable[[float], N
         head = _HEADER.format(format="ascii", kind="dictionary", arch="", location="system", name=name)
         (folder / "system" / name).write_text(head + text)
     (folder / f"{folder.stem}.foam").touch()  # what ParaView opens
-    order, turned, inner, patches, starts = _ordered(mesh)
+    order, inner, patches, starts = _ordered(mesh)
     step(0.2)
-    offsets, corners = native_module().ordered_faces(
-        mesh.face_offsets, mesh.face_vertices, order, turned.view(np.uint8)
-    )
+    made = native_module().ordered_faces(mesh.face_offsets, mesh.face_vertices, mesh.face_cells, order)
     step(0.4)
     cells, faces = mesh.cells, len(order)
     note = f"nPoints:{len(mesh.points)}  nCells:{cells}  nFaces:{faces}  nInternalFaces:{inner}"
     note = f'    note        "{note}";\n'
     with _file(poly, "points", "vectorField") as file:
-        _list(file, len(mesh.points), np.ascontiguousarray(mesh.points, "<f8"))
+        _list(file, np.ascontiguousarray(mesh.points, "<f8"))
     with _file(poly, "faces", "faceCompactList") as file:
-        _list(file, faces + 1, offsets.astype("<i4", copy=False))
-        _list(file, len(corners), corners.astype("<i4", copy=False))
+        _list(file, made["offsets"].astype("<i4", copy=False))
+        _list(file, made["vertices"].astype("<i4", copy=False))
     step(0.7)
-    sides = np.where(turned[:, None], mesh.face_cells[order][:, ::-1], mesh.face_cells[order])
     with _file(poly, "owner", "labelList", note) as file:
-        _list(file, faces, sides[:, 0].astype("<i4"))
+        _list(file, made["owner"].astype("<i4", copy=False))
     with _file(poly, "neighbour", "labelList", note) as file:
-        _list(file, inner, sides[:inner, 1].astype("<i4"))
+        _list(file, made["neighbor"][:inner].astype("<i4", copy=False))
     with _file(poly, "boundary", "polyBoundaryMesh", is_binary=False) as file:
         file.write(_boundary(patches, starts).encode())
-    _write_zones(mesh, poly, order, turned)
+    _write_zones(mesh, poly, order, made["turned"])
     step(1.0)
 
 
 def _ordered(mesh: PolyhedralMesh):
     """The faces in OpenFOAM's order: those between cells by the lower cell and then the higher, then the
-    outside patch by patch; which of them are turned over, how many are inner; the patches, and where each
-    begins, and the last ends."""
-    cells = mesh.face_cells
-    is_inner = cells[:, 1] >= 0
-    inner = np.flatnonzero(is_inner)
-    low, high = cells[inner].min(axis=1), cells[inner].max(axis=1)
-    inner = inner[np.argsort(low.astype(np.int64) * mesh.cells + high, kind="stable")]
-    outer = np.flatnonzero(~is_inner)
+    outside patch by patch; how many are inner; the patches, and where each begins, and the last ends."""
+    inner = native_module().inner_faces(mesh.face_cells, mesh.cells)
+    outer = np.flatnonzero(mesh.face_cells[:, 1] < 0)
     patches, number = boundary_patches(
         mesh.face_surface[outer], _rises(mesh, outer), mesh.surface_names, mesh.surface_kind
     )
-    by_patch = np.argsort(number.astype(np.int64) * mesh.cells + cells[outer, 0], kind="stable")
+    by_patch = np.argsort(number.astype(np.int64) * mesh.cells + mesh.face_cells[outer, 0], kind="stable")
     order = np.concatenate([inner, outer[by_patch]])
-    turned = is_inner[order] & (cells[order, 0] > cells[order, 1])
     starts = len(inner) + np.searchsorted(number[by_patch], np.arange(len(patches) + 1))
-    return order, turned, len(inner), patches, starts
+    return order, len(inner), patches, starts
 
 
 def _rises(mesh: PolyhedralMesh, faces: np.ndarray) -> np.ndarray:
     """(N,) the upward parts of the normals of faces, each as long as twice its area."""
-    if not len(faces):
-        return np.zeros(0)
     sizes = np.diff(mesh.face_offsets)[faces]
-    ends = np.cumsum(sizes)
-    first = ends - sizes
-    at = np.repeat(mesh.face_offsets[faces] - first, sizes) + np.arange(ends[-1])
-    corners = mesh.points[mesh.face_vertices[at], :2]
-    corners = corners - corners[np.repeat(first, sizes)]
-    following = np.arange(1, ends[-1] + 1)
-    following[ends - 1] = first
-    x, y = corners.T
-    return np.add.reduceat(x * y[following] - y * x[following], first)
+    rises = np.zeros(len(faces))
+    for size in np.unique(sizes).tolist():
+        own = np.flatnonzero(sizes == size)
+        at = mesh.face_offsets[faces[own], None] + np.arange(size)
+        x, y, _ = mesh.points[mesh.face_vertices[at]].transpose(2, 0, 1)
+        x, y = x - x[:, :1], y - y[:, :1]
+        rises[own] = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+    return rises
 
 
 def _boundary(patches, starts) -> str:
@@ -147,29 +135,38 @@ def _boundary(patches, starts) -> str:
 
 
 def _write_zones(mesh: PolyhedralMesh, poly: Path, order: np.ndarray, turned: np.ndarray) -> None:
-    present = np.flatnonzero(np.bincount(mesh.cell_block, minlength=len(mesh.block_names)))
     names = solver_names(mesh.block_names)
     with _file(poly, "cellZones", "regIOobject") as file:
-        file.write(b"%d\n(\n" % len(present))
-        for block in present.tolist():
+        zones = _zones(mesh.cell_block)
+        file.write(b"%d\n(\n" % len(zones))
+        for block, own in zones:
             file.write(f"{names[block]}\n{{\ntype cellZone;\ncellLabels List<label> ".encode())
-            own = np.flatnonzero(mesh.cell_block == block)
-            _list(file, len(own), own.astype("<i4"))
+            _list(file, own)
             file.write(b";\n}\n")
         file.write(b")\n")
-    surface = mesh.face_surface[order]
-    found = np.unique(surface[surface >= 0])
     names = solver_names(mesh.surface_names)
     with _file(poly, "faceZones", "regIOobject") as file:
-        file.write(b"%d\n(\n" % len(found))
-        for number in found.tolist():
+        zones = _zones(mesh.face_surface[order])
+        file.write(b"%d\n(\n" % len(zones))
+        for number, own in zones:
             file.write(f"{names[number]}\n{{\ntype faceZone;\nfaceLabels List<label> ".encode())
-            own = np.flatnonzero(surface == number)
-            _list(file, len(own), own.astype("<i4"))
+            _list(file, own)
             file.write(b";\nflipMap List<bool> ")
-            _list(file, len(own), turned[own].astype("u1"))
+            _list(file, turned[own])
             file.write(b";\n}\n")
         file.write(b")\n")
+
+
+def _zones(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
+    """Which have each number from 0, ascending, as labels; those of no number below 0 are left out."""
+    with_one = np.flatnonzero(number >= 0)
+    own = number[with_one]
+    # NumPy sorts short numbers by counting
+    short = own.astype(np.uint16) if own.max(initial=0) < 2**16 else own
+    order = np.argsort(short, kind="stable")
+    ends = np.cumsum(np.bincount(own)) if len(own) else np.empty(0, np.int64)
+    parts = np.split(with_one[order].astype("<i4"), ends)
+    return [(k, part) for k, part in enumerate(parts) if len(part)]
 
 
 def _file(folder: Path, name: str, kind: str, note: str = "", is_binary: bool = True) -> BinaryIO:
@@ -180,9 +177,9 @@ def _file(folder: Path, name: str, kind: str, note: str = "", is_binary: bool = 
     return file
 
 
-def _list(file: BinaryIO, count: int, values: np.ndarray) -> None:
-    file.write(b"%d\n" % count)
-    if count:
+def _list(file: BinaryIO, values: np.ndarray) -> None:
+    file.write(b"%d\n" % len(values))
+    if len(values):
         file.write(b"(")
         file.write(values)
         file.write(b")\n")

@@ -26,8 +26,7 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
     cell."""
     cells = CellFaces(mesh)
     count = len(mesh.cell_block)
-    streams = cells.stream_length()
-    faces_size = 8 * int(streams.sum())
+    faces_size = 8 * (count + cells.description_length())
     tags = [  # connectivity is last: its length is found on the way
         ArrayTag("Points", "Points", "f8", mesh.points.nbytes, 3),
         ArrayTag("CellData", "block", "i4", 4 * count),
@@ -45,24 +44,27 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
     write_array(file, mesh.block_property[mesh.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
     write_array(file, np.ascontiguousarray(mesh.cell_compartment, "<i4"))
     write_array(file, np.full(count, _POLYHEDRON, np.uint8))
-    write_array(file, np.cumsum(streams).astype("<i8"))
-    faces_at = file.tell()
+    ends_at = file.tell()
+    faces_at = ends_at + 8 + 8 * count
     offsets_at = faces_at + 8 + faces_size
     corners_at = offsets_at + 8 + 8 * count
+    file.seek(faces_at)
     write_length(file, faces_size)
     faces_at, next_corners_at = faces_at + 8, corners_at + 8
-    corners = np.zeros(count, np.int64)
+    corners, lengths = np.zeros((2, count), np.int64)
     for start in range(0, count, _CELLS_AT_ONCE):
         end = min(count, start + _CELLS_AT_ONCE)
-        stream, vertices, corners[start:end] = cells.described(start, end)
+        stream, vertices, corners[start:end], lengths[start:end] = cells.described(start, end)
         file.seek(faces_at)
         file.write(stream.astype("<i8", copy=False))
         file.seek(next_corners_at)
         file.write(vertices.astype("<i8", copy=False))
         faces_at, next_corners_at = faces_at + stream.nbytes, next_corners_at + vertices.nbytes
         step(end / count)
+    file.seek(ends_at)
+    write_array(file, np.cumsum(lengths).astype("<i8", copy=False))
     file.seek(offsets_at)
-    write_array(file, np.cumsum(corners).astype("<i8"))
+    write_array(file, np.cumsum(corners).astype("<i8", copy=False))
     write_length(file, 8 * int(corners.sum()))
     file.seek(next_corners_at)
     file.write(END)
@@ -70,22 +72,34 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
 
 
 class CellFaces:
-    """The faces of each cell, from the two cells of each face."""
+    """The faces of each cell, from the two cells of each face.
+
+    begin: (C + 1,) int64, where the faces of each cell begin."""
 
     def __init__(self, mesh: PolyhedralMesh):
         self.mesh = mesh
-        self.face_size = np.diff(mesh.face_offsets)
         self.begin, self._sides = native_module().cell_sides(mesh.face_cells, len(mesh.cell_block))
-        self.face, self.turned = self._sides >> 1, (self._sides & 1).astype(bool)
 
-    def stream_length(self) -> np.ndarray:
-        """(C,) how many numbers describe the faces of each cell."""
-        ends = np.concatenate([[0], np.cumsum(self.face_size[self.face] + 1)])
-        return ends[self.begin[1:]] - ends[self.begin[:-1]] + 1
+    @property
+    def face(self) -> np.ndarray:
+        """(N,) int64: the faces of all cells, cell by cell."""
+        return self._sides >> 1
 
-    def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    @property
+    def turned(self) -> np.ndarray:
+        """(N,) bool: whether the cell is the second one of its face."""
+        return (self._sides & 1).astype(bool)
+
+    def description_length(self) -> int:
+        """How many numbers describe the faces of all cells: for each its number of corners and these."""
+        cells = self.mesh.face_cells
+        size = np.diff(self.mesh.face_offsets) + 1
+        return int(size[cells[:, 0] >= 0].sum() + size[cells[:, 1] >= 0].sum())
+
+    def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Of the cells start..end: int64 for each its number of faces, and each face's number of corners and
-        corners; the vertices of each, every one once and in order; and how many these are (a cell)."""
+        corners; the vertices of each, every one once and in order; how many these are (a cell); and how many
+        of the first numbers are of each cell."""
         return native_module().describe_cells(
             self.mesh.face_offsets, self.mesh.face_vertices, self.begin[start : end + 1], self._sides
         )

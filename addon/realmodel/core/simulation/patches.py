@@ -42,18 +42,21 @@ def boundary_patches(
         default=2,
     )
     group = np.where((surface >= 0) & ~is_interface, len(_ROLES) + surface, group)
-    keys, number = np.unique(np.stack([group, surface], axis=1), axis=0, return_inverse=True)
-    groups = [_ROLES[g] if g < len(_ROLES) else surface_names[g - len(_ROLES)] for g in keys[:, 0]]
+    lowest, wide = -3, len(surface_names) + 3
+    key = group * wide + (surface - lowest)
+    is_present = np.bincount(key) > 0
+    number = (np.cumsum(is_present) - 1)[key]
+    present, surfaces = divmod(np.flatnonzero(is_present), wide)
+    surfaces = (surfaces + lowest).tolist()
+    groups = [_ROLES[g] if g < len(_ROLES) else surface_names[g - len(_ROLES)] for g in present]
     named = []
-    for name, on in zip(groups, keys[:, 1].tolist(), strict=True):
+    for name, on in zip(groups, surfaces, strict=True):
         if groups.count(name) > 1:
             name = f"{name}_{surface_names[on]}" if on >= 0 else f"{name}_flat"
         named.append(name)
     names, plain = solver_names(named), dict(zip(groups, solver_names_of(groups), strict=True))
-    patches = [
-        Patch(name, plain[group], int(on)) for name, group, on in zip(names, groups, keys[:, 1], strict=True)
-    ]
-    return patches, number.ravel()
+    patches = [Patch(name, plain[group], on) for name, group, on in zip(names, groups, surfaces, strict=True)]
+    return patches, number
 
 
 def solver_names_of(names: Iterable[str]) -> list[str]:

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..work import Work
 from .rock_structure import RockStructure
-from .sides import sides_of
 
-_DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
+DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 
 
 @dataclass(frozen=True)
@@ -30,24 +28,14 @@ class Family:
     @property
     def dying(self) -> list[int]:
         """The faults that die out here."""
-        return [fault for fault, side in enumerate(self.key) if side == _DIES_OUT]
+        return [fault for fault, side in enumerate(self.key) if side == DIES_OUT]
 
 
 def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:
     """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`."""
     faults = structure.faults
     rows = np.where(faults.active(number), sides, 0)
-    return np.where(np.array(faults.dies_out, bool) & (rows != 0), _DIES_OUT, rows)
-
-
-def are_within(
-    work: Work, entry, number: int, family: Family, points: np.ndarray, threads: int
-) -> np.ndarray:
-    """(N,) bool: the points (N, 3) in the compartments of a family of surface `number` of a RockInput."""
-    rows = sides_of(work, points, entry.structure.faults, threads)
-    keys = keys_of(entry.structure, number, rows)
-    keys[:, list(family.branches)] = _DIES_OUT
-    return (keys == family.key).all(axis=1)
+    return np.where(np.array(faults.dies_out, bool) & (rows != 0), DIES_OUT, rows)
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
@@ -80,7 +68,7 @@ def around_tips(structure: RockStructure, number: int, every: list[Family]) -> l
     )
     found: dict[tuple[int, ...], Family] = {}
     for family in every:
-        key = tuple(_DIES_OUT if fault in branches else side for fault, side in enumerate(family.key))
+        key = tuple(DIES_OUT if fault in branches else side for fault, side in enumerate(family.key))
         together = found.setdefault(key, Family(key, {}, branches, settled))
         for compartment in family.members:
             together.members[compartment] = tuple(

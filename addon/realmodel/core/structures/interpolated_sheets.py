@@ -15,11 +15,12 @@ from ..surface_heights import give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
-from .families import Family, are_within, keys_of
+from .families import Family, keys_of
 from .rock_structure import Triangulation
 from .sides import sides_of
 from .tips import shared, trace_of, with_equal_ends
 from .triangles import edges_of
+from .within import Within
 
 _RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
 
@@ -35,6 +36,7 @@ class InterpolatedSurface:
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         self.sides = sides_of(work, self.points, entry.structure.faults, threads)
         self._leave_out_contradictions()
+        self.counts = self._that_count()
         self.keys = keys_of(entry.structure, number, self.sides)
         self.made: dict[
             int, tuple
@@ -62,6 +64,17 @@ class InterpolatedSurface:
         self.entry.structure.warnings.append((every, warning))
         self.points, self.sides = self.points[~left_out], self.sides[~left_out]
 
+    def _that_count(self) -> np.ndarray:
+        """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
+        if METHODS[self.surface.method_options()[0]].on_mesh:
+            nodes, triangles = self.entry.region
+            level = np.column_stack([nodes, np.zeros(len(nodes))])
+            over = np.isfinite(heights_at(self.work, (level, triangles), self.points[:, :2], self.threads))
+            if over.any():
+                self.data = "points on the mesh"
+                return over
+        return np.ones(len(self.points), bool)
+
     def own(self, family: Family) -> np.ndarray:
         """(P,) bool: the points in its compartments."""
         return (self.keys == family.key).all(axis=1)
@@ -70,7 +83,7 @@ class InterpolatedSurface:
         return int(self.own(family).sum())
 
     def has_data(self, family: Family) -> bool:
-        return not self.surface.needs_points or bool(self.own(family).any())
+        return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
 
     def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
         """The sheet on each side of the faults that die out here, by sides."""
@@ -106,7 +119,7 @@ class InterpolatedSurface:
             for number, side in zip(met, sides, strict=True):
                 whole[number] = side
             visible = own & ~away
-            visible = visible if visible.any() else own
+            visible = visible if (visible & self.counts).any() else own
             sheet = self._interpolated(family, tuple(whole), visible, settled)
             seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
         found = self._with_equal_ends(family, met, seen, told, meshed)
@@ -222,8 +235,8 @@ class InterpolatedSurface:
             return sheet[0][:, 2]
         return heights_at(self.work, sheet, nodes, self.threads)
 
-    def _within(self, family: Family):
-        return lambda points: are_within(self.work, self.entry, self.number, family, points, self.threads)
+    def _within(self, family: Family) -> Within:
+        return Within(self.work, self.entry, self.number, family, self.threads)
 
     def finish(self, sheets: list[Triangulation]) -> None:
         """Puts what interpolating gave into the RockInput: of the compartment with most points, and of the

@@ -8,12 +8,13 @@ import numpy as np
 from ..errors import InputRefused, place_text
 from ..heights import heights
 from ..work import Work
-from .families import Family, are_within
+from .families import Family
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .tips import on_fault, shared, torn_beyond, trace_of, with_equal_ends
 from .triangles import meet, welded
+from .within import Within
 
 
 class ReadyMesh:
@@ -138,8 +139,8 @@ class ReadyMesh:
         equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps, self.threads)
         return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
-    def _within(self, family: Family):
-        return lambda points: are_within(self.work, self.entry, self.number, family, points, self.threads)
+    def _within(self, family: Family) -> Within:
+        return Within(self.work, self.entry, self.number, family, self.threads)
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         """(N,) heights: those that are known, and where they are NaN what the method makes of them."""

@@ -7,12 +7,14 @@ sheets which differ beside the fault; beyond its ends they are made equal, so th
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..work import Work, native_module
+from .between_sheets import torn_triangles
 from .sides import FaultShape, Triangulation, fault_sides
 from .triangles import (
     crossing_pairs,
@@ -23,15 +25,13 @@ from .triangles import (
     segments_hit,
     shares_hit,
 )
+from .within import Within, box_of, middles_of_parts, parts_of_lines
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _TOUCHES, _PASSES = 1, 2
-_SHARES = np.array([0.00001, 0.001, 0.03, *(np.arange(1, 16) / 16), 0.97, 0.999, 0.99999])
-"""Of a line: where it is looked at. Another fault may leave no more than its end."""
-
-Within = Callable[[np.ndarray], np.ndarray]
+_LEAST_MOST = np.minimum, np.maximum
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,13 @@ class Trace:
         return ~self.is_end[nearest(plan, self.points)[0]]
 
 
-def trace_of(work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0) -> Trace:
+def trace_of(
+    work: Work,
+    sheet: Triangulation,
+    fault: FaultShape,
+    within: Callable[[np.ndarray], np.ndarray],
+    threads: int = 0,
+) -> Trace:
     """Where a sheet meets a fault, edge by edge. within: which points (K, 3) lie in the compartment; a fault
     that ends elsewhere does not die out."""
     vertices, triangles = sheet
@@ -198,14 +204,12 @@ def with_equal_ends(
         ]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
-    box = np.array([low[known].min(axis=0, initial=np.inf), high[known].max(axis=0, initial=-np.inf)])
-    continuations = [native_module().structure_continuation(fault.native(), box) for fault in faults]
-    weights = [np.ones(len(plan)) for _ in faults]
+    every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
+    continuations = [_continued(fault, box_of(every)) for fault in faults]
+    drawn = _Drawn(plan, ramps, _sides_of_branches(work, plan, heights, faults, threads))
     while True:
-        found = blended(heights, near, on_side, weights)
-        settled = True
+        found = blended(heights, near, on_side, drawn.weights)
         for number, fault in enumerate(faults):
-            beyond = np.zeros(len(plan), bool)
             for sides, z in found.items():
                 some = doubtful[number]
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
@@ -214,19 +218,100 @@ def with_equal_ends(
                 passes = met == _PASSES
                 divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
                 passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
-                beyond[some[passes]] = True
+                drawn.let_be_equal(number, sides, some[passes])
                 edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
-                beyond[edges[_lie_in(work, fault, sheet[edges], within, threads)]] = True
+                lie_in = _lie_in(work, fault, sheet[edges], continuations[number], within, threads)
+                drawn.let_be_equal(number, sides, edges[lie_in])
                 touched = np.unique(some[met > 0]).astype(np.int32)
                 touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
-                beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
-            if (beyond & (weights[number] > 0)).any():
-                before = weights[number] == 0
-                weights[number] = _weight(plan, beyond | before, ramps[number])
-                settled = False
-        if settled:
+                on = _met(work, fault, sheet, sheet, alone, threads) > 0
+                drawn.let_be_equal(number, sides, touched[on, None])
+        if drawn.is_settled() and not _draw_between(
+            work, plan, triangles, found, faults, continuations, within, near, drawn, threads
+        ):
             return found
+
+
+class _Drawn:
+    """Nodes at which the sheets on both sides of faults are to be equal, and what weight that leaves to the
+    difference around. sides: by the sides of each sheet the side of each branch that its nodes are on."""
+
+    def __init__(self, plan: np.ndarray, ramps: list[float], sides: dict[tuple[int, ...], list]):
+        self.plan, self.ramps, self.sides = plan, ramps, sides
+        self.weights = [np.ones(len(plan)) for _ in ramps]
+        self.equal = [np.zeros(len(plan), bool) for _ in ramps]
+
+    def let_be_equal(self, number: int, sides: tuple[int, ...], nodes: np.ndarray) -> None:
+        """For the sides of one fault, on one sheet, at the nodes (K, 1 to 3) of triangles or edges. A branch
+        that passes them there ends in nothing: its sides are equal, too."""
+        self.equal[number][nodes] = True
+        for branch, side in self.sides[sides]:
+            passed = (side[nodes] != side[nodes[:, :1]]).any(axis=1)
+            self.equal[branch][nodes[passed]] = True
+
+    def is_settled(self) -> bool:
+        """Whether nothing has changed since this was asked."""
+        settled = True
+        for number, (equal, ramp) in enumerate(zip(self.equal, self.ramps, strict=True)):
+            if (equal & (self.weights[number] > 0)).any():
+                self.weights[number] = _weight(self.plan, equal, ramp)
+                settled = False
+        return settled
+
+
+def _sides_of_branches(
+    work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int
+) -> dict[tuple[int, ...], list]:
+    """By the sides of each sheet: (number, sides (N,) of its nodes) of each fault that does not die out."""
+    branches = [number for number, fault in enumerate(faults) if not fault.dies_out]
+    return {
+        sides: [
+            (n, fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads))
+            for n in branches
+        ]
+        for sides, z in heights.items()
+    }
+
+
+def _draw_between(
+    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn, threads: int
+) -> bool:
+    """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
+    neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
+    with_equal_ends has them, changed."""
+    is_torn = False
+    for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
+        for one, other in _pairs(found, number) if fault.dies_out else ():
+            low, high = (np.column_stack([plan, each(found[one], found[other])]) for each in _LEAST_MOST)
+            differ = (low[:, 2] < high[:, 2])[triangles].any(axis=1)
+            some = triangles[differ & np.isfinite(low[:, 2])[triangles].all(axis=1)]
+            low, high = np.nan_to_num(low), np.nan_to_num(high)
+            some = some[_met(work, fault, low, high, some, threads) == _PASSES]
+            if not len(some):
+                continue
+            rest = [n for n in range(len(faults)) if n != number]
+            asked = [(faults[n], one[n] or other[n]) for n in rest]
+
+            def on_sides(points, asked=asked):
+                sides = [fault_sides(work, points, shape, threads) == side for shape, side in asked if side]
+                return np.all(sides, axis=0) if sides else np.ones(len(points), bool)
+
+            torn = some[torn_triangles(plan, some, (found[one], found[other]), others, within, on_sides)]
+            for sides in (one, other):
+                drawn.let_be_equal(number, sides, torn)
+                is_torn = is_torn or not near[sides][torn].all()
+                near[sides][torn] = True
+    return not drawn.is_settled() or is_torn
+
+
+def _pairs(sheets: dict, number: int):
+    """The sides of sheets below and above one fault, which are otherwise alike."""
+    for one, other in itertools.product(sheets, repeat=2):
+        if one[number] == -1 and other[number] == 1:
+            rest = (pair for n, pair in enumerate(zip(one, other, strict=True)) if n != number)
+            if all(a == b or 0 in (a, b) for a, b in rest):
+                yield one, other
 
 
 def _met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
@@ -279,33 +364,49 @@ def torn_beyond(
     np.minimum.at(low, line.ravel(), ends[:, :, 2])
     np.maximum.at(high, line.ravel(), ends[:, :, 2])
     torn = (low < high).any(axis=1)
-    low, high = (_along(np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]])) for z in (low, high))
-    alone = np.repeat(np.arange(len(low), dtype=np.int32)[:, None], 3, axis=1)
-    on = np.all([_met(work, fault, places, places, alone, threads) > 0 for places in (low, high)], axis=0)
+    if not torn.any():
+        return None
+    low, high = (np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]]) for z in (low, high))
+    begin, end = (np.concatenate([low[:, end], high[:, end]]) for end in range(2))
+    box = box_of(low, high)
+    walls = np.concatenate([within.walls(box), _continued(fault, box)])
+    line, share = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
+    low, high = (each[line, 0] + share[:, None] * (each[:, 1] - each[:, 0])[line] for each in (low, high))
+    on = np.all([_met_points(work, fault, places, threads) for places in (low, high)], axis=0)
     middles = (low + high)[on] / 2
     middles = middles[within(middles)]
     return middles[0] if len(middles) else None
 
 
-def _lie_in(work: Work, fault: FaultShape, lines: np.ndarray, within: Within, threads: int) -> np.ndarray:
+def _continued(fault: FaultShape, box: np.ndarray) -> np.ndarray:
+    """(M, 3, 3) the triangles in which a fault goes on beyond its border, through a box (2, 3)."""
+    return native_module().structure_continuation(fault.native(), box).reshape(-1, 3, 3)
+
+
+def _met_points(work: Work, fault: FaultShape, points: np.ndarray, threads: int) -> np.ndarray:
+    """(P,) bool: the points at which a fault would go on beyond its ends."""
+    alone = np.repeat(np.arange(len(points), dtype=np.int32)[:, None], 3, axis=1)
+    return _met(work, fault, points, points, alone, threads) > 0
+
+
+def _lie_in(
+    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: Within, threads: int
+) -> np.ndarray:
     """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
-    beyond its ends."""
-    places = _along(lines)
-    alone = np.repeat(np.arange(len(places), dtype=np.int32)[:, None], 3, axis=1)
-    on = _met(work, fault, places, places, alone, threads) > 0
-    on[on] = within(places[on])
-    return on.reshape(-1, len(_SHARES)).any(axis=1)
-
-
-def _along(lines: np.ndarray) -> np.ndarray:
-    """(L K, 3) some places along each of some lines (K, 2, 3)."""
-    begin, end = lines[:, :1], lines[:, 1:]
-    return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
+    beyond its ends, in the triangles `beyond`."""
+    found = np.zeros(len(lines), bool)
+    if len(lines):
+        walls = np.concatenate([within.walls(box_of(lines)), beyond])
+        line, places = middles_of_parts(lines[:, 0], lines[:, 1], walls)
+        on = _met_points(work, fault, places, threads)
+        on[on] = within(places[on])
+        found[line[on]] = True
+    return found
 
 
 def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
-    """(K,) bool: the triangles (K, 3, 3) of which places where they meet others (M, 3, 3) are in a
-    compartment."""
+    """(K,) bool: the triangles (K, 3, 3) of which a part of the lines where they meet others (M, 3, 3) is in
+    a compartment."""
     pairs = crossing_pairs(corners, others)
     ends = np.full((len(pairs), 6, 3), np.nan)
     one, other = corners[pairs[:, 0]], others[pairs[:, 1]]
@@ -316,13 +417,15 @@ def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.
             share = shares_hit(begin[hit], end[hit], triangle[hit])
             ends[hit, 3 * turn + corner] = begin[hit] + share[:, None] * (end - begin)[hit]
     rows = np.flatnonzero(np.isfinite(ends[:, :, 0]).sum(axis=1) > 1)
+    found = np.zeros(len(corners), bool)
+    if not len(rows):
+        return found
     some = ends[rows]
     at = np.arange(len(rows))
     first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
     last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
-    places = _along(np.stack([first, last], axis=1))
-    found = np.zeros(len(corners), bool)
-    found[pairs[rows[within(places).reshape(-1, len(_SHARES)).any(axis=1)], 0]] = True
+    line, places = middles_of_parts(first, last, within.walls(box_of(first, last)))
+    found[pairs[rows[line[within(places)]], 0]] = True
     return found
 
 

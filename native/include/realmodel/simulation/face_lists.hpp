@@ -2,6 +2,7 @@
 /// Cells and faces in the order in which files of polyhedra want them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -21,6 +22,7 @@ struct CellDescriptions {
     Array<std::int64_t> faces;
     Array<std::int64_t> vertices;  ///< of each cell, every one once, ascending
     Array<std::int64_t> counts;    ///< how many vertices each cell has
+    Array<std::int64_t> lengths;   ///< how many numbers of `faces` describe each cell
 };
 
 /// @param begin  where the sides of each of these cells begin, and the last one's end
@@ -29,15 +31,24 @@ struct CellDescriptions {
 CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::int64_t> begin,
                                 std::span<const std::int64_t> sides);
 
+/// The faces between two cells, by the lower of their cells and then the higher.
+/// @param cells  how many there are
+/// @throws InputError kind bad_index
+Array<std::int64_t> inner_faces(std::span<const std::array<std::int32_t, 2>> face_cells,
+                                std::size_t cells);
+
 struct OrderedFaces {
     Array<std::int32_t> offsets, vertices;
+    Array<std::int32_t> owner, neighbor;  ///< the lower cell, and the higher one; -1: outside
+    Array<std::uint8_t> turned;           ///< whether the loop goes the other way round
 };
 
-/// Some faces in a new order.
-/// @param turned  of each of `order`: whether its loop goes the other way round; the first corner
-/// stays
+/// Some faces in a new order, each seen from its lower cell: those whose first cell is the higher
+/// are turned; their first corner stays.
+/// @param face_cells  both cells of each of `faces`, the second -1 outside
 /// @throws InputError kinds bad_index, too_large
-OrderedFaces ordered_faces(const FaceLoops& faces, std::span<const std::int64_t> order,
-                           std::span<const std::uint8_t> turned);
+OrderedFaces ordered_faces(const FaceLoops& faces,
+                           std::span<const std::array<std::int32_t, 2>> face_cells,
+                           std::span<const std::int64_t> order);
 
 }  // namespace realmodel::simulation

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .erosion import Erosion
+from ..core.erosion import Erosion
 
 _HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
 _HEADINGS_OF_EROSION = ("eroded", "surface eroded")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for simulation that build_model.py writes: --mesh and what goes with it, --cell-tolerance."""
+"""Meshes for simulation as the command line and the panel ask for them, and what is printed of them."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from .exporters.meshes import mesh_target, write_mesh
-from .simulation import CleanedCells, SimulationMesh, mesh_entry
+from ..exporters.meshes import mesh_target, write_mesh
+from .cleaned_cells import CleanedCells
+from .simulation_mesh import SimulationMesh, mesh_entry
 
 EDGES_ACROSS = 50  # of the model, where no edge length is given
 EDGE_OVER_THICKNESS = 10  # where no minimum thickness is given
 
 
 @dataclass(frozen=True)
-class BatchMesh:
+class MeshRequest:
     """What is asked for. edge, thickness: None: by the size of the model, and by the edge length."""
 
     path: Path

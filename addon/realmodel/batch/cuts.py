@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .build import build
-from .errors import InputRefused, UsageError
-from .exporters import format_for, write_model
-from .exporters.sections import section_writer
-from .project_file import load_project
-from .readers import MESH_ENDINGS, read_mesh
-from .readers.text import read_text
+from ..core.build import build
+from ..core.errors import InputRefused, UsageError
+from ..core.exporters import format_for, write_model
+from ..core.exporters.sections import section_writer
+from ..core.project_file import load_project
+from ..core.readers import MESH_ENDINGS, read_mesh
+from ..core.readers.text import read_text
 
 
 @dataclass

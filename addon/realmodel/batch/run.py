@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What build_model.py does: builds what the options ask for, writes it, prints the table."""
+
+import argparse
+import contextlib
+import os
+import sys
+from pathlib import Path
+
+from ..core import (
+    BuildFailed,
+    BuildWarning,
+    OutputFailed,
+    UsageError,
+    build,
+    build_surfaces,
+    estimate,
+    load_project,
+)
+from ..core.atomic import Outputs
+from ..core.exporters import FORMATS, format_for, output_target, write_model
+from ..core.exporters.report import write_report
+from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
+from ..core.rock_input import with_arrays
+from ..core.simulation.mesh_request import MeshRequest, cleaned_line
+from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
+from .cuts import cut_request, fence_request, section_request
+from .interruption import Interruptible, ignore_interruption
+from .table import surface_table, volume_table
+from .terminal import TerminalProgress
+
+
+def run(options: argparse.Namespace) -> None:
+    """Does what the options say. Raises RealModelError; files appear whole or not at all."""
+    requests = _requests(options)
+    mesh_request = _mesh_request(options)
+    targets = _checked_targets(options, requests, mesh_request)
+    project = load_project(options.project)
+    _refuse_overwriting([*project.input_files(), *(f for r in requests for f in r.inputs)], targets)
+    progress = TerminalProgress(sys.stdout, options.quiet)
+    if options.estimate:
+        _estimate(options, project, progress)
+        return
+    if options.surfaces_only:
+        _surfaces_only(options, project, progress)
+        return
+    with Outputs(project.input_files()) as outputs, Interruptible(outputs):
+        try:
+            for request in requests:
+                request.read()
+            model = build(
+                project,
+                cells=options.cells,
+                threads=options.threads,
+                progress=progress,
+                stage=options.stage,
+                memory=options.memory,
+            )
+            validation = _validation(options, model, progress)
+            erosion = _erosion(options, model, progress)
+            mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
+            cells = _cleaned_cells(options, model, progress)
+            _write(options, project, model, outputs, progress, validation, erosion, mesh, cells)
+            if mesh is not None:
+                mesh_request.write(mesh, outputs, project.units, progress)
+            lines = [request.run(model, outputs, options.threads, progress) for request in requests]
+            ignore_interruption()
+        finally:
+            progress.close()
+    if not options.quiet:
+        with contextlib.suppress(BrokenPipeError):  # the outputs are there
+            for made in (model, mesh, cells):
+                for warning in made.warnings if made is not None else ():
+                    print(f"warning: {warning}")
+            if options.check_model:
+                print(f"{validation}\n")
+            print(volume_table(model, erosion))
+            for line in lines:
+                print(line)
+            if mesh is not None:
+                print(mesh_request.line(mesh))
+            if cells is not None:
+                print(cleaned_line(cells))
+            sys.stdout.flush()
+
+
+def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
+    with Outputs() as outputs, Interruptible(outputs):
+        try:
+            surfaces = build_surfaces(project, options.threads, progress, stage=options.stage)
+            for path in options.export:
+                with outputs.file(path) as file:
+                    progress(1.0, f"writing {path.name}")
+                    surface_writer_for(path)(surfaces, file)
+            if options.report is not None:
+                with outputs.file(options.report) as file:
+                    write_surfaces_report(surfaces, file)
+            ignore_interruption()
+        finally:
+            progress.close()
+    if not options.quiet:
+        with contextlib.suppress(BrokenPipeError):
+            for warning in surfaces.warnings:
+                print(f"warning: {warning}")
+            print(surface_table(surfaces), flush=True)
+
+
+def _estimate(options: argparse.Namespace, project, progress) -> None:
+    try:
+        found = estimate(
+            project, cells=options.cells, threads=options.threads, progress=progress, stage=options.stage
+        )
+    finally:
+        progress.close()
+    print(found.table(), flush=True)
+    limit = found.available if options.memory is None else options.memory
+    if found.memory > limit:
+        print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
+
+
+def _erosion(options: argparse.Namespace, model, progress):
+    if not options.eroded:
+        return None
+    return model.eroded(progress=lambda _share, text: progress(1.0, f"what was eroded: {text}"))
+
+
+def _validation(options: argparse.Namespace, model, progress):
+    """The proof of the model, where it is asked for or goes into the report. One that was asked for and
+    failed keeps anything from being written."""
+
+    if not options.check_model and options.report is None:
+        return None
+    report = model.validate(
+        PLACES_OF_CHECK if options.check_model else PLACES_OF_REPORT,
+        threads=options.threads,
+        progress=lambda _share, text: progress(1.0, text),
+    )
+    if report.passed:
+        return report
+    if options.check_model:
+        progress.close()
+        if not options.quiet:
+            print(report, flush=True)
+        raise BuildFailed(
+            f"the model fails its check: {report.failure()}; nothing was written; this is a defect of "
+            "RealModel: please report it with the project"
+        )
+    text = f"the model fails its check: {report.failure()}; the report says more"
+    model.warnings.append(BuildWarning(text, "validation"))
+    return report
+
+
+def _requests(options: argparse.Namespace) -> list:
+    """Sections, fences and cuts, in this order. Raises UsageError."""
+
+    return [
+        *(section_request(text, options.exaggeration) for text in options.section),
+        *(fence_request(text, options.exaggeration) for text in options.fence),
+        *map(cut_request, options.cut),
+    ]
+
+
+def _cleaned_cells(options: argparse.Namespace, model, progress):
+    """The cells that --cell-tolerance asks for, or None."""
+    if options.cell_tolerance is None:
+        return None
+    return model.cleaned_cells(
+        options.cell_tolerance,
+        threads=options.threads,
+        progress=lambda _share, text: progress(1.0, text),
+    )
+
+
+def _mesh_request(options: argparse.Namespace):
+    """What --mesh asks for, or None."""
+
+    if options.mesh is None:
+        return None
+    return MeshRequest(
+        options.mesh,
+        options.mesh_edge,
+        options.mesh_thickness,
+        options.mesh_layers,
+        options.mesh_layer_thickness,
+        options.mesh_elements or "prisms",
+    )
+
+
+def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
+    """Where the outputs will stand; refused before anything is built rather than after."""
+
+    for path in options.export:
+        surface_writer_for(path) if options.surfaces_only else format_for(path)
+    if options.cell_tolerance is not None:
+        able = [known.ending for known in FORMATS.values() if known.has_cells]
+        if not any(path.suffix.lower() in able for path in options.export):
+            raise UsageError(f"--cell-tolerance goes with --export of a file with cells: {', '.join(able)}")
+    paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
+    paths += [path for request in requests for path in request.outputs]
+    targets = [output_target(path) for path in paths]
+    if mesh is not None:
+        paths.append(mesh.path)
+        targets.append(mesh.target())
+    for path, target in zip(paths, targets, strict=True):
+        if targets.count(target) > 1:
+            raise UsageError(f"{path}: two outputs have this name")
+    return targets
+
+
+def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
+    inputs = {Path(os.path.realpath(file)) for file in files}
+    for target in targets:
+        if target in inputs:
+            raise UsageError(f"{target}: this is a file that the project reads; choose another name")
+
+
+def _write(
+    options: argparse.Namespace, project, model, outputs, progress, validation, erosion, mesh, cells
+) -> None:
+    for path in options.export:
+        write_model(
+            model,
+            path,
+            outputs,
+            lambda share, path=path: progress(1.0, f"writing {path.name}"),
+            options.cell_size,
+            options.contour_interval,
+            cells,
+        )
+    if options.blend is not None or options.render is not None:
+        _write_with_blender(options, project, model, outputs, progress)
+    if options.report is not None:
+        with outputs.file(options.report) as file:
+            write_report(model, options.report, file, options.stage, validation, erosion, mesh, cells)
+
+
+def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:
+    from .. import register_for_batch
+    from ..bl import batch
+
+    register_for_batch()
+    progress(1.0, "making the scene")
+    # of a stage the project is another one, as the model has it
+    batch.write_scene(model, with_arrays(project) if options.stage is None else None)
+    if options.blend is not None:
+        with outputs.path(options.blend) as path, _named(path, options.blend):
+            progress(1.0, f"writing {options.blend.name}")
+            batch.save_blend(path)
+    if options.render is not None:
+        with outputs.path(options.render) as path, _named(path, options.render):
+            progress(1.0, f"rendering {options.render.name}")
+            batch.render(path)
+
+
+@contextlib.contextmanager
+def _named(path, target: Path):
+    """What could not be written is named as the user did, not by the place where it is kept meanwhile."""
+
+    try:
+        yield
+    except OutputFailed as error:
+        raise OutputFailed(str(error).replace(str(path), str(target))) from error

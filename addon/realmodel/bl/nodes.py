@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes nodes of a tree, of a material or of geometry, one expression after the other."""
+
+
+class Nodes:
+    """Makes nodes of a tree, in columns by their number."""
+
+    def __init__(self, tree):
+        self.tree = tree
+
+    def new(self, kind):
+        node = self.tree.nodes.new(kind)
+        count = len(self.tree.nodes)
+        node.location = (-220.0 * (count // 5), -240.0 * (count % 5))
+        return node
+
+    def link(self, value, socket):
+        """value: an output, or what an input has without a link."""
+        if isinstance(value, (float, int, tuple)):
+            socket.default_value = value
+        else:
+            self.tree.links.new(value, socket)
+
+    def of(self, kind, output):
+        return self.new(kind).outputs[output]
+
+    def math(self, operation, *values):
+        node = self.new("ShaderNodeMath")
+        node.operation = operation
+        for value, socket in zip(values, node.inputs, strict=False):  # few operations take three
+            self.link(value, socket)
+        return node.outputs[0]
+
+    def vector(self, operation, first, second=None):
+        node = self.new("ShaderNodeVectorMath")
+        node.operation = operation
+        self.link(first, node.inputs[0])
+        if second is not None:
+            self.link(second, node.inputs["Scale" if operation == "SCALE" else 1])
+        return node.outputs[0]
+
+    def about(self, value, strength):
+        """A value from 0 to 1 around 0, times a strength."""
+        return self.math("MULTIPLY", self.math("SUBTRACT", value, 0.5), strength)
+
+    def total(self, values):
+        found = values[0] if values else 0.0
+        for value in values[1:]:
+            found = self.math("ADD", found, value)
+        return found
+
+    def part(self, vector, axis):
+        apart = self.new("ShaderNodeSeparateXYZ")
+        self.link(vector, apart.inputs[0])
+        return apart.outputs[axis]
+
+    def ramp(self, value, low, high, at_low, at_high):
+        """A smooth step."""
+        node = self.new("ShaderNodeMapRange")
+        node.interpolation_type = "SMOOTHSTEP"
+        for socket, given in zip(node.inputs[:5], (value, low, high, at_low, at_high), strict=True):
+            self.link(given, socket)
+        return node.outputs[0]
+
+    def noise(self, place, scale, detail):
+        return self.of_noise(place, scale, detail).outputs[0]
+
+    def of_noise(self, place, scale, detail):
+        node = self.new("ShaderNodeTexNoise")
+        self.link(place, node.inputs["Vector"])
+        node.inputs["Scale"].default_value, node.inputs["Detail"].default_value = scale, detail
+        return node

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weathering for pictures: a modifier of geometry nodes on blocks. Their meshes stay as they are.
+
+Faces that are exposed - ground and walls - are worn: edges round off, soft rock falls back behind hard rock,
+layer by layer, and grass and scree lie on the ground where it is level enough. What the nodes ask for are the
+attributes of blocks (realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same
+hardness meet as before.
+"""
+
+import math
+
+import bpy
+import numpy as np
+
+from ..core.looks import LOOKS
+from . import library_rows, looks, materials, meshes, versions
+from .nodes import Nodes
+
+NAME = "Weathering"
+KEY = "realmodel_weathering"  # on the group: its version; on a material: the cover that it is
+HARDNESS = "realmodel_hardness"  # on a block: the hardness that the library gave its modifier
+_VERSION = 1
+_STEPS = 5  # of smoothing
+_COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
+_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 0.8}  # texture units (looks) at 1
+FINEST = 6
+
+# name: kind of the socket, default, lowest, highest
+_INPUTS = {
+    "Strength": ("NodeSocketFloatDistance", 0.5, 0.0, None),
+    "Edge Rounding": ("NodeSocketFloatFactor", 0.6, 0.0, 1.0),
+    "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6, None),
+    "Bed Thickness": ("NodeSocketFloatDistance", 0.5, 1e-6, None),
+    "Seed": ("NodeSocketInt", 0, 0, None),
+    "Hardness": ("NodeSocketFloatFactor", 0.5, 0.0, 1.0),
+    "Grass Slope": ("NodeSocketFloatAngle", math.radians(28.0), 0.0, math.pi / 2),
+    "Scree Slope": ("NodeSocketFloatAngle", math.radians(40.0), 0.0, math.pi / 2),
+    "Grass": ("NodeSocketMaterial", None, None, None),
+    "Scree": ("NodeSocketMaterial", None, None, None),
+    "Detail": ("NodeSocketInt", 2, 0, FINEST),
+}
+
+
+def hardness_of(row):
+    """From 0 to 1: that of a row of the library, else that of its look."""
+    if row is None:
+        return 0.5
+    return row.hardness or LOOKS[looks.of_row(row) or looks.suiting(row)].hardness
+
+
+def modifier_of(item):
+    """The modifier of a block that weathers it, or None."""
+    found = (m for m in item.modifiers if m.type == "NODES" and m.node_group and KEY in m.node_group)
+    return next(found, None)
+
+
+def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
+    """Weathers blocks, or changes how they are weathered. strength, noise: 1 suits the model. grass, scree:
+    radians, the steepest ground that they lie on, 0: none. detail: how often polygons are divided."""
+    group, unit = _group(), looks.diagonal(scene) / looks.UNITS
+    values = {
+        "Strength": strength * _UNITS["Strength"] * unit,
+        "Edge Rounding": rounding,
+        "Noise Scale": noise * _UNITS["Noise Scale"] * unit,
+        "Bed Thickness": noise * _UNITS["Bed Thickness"] * unit,
+        "Seed": seed,
+        "Grass Slope": grass,
+        "Scree Slope": scree,
+        "Detail": detail,
+        **{name: _cover(name, unit) for name in _COVERS},
+    }
+    for item in items:
+        modifier = modifier_of(item)
+        if modifier is None:
+            modifier = item.modifiers.new(NAME, "NODES")
+            modifier.node_group = group
+            modifier.show_in_editmode = False
+        for name, value in values.items():
+            versions.set_group_input(modifier, name, value)
+        item.pop(HARDNESS, None)
+    follow(scene)
+
+
+def take_off(items):
+    """Leaves blocks as they were built."""
+    for item in items:
+        modifier = modifier_of(item)
+        if modifier is not None:
+            item.modifiers.remove(modifier)
+            item.pop(HARDNESS, None)
+
+
+def follow(scene):
+    """Weathered blocks get the hardness of their properties, where that has changed; what was set by hand in
+    the modifier stays until then."""
+    for block in scene.realmodel.results:
+        item = block.object
+        if item is None or item.library is not None or (modifier := modifier_of(item)) is None:
+            continue
+        hardness = float(np.float32(hardness_of(library_rows.find(scene, block.property_id))))
+        if item.get(HARDNESS) != hardness:
+            versions.set_group_input(modifier, "Hardness", hardness)
+            item[HARDNESS] = hardness
+
+
+def _cover(name, unit):
+    """The material of grass or scree."""
+    known = (m for m in bpy.data.materials if m.get(KEY) == name and m.library is None)
+    material = next(known, None)
+    if material is None:
+        look, color = _COVERS[name]
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        material[KEY] = name
+        materials.set_color(material, color)
+        looks.apply(material, look, 1.0, 0, unit * looks.UNITS)
+    return material
+
+
+def _group():
+    """The node group, of this version of the add-on."""
+    for group in bpy.data.node_groups:
+        if group.get(KEY) == _VERSION and group.library is None:
+            return group
+    group = bpy.data.node_groups.new(NAME, "GeometryNodeTree")
+    try:
+        group[KEY] = _VERSION
+        versions.add_group_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
+        versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
+        for name, (kind, *limits) in _INPUTS.items():
+            versions.add_group_socket(group, name, kind, *limits)
+        _fill(_Nodes(group))
+    except BaseException:
+        bpy.data.node_groups.remove(group)
+        raise
+    return group
+
+
+def _fill(nodes):
+    given = nodes.new("NodeGroupInput").outputs
+    geometry = nodes.to("GeometryNodeSubdivideMesh", given["Geometry"], Level=given["Detail"])
+    is_top = nodes.named("is_top", "BOOLEAN")
+    surface = nodes.named("surface", "INT")
+    exposed = nodes.math("MAXIMUM", is_top, nodes.math("COMPARE", surface, -1.0, 0.5))
+    at_points = nodes.on("FACE", exposed)  # at a point the share of its faces
+    worn = nodes.math("GREATER_THAN", at_points, 0.0)
+    position = nodes.of("GeometryNodeInputPosition", "Position")
+    for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
+        middle = nodes.on("POINT", nodes.on("EDGE", position))
+        shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
+        geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
+    outward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), exposed)
+    outward = nodes.vector("NORMALIZE", nodes.on("FACE", outward))
+    depth = nodes.math("MULTIPLY", _depth(nodes, given, position), given["Strength"])
+    offset = nodes.vector("SCALE", outward, nodes.math("MULTIPLY", depth, -1.0))
+    geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=offset)
+    geometry = _covered(nodes, given, geometry, is_top, position)
+    geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
+    nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
+
+
+def _depth(nodes, given, position):
+    """How much is worn away, about 0 to 2: of soft rock more, and unevenly; by layers on what has bedding."""
+    soft = nodes.math("SUBTRACT", 1.0, given["Hardness"])
+    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
+    shift = nodes.new("ShaderNodeCombineXYZ")
+    for axis, step in enumerate((12.7, 7.3, 31.1)):
+        nodes.link(nodes.math("MULTIPLY", given["Seed"], step), shift.inputs[axis])
+    place = nodes.vector("ADD", place, shift.outputs[0])
+    uneven = nodes.ramp(nodes.noise(place, 1.0, 4.0), 0.25, 0.75, 0.0, 1.0)
+    above = nodes.math("MULTIPLY", nodes.named("height", "FLOAT"), nodes.named("thickness", "FLOAT"))
+    above = nodes.math("DIVIDE", above, given["Bed Thickness"])
+    above = nodes.math("ADD", above, nodes.math("MULTIPLY", nodes.named("age", "FLOAT"), 7.3))
+    beds = nodes.new("ShaderNodeCombineXYZ")
+    nodes.link(nodes.math("ADD", above, shift.outputs[0]), beds.inputs[2])
+    layered = nodes.ramp(nodes.noise(beds.outputs[0], 1.0, 1.0), 0.35, 0.65, 0.0, 1.0)
+    level = nodes.math("MULTIPLY", soft, 1.2)
+    rest = nodes.math("ADD", nodes.math("MULTIPLY", uneven, 0.5), nodes.math("MULTIPLY", layered, 0.4))
+    return nodes.math("ADD", level, nodes.math("MULTIPLY", rest, nodes.math("ADD", soft, 0.35)))
+
+
+def _covered(nodes, given, geometry, is_top, position):
+    """Grass, and scree on steeper ground, with a ragged border."""
+    place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
+    ragged = nodes.about(nodes.noise(place, 1.3, 4.0), 0.5)
+    up = nodes.part(nodes.of("GeometryNodeInputNormal", "Normal"), 2)
+    slope = nodes.math("ADD", nodes.math("ARCCOSINE", up), ragged)
+    for name in ("Scree", "Grass"):
+        steepest = given[f"{name} Slope"]
+        here = nodes.math("MULTIPLY", nodes.math("LESS_THAN", slope, steepest), is_top)
+        here = nodes.math("MULTIPLY", here, nodes.math("GREATER_THAN", steepest, 0.0))
+        geometry = nodes.to("GeometryNodeSetMaterial", geometry, Selection=here, Material=given[name])
+    return geometry
+
+
+class _Nodes(Nodes):
+    """Makes nodes of a geometry node tree."""
+
+    def to(self, kind, geometry, **given):
+        """The geometry that a node makes of another. given: its inputs by their names."""
+        node = self.new(kind)
+        self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
+        for name, value in given.items():
+            self.link(value, node.inputs[name])
+        return next(s for s in node.outputs if s.type == "GEOMETRY")
+
+    def named(self, name, kind):
+        """An attribute of blocks."""
+        node = self.new("GeometryNodeInputNamedAttribute")
+        node.data_type = kind
+        node.inputs["Name"].default_value = meshes.PREFIX + name
+        return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
+
+    def on(self, domain, value):
+        """A number or a vector as a domain has it."""
+        node = self.new("GeometryNodeFieldOnDomain")
+        node.domain = domain
+        node.data_type = "FLOAT_VECTOR" if value.type == "VECTOR" else "FLOAT"
+        kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
+        self.link(value, _of_type(node.inputs, kind))
+        return _of_type(node.outputs, kind)
+
+
+def _of_type(sockets, kind):
+    """The socket of a type: before 5.0 nodes have one for each, of which one is in use."""
+    return next(s for s in sockets if s.type == kind and s.enabled and s.name != "Exists")

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a fault would go on beyond its tip between two sheets: nothing displaces them there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .triangles import crossing_pairs
+from .within import Within, box_of, middles_of_parts
+
+_WIDTH = 1e-9  # of the extent of a sheet: what is narrower lies between them by rounding
+
+
+def torn_triangles(
+    plan: np.ndarray,
+    triangles: np.ndarray,
+    sheets: tuple[np.ndarray, np.ndarray],
+    beyond: np.ndarray,
+    within: Within,
+    also: Callable[[np.ndarray], np.ndarray],
+) -> np.ndarray:
+    """(T,) bool: the triangles over which a part of others, `beyond` (M, 3, 3), lies between two sheets, in a
+    compartment.
+
+    sheets: heights (N,) at the nodes, plan (N, 2). also: what else holds at points (K, 3) where that counts.
+    """
+    found = np.zeros(len(triangles), bool)
+    low, high = (np.column_stack([plan, each(*sheets)])[triangles] for each in (np.minimum, np.maximum))
+    boxes = np.stack([low.min(axis=1), high.max(axis=1), high.max(axis=1)], axis=1)
+    places, owners = [], []
+    for t, m in crossing_pairs(boxes, beyond):
+        node = triangles[t]
+        origin = np.append(plan[node[0]], sheets[0][node[0]])
+        one, other = (np.column_stack([plan[node], z[node]]) - origin for z in sheets)
+        narrow = _WIDTH * float(np.ptp(np.concatenate([one, other]), axis=0).max())
+        for lower, upper in ((one, other), (other, one)):
+            polygon = _part_between(beyond[m] - origin, lower, upper)
+            if not _is_narrow(polygon, narrow):
+                places.append(polygon + origin)
+                owners.append(t)
+    if not places:
+        return found
+    walls = within.walls(box_of(*places))
+    for polygon, t in zip(places, owners, strict=True):
+        if found[t]:
+            continue
+        middle = np.broadcast_to(polygon.mean(axis=0), polygon.shape)
+        begin, end = np.tile(polygon, (2, 1)), np.concatenate([np.roll(polygon, -1, axis=0), middle])
+        _, inner = middles_of_parts(begin, end, walls)
+        found[t] = (within(inner) & also(inner)).any()
+    return found
+
+
+def _part_between(triangle: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """(K, 3) the polygon of a triangle that lies above and below two others with one plan, (3, 3) each."""
+    (ux, uy), (vx, vy) = lower[1, :2] - lower[0, :2], lower[2, :2] - lower[0, :2]
+    turn = np.sign(ux * vy - uy * vx)
+    planes = []
+    for corner in range(3):
+        at, step = lower[corner], lower[(corner + 1) % 3] - lower[corner]
+        planes.append((at, np.array([-turn * step[1], turn * step[0], 0.0])))
+    for facing, sheet in ((1.0, lower), (-1.0, upper)):
+        normal = np.cross(sheet[1] - sheet[0], sheet[2] - sheet[0])
+        planes.append((sheet[0], normal * facing * np.sign(normal[2])))
+    polygon = triangle
+    for at, inward in planes:
+        if not len(polygon):
+            break
+        off = (polygon - at) @ inward
+        after = np.roll(polygon, -1, axis=0)
+        off_after = np.roll(off, -1)
+        crosses = (off < 0) != (off_after < 0)
+        share = off / np.where(crosses, off - off_after, 1.0)
+        crossing = polygon + share[:, None] * (after - polygon)
+        every = np.stack([polygon, crossing], axis=1).reshape(-1, 3)
+        polygon = every[np.column_stack([off >= 0, crosses]).ravel()]
+    return polygon
+
+
+def _is_narrow(polygon: np.ndarray, width: float) -> bool:
+    if len(polygon) < 3:
+        return True
+    spokes = polygon - polygon[0]
+    area = np.linalg.norm(np.cross(spokes[1:-1], spokes[2:]).sum(axis=0))
+    length = np.linalg.norm(polygon - np.roll(polygon, -1, axis=0), axis=1).sum()
+    return bool(area <= width * length)

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How rock looks in rendered pictures: textures, and weathering."""
+
+import math
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from ..bl import library_rows, look_assets, looks, project_settings, settings, weathering
+from ..core import InputRefused
+from .reporting import Reporting, a_library, a_model
+
+
+class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
+    """Give the materials of the library's rocks a look: procedural textures that follow the layers"""
+
+    bl_idname = "realmodel.rock_looks"
+    bl_label = "Rock Looks"
+    needs = (a_library,)
+
+    look: EnumProperty(
+        name="Look",
+        description="How the rocks look in rendered pictures",
+        items=looks.ITEMS,
+    )
+    only_active: BoolProperty(
+        name="Active Only", description="Only the active property of the library; otherwise all"
+    )
+    scale: FloatProperty(
+        name="Scale",
+        description="Size of the texture; 1 suits the model",
+        default=1.0,
+        min=0.001,
+        soft_max=10.0,
+    )
+    seed: IntProperty(name="Seed", description="Another texture of the same kind", min=0)
+
+    def invoke(self, context, _event):
+        return context.window_manager.invoke_props_dialog(self)
+
+    def act(self, context):
+        group = context.scene.realmodel
+        rows = list(group.library)
+        if self.only_active:
+            rows = rows[min(group.active_property, len(rows) - 1) :][:1]
+        if not any(library_rows.scene_materials(context.scene, row.id) for row in rows):
+            raise InputRefused("no block has these properties", advice="build the model first")
+        with settings.filling():
+            for row in rows:
+                row.look, row.look_seed = self.look, self.seed
+                settings.set_number(row, "look_scale", self.scale)
+        looks.follow(context.scene, rows, anew=True)
+
+
+def _blocks(context):
+    """The selected blocks, all where none is selected."""
+    items = [row.object for row in context.scene.realmodel.results if row.object is not None]
+    items = [item for item in items if item.type == "MESH" and item.library is None]
+    selected = set(context.selected_objects)
+    return [item for item in items if item in selected] or items
+
+
+class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
+    """Weather the selected blocks, or all, for pictures: a modifier on top of the exact blocks"""
+
+    bl_idname = "realmodel.weathering"
+    bl_label = "Weathering"
+    needs = (a_model,)
+
+    strength: FloatProperty(
+        name="Strength",
+        description="How much is worn away; 1 suits the model",
+        default=1.0,
+        min=0.0,
+        soft_max=5.0,
+    )
+    rounding: FloatProperty(
+        name="Edge Rounding",
+        description="How round exposed edges are",
+        subtype="FACTOR",
+        default=0.6,
+        min=0.0,
+        max=1.0,
+    )
+    noise_scale: FloatProperty(
+        name="Noise Scale",
+        description="Size of hollows and of eroded beds; 1 suits the model",
+        default=1.0,
+        min=0.001,
+        soft_max=10.0,
+    )
+    seed: IntProperty(name="Seed", description="Other hollows", min=0)
+    grass_slope: FloatProperty(
+        name="Grass Slope",
+        description="The steepest ground that grass grows on; 0: none",
+        subtype="ANGLE",
+        default=math.radians(28.0),
+        min=0.0,
+        max=math.pi / 2,
+    )
+    scree_slope: FloatProperty(
+        name="Scree Slope",
+        description="The steepest ground that scree lies on; 0: none",
+        subtype="ANGLE",
+        default=math.radians(40.0),
+        min=0.0,
+        max=math.pi / 2,
+    )
+    detail: IntProperty(
+        name="Detail",
+        description="How often each polygon is divided: once makes four",
+        default=2,
+        min=0,
+        max=weathering.FINEST,
+    )
+
+    def act(self, context):
+        values = (self.strength, self.rounding, self.noise_scale, self.seed)
+        covers = (self.grass_slope, self.scree_slope)
+        items = _blocks(context)
+        weathering.put_on(context.scene, items, *values, *covers, self.detail)
+        self.report({"INFO"}, f"Weathered {len(items)} blocks; the modifier of each has all settings")
+
+
+class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
+    """Remove the weathering of the selected blocks, or of all"""
+
+    bl_idname = "realmodel.weathering_remove"
+    bl_label = "Remove Weathering"
+    needs = (a_model,)
+
+    def act(self, context):
+        items = [item for item in _blocks(context) if weathering.modifier_of(item) is not None]
+        if not items:
+            raise InputRefused("no block is weathered", advice="use Weathering first, or select other blocks")
+        weathering.take_off(items)
+
+
+class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
+    """Make an asset library of the looks and add it to the preferences: materials to drag onto any object"""
+
+    bl_idname = "realmodel.install_looks"
+    bl_label = "Install Rock Looks"
+    bl_options = {"REGISTER"}
+
+    directory: StringProperty(
+        name="Folder",
+        description="Where the library goes; empty: Blender's folder of the user",
+        subtype="DIR_PATH",
+    )
+
+    def act(self, context):
+        given = self.directory.strip()
+        folder = project_settings.absolute(given) if given else look_assets.default_folder()
+        look_assets.write(folder)
+        look_assets.register(folder)
+        self.report({"INFO"}, f"The asset library '{look_assets.LIBRARY}' is in {folder}")
+
+
+CLASSES = (
+    REALMODEL_OT_rock_looks,
+    REALMODEL_OT_weathering,
+    REALMODEL_OT_weathering_remove,
+    REALMODEL_OT_install_looks,
+)

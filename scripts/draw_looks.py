@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders the rock looks and weathering in background Blender: docs/images/looks.jpg and weathering.jpg, and
+the previews of the asset library.
+
+    build/venv/bin/python scripts/draw_looks.py [LOOK|weathering ...]      (default: all; it needs Pillow)
+
+BLENDER is the Blender that renders (default: blender), or a Python that has the module bpy. With a denoiser,
+which Debian's Blender lacks, pictures have no grain. Each look is drawn on the same block of folded beds, 30
+units wide.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SHEET = ROOT / "docs" / "images" / "looks.jpg"
+PREVIEWS = ROOT / "addon" / "realmodel" / "previews" / "looks.jpg"
+WEATHERED = ROOT / "docs" / "images" / "weathering.jpg"
+PICTURES = ROOT / "build" / "looks"  # one for each
+WEATHERING = "weathering"
+HALF = (560, 440)  # of the pictures before and after
+SIZE = (400, 325)  # of the picture of a look
+SMALL = (320, 260)  # in the sheet
+COLUMNS = 4
+PREVIEW = 128  # pixels: side of a preview
+WIDE = 30.0  # the block
+RAYS, SECONDS = 12, 60.0
+EXPOSURE = 0.2
+INK = (34, 38, 46)
+
+
+def main(names):
+    """Outside Blender: runs this file in it, then puts the pictures together."""
+    sys.path.insert(0, str(ROOT / "addon"))
+    program = os.environ.get("BLENDER", "blender")
+    command = [program, "-b", "--factory-startup", "--python-exit-code", "1", "-P", __file__, "--"]
+    if Path(program).name.startswith("python"):
+        command = [program, __file__, "--"]
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run([*command, str(PICTURES), *names], cwd=ROOT, check=False)
+    if done.returncode == 0:
+        put_together()
+    return done.returncode
+
+
+def pictures_of(names):
+    """The pictures that were drawn, or None where one is missing."""
+    from PIL import Image
+
+    paths = [PICTURES / f"{name}.png" for name in names]
+    return [Image.open(path).convert("RGB") for path in paths] if all(map(Path.is_file, paths)) else None
+
+
+def put_together():
+    """Makes the sheet of looks, the previews, and the pair of pictures of weathering."""
+    from PIL import Image
+    from realmodel.core.looks import LOOKS
+
+    if (pictures := pictures_of(LOOKS)) is not None:
+        make_sheet(pictures, [look.label for look in LOOKS.values()])
+    if (pictures := pictures_of([f"{WEATHERING}_{name}" for name in ("before", "after")])) is not None:
+        pair = Image.new("RGB", (2 * HALF[0], HALF[1]))
+        for number, picture in enumerate(pictures):
+            pair.paste(picture, (number * HALF[0], 0))
+        pair.save(WEATHERED, quality=82, optimize=True)
+
+
+def make_sheet(pictures, labels):
+    from PIL import Image, ImageDraw, ImageFont
+
+    rows = -(-len(pictures) // COLUMNS)
+    sheet = Image.new("RGB", (COLUMNS * SMALL[0], rows * SMALL[1]), "white")
+    pen, font = ImageDraw.Draw(sheet), ImageFont.load_default(17)
+    strip = Image.new("RGB", (PREVIEW * len(pictures), PREVIEW))
+    for number, (picture, label) in enumerate(zip(pictures, labels, strict=True)):
+        at = (number % COLUMNS * SMALL[0], number // COLUMNS * SMALL[1])
+        sheet.paste(picture.resize(SMALL, Image.Resampling.LANCZOS), at)
+        pen.text((at[0] + 12, at[1] + 8), label, INK, font)
+        side, middle = round(0.74 * SIZE[1]), (SIZE[0] // 2, round(0.54 * SIZE[1]))
+        box = (middle[0] - side // 2, middle[1] - side // 2, middle[0] + side // 2, middle[1] + side // 2)
+        strip.paste(
+            picture.crop(box).resize((PREVIEW, PREVIEW), Image.Resampling.LANCZOS), (number * PREVIEW, 0)
+        )
+    place = (len(labels) % COLUMNS * SMALL[0] + 12, (rows - 1) * SMALL[1] + 8)
+    pen.text(place, f"Each block is {WIDE:.0f} m wide,\nat texture scale 1 for 250 m", INK, font)
+    sheet.save(SHEET, quality=78, optimize=True)
+    PREVIEWS.parent.mkdir(exist_ok=True)
+    strip.save(PREVIEWS, quality=82, optimize=True)
+
+
+# -- in Blender
+
+
+def grid(wide, count):
+    """x and y of the vertices of a square mesh, and its triangles."""
+    import numpy as np
+
+    along = np.linspace(0.0, wide, count + 1)
+    x, y = (a.ravel() for a in np.meshgrid(along, along))
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(count), np.arange(count)))
+    a = row * (count + 1) + column
+    lower, upper = np.stack([a, a + 1, a + count + 2], 1), np.stack([a, a + count + 2, a + count + 1], 1)
+    return x, y, np.concatenate([lower, upper])
+
+
+def beds(mesh, heights, ground, properties=None, library=None):
+    """A model of beds worn down to the ground."""
+    import numpy as np
+    from realmodel.core import Project, Rock, Surface, build
+
+    x, y, triangles = mesh
+    surfaces = [
+        Surface(
+            f"S{n}",
+            vertices=np.column_stack([x, y, z]),
+            triangles=triangles,
+            rule="erosional" if z is ground else "conformable",
+            property=0 if properties is None else properties[n],
+        )
+        for n, z in enumerate([*heights, ground])
+    ]
+    return build(Project("beds", rocks=[Rock("rock", surfaces=surfaces)], library=library))
+
+
+def folded_beds():
+    import numpy as np
+
+    x, y, triangles = grid(WIDE, 40)
+    fold = 1.8 * np.sin(2.0 * np.pi * (x + 0.35 * y) / 34.0) + 0.12 * x
+    hill = 14.0 - 0.012 * (x - 11.0) ** 2 - 0.016 * (y - 18.0) ** 2 + 0.5 * np.sin(x / 2.4) * np.cos(y / 3.1)
+    return beds((x, y, triangles), (0.0 * x, 3.0 + fold, 8.0 + 1.2 * fold, 16.0 + 1.2 * fold), hill)
+
+
+def cliff():
+    """Hard and soft beds in a cliff."""
+    import numpy as np
+    from realmodel.core import Library, Property
+
+    rocks = ((1, "Limestone", "#cbbf9f"), (2, "Shale", "#7d7a78"), (3, "Sandstone", "#b98a60"))
+    library = Library([Property(n, name, color=color, look="auto") for n, name, color in rocks])
+    x, y, triangles = grid(40.0, 48)
+    dip = 0.05 * x - 0.02 * y
+    foot = y - 17.0 - 3.0 * np.sin(x / 5.5) - 0.9 * np.sin(x / 1.9)
+    ground = 4.0 + 13.5 / (1.0 + np.exp(-foot / 1.9)) + 0.4 * np.sin(x / 4.0) * np.cos(y / 3.0)
+    tops = np.cumsum([0.0, 4.0, 2.4, 1.6, 3.2, 1.3, 2.2, 6.0])
+    heights = [0.0 * x if n == 0 else z + dip for n, z in enumerate(tops)]
+    return beds((x, y, triangles), heights, ground, [0, 3, 1, 2, 3, 2, 1, 1, 1], library)
+
+
+def set_up(points, azimuth, elevation, size):
+    import bpy
+    import draw_gallery
+    from realmodel.bl import picture
+
+    scene = bpy.context.scene
+    camera = picture.set_up(scene, points, size)
+    draw_gallery.aim(camera, points, size, azimuth, elevation, (0.0, 0.06))
+    picture.set_renderer(scene, "", size, RAYS, SECONDS)
+    scene.view_settings.exposure = EXPOSURE
+
+
+def render(folder, name):
+    import bpy
+
+    bpy.context.scene.render.filepath = str(Path(folder) / f"{name}.png")
+    bpy.ops.render.render(write_still=True)
+
+
+def draw_looks(folder, keys):
+    import bpy
+    import draw_gallery
+    import numpy as np
+    from realmodel.bl import looks, materials, meshes
+    from realmodel.core import polygon_mesh
+    from realmodel.core.looks import LOOKS
+
+    material = materials.new_material("look", 1, "#808080")
+    points = []
+    for shape in polygon_mesh.of_blocks(folded_beds(), (WIDE / 2, WIDE / 2, 0.0)):
+        if shape is not None:
+            mesh = meshes.new_mesh("block", shape)
+            mesh.materials.append(material)
+            draw_gallery.smooth(mesh)
+            bpy.context.scene.collection.objects.link(bpy.data.objects.new("block", mesh))
+            points.append(np.array(shape.coordinates, float))
+    set_up(np.concatenate(points), 145.0, 24.0, SIZE)
+    for key in keys:
+        materials.set_color(material, LOOKS[key].color)
+        looks.apply(material, key, 1.0, 1, looks.UNITS)
+        render(folder, key)
+
+
+def draw_weathering(folder):
+    """The same cliff as it was built, and weathered."""
+    import math
+
+    import bpy
+    import numpy as np
+    from realmodel.bl import built_scene, meshes, weathering
+
+    scene = bpy.context.scene
+    built_scene.write_model(scene, cliff())
+    items = [row.object for row in scene.realmodel.results if row.object is not None]
+    points = np.concatenate([np.array(meshes.mesh_coordinates(item.data), float) for item in items])
+    for item in scene.objects:
+        item.hide_render = item.get("realmodel") == "interface"
+    set_up(points, 150.0, 22.0, HALF)
+    render(folder, "weathering_before")
+    slopes = (math.radians(24.0), math.radians(36.0))
+    weathering.put_on(scene, items, 2.5, 0.6, 2.0, 1, *slopes, 3)
+    render(folder, "weathering_after")
+
+
+def in_blender(folder, *names):
+    import bpy
+
+    sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
+    import realmodel
+    from realmodel.core.looks import LOOKS
+
+    realmodel.register_for_batch()
+    for draw, chosen in (
+        (draw_looks, [key for key in names or LOOKS if key in LOOKS]),
+        (draw_weathering, None),
+    ):
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+        if chosen:
+            draw(folder, chosen)
+        elif chosen is None and (not names or WEATHERING in names):
+            draw(folder)
+    sys.stdout.flush()
+    os._exit(0)  # the module bpy may hang as it ends
+
+
+if __name__ == "__main__":
+    if "--" in sys.argv:
+        in_blender(*sys.argv[sys.argv.index("--") + 1 :])
+    else:
+        sys.exit(main(sys.argv[1:]))

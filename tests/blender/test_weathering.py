@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weathering: a modifier of geometry nodes on blocks, whose meshes stay as they are."""
+
+import math
+
+import bpy
+import numpy as np
+from panel_case import PanelCase, ops, raise_by, select, stack
+from realmodel.bl import meshes, versions, weathering
+
+
+class Weathering(PanelCase):
+    def setUp(self):
+        super().setUp()
+        self.sheets = stack(0.0, 20.0, lambda x, y: 40.0 + 0.1 * x + 0.6 * max(0.0, y - 50.0))
+        self.model.library.clear()
+        for name, rock in (("lower", "shale"), ("upper", "granite")):
+            ops.library_add(name=name)
+            self.model.library[-1].rock = rock
+        for number in (1, 2):
+            self.model.rocks[0].surfaces[number].property_id = self.model.library[number - 1].id
+        ops.build()
+
+    def block(self, number):
+        return bpy.data.objects[f"S{number} block"]
+
+    def evaluated(self, number):
+        """(V, 3) vertices, names of the materials of the polygons, and how each faces up."""
+        bpy.context.view_layer.update()
+        item = self.block(number).evaluated_get(bpy.context.evaluated_depsgraph_get())
+        mesh = item.data
+        slots = [material.name for material in mesh.materials]
+        names = np.array([slots[polygon.material_index] for polygon in mesh.polygons])
+        return meshes.mesh_coordinates(mesh), names, np.array([p.normal.z for p in mesh.polygons])
+
+    def test_the_evaluated_mesh_is_worn_and_the_block_is_not(self):
+        plain = [meshes.mesh_coordinates(self.block(n).data) for n in (1, 2)]
+        volumes = self.volumes()
+        ops.weathering(strength=2.0, detail=3)
+        low = self.evaluated(1)[0]
+        for number in (1, 2):
+            self.assertTrue(
+                np.array_equal(meshes.mesh_coordinates(self.block(number).data), plain[number - 1])
+            )
+            found = self.evaluated(number)[0]
+            self.assertGreater(len(found), 20 * len(plain[number - 1]))
+        self.assertEqual(self.volumes(), volumes)
+        # Walls fall back; the base and the sheet between the blocks stay where they are.
+        self.assertLess(np.ptp(low[:, 0]), np.ptp(plain[0][:, 0]) - 0.5)
+        for level in (plain[0][:, 2].min(), plain[0][:, 2].max()):
+            middle = np.abs(low[:, :2] - plain[0][:, :2].mean(axis=0)).max(axis=1)
+            inside = (middle < 40.0) & (np.abs(low[:, 2] - level) < 1.0)
+            self.assertGreater(np.count_nonzero(inside), 20)
+            self.assertLess(np.abs(low[inside, 2] - level).max(), 1e-3)
+        self.assertFalse(self.block(1).modifiers[0].show_in_editmode)
+        ops.weathering_remove()
+        self.assertEqual(len(self.evaluated(1)[0]), len(plain[0]))
+        self.refused(ops.weathering_remove, "no block is weathered")
+
+    def test_soft_rock_falls_back_behind_hard_rock(self):
+        ops.weathering(strength=3.0, rounding=0.0, detail=3)
+        soft, hard = (np.ptp(self.evaluated(n)[0][:, 0]) for n in (1, 2))
+        self.assertLess(soft, hard - 0.2)
+        self.model.library[0].hardness, self.model.library[1].hardness = 1.0, 0.01
+        soft, hard = (np.ptp(self.evaluated(n)[0][:, 0]) for n in (1, 2))
+        self.assertLess(hard, soft - 0.2)
+
+    def test_grass_on_level_ground_and_scree_on_slopes(self):
+        ops.weathering(strength=0.2, detail=3, grass_slope=math.radians(22.0), scree_slope=math.radians(60.0))
+        _, names, up = self.evaluated(2)
+        self.assertEqual(set(names), {"upper", "Grass", "Scree"})
+        self.assertEqual(set(names[up < 0.2]), {"upper"})
+        self.assertGreater(up[names == "Grass"].mean(), up[names == "Scree"].mean() + 0.05)
+        self.assertEqual(set(self.evaluated(1)[1]), {"lower"})  # which no ground is of
+        ops.weathering(strength=0.2, grass_slope=0.0, scree_slope=0.0)
+        self.assertEqual(set(self.evaluated(2)[1]), {"upper"})
+
+    def test_only_selected_blocks_and_again_changes_them(self):
+        select(self.block(2))
+        ops.weathering(seed=1)
+        self.assertIsNone(weathering.modifier_of(self.block(1)))
+        first = self.evaluated(2)[0]
+        ops.weathering(seed=2)
+        self.assertEqual(len(self.block(2).modifiers), 1)
+        self.assertEqual(len([g for g in bpy.data.node_groups if weathering.KEY in g]), 1)
+        self.assertGreater(np.abs(self.evaluated(2)[0] - first).max(), 0.05)
+
+    def test_builds_files_and_live_editing_keep_it(self):
+        ops.weathering(seed=4)
+        modifier = weathering.modifier_of(self.block(2))
+        versions.set_group_input(modifier, "Hardness", 0.125)  # by hand
+        versions.set_group_input(modifier, "Edge Rounding", 0.25)
+        before = np.ptp(self.evaluated(2)[0][:, 2])
+        raise_by(self.sheets[2], 30.0)
+        ops.build()
+        self.assertGreater(np.ptp(self.evaluated(2)[0][:, 2]), before + 25.0)
+        self.model.live = True
+        raise_by(self.sheets[2], -30.0)
+        self.live_is_done()
+        self.assertAlmostEqual(np.ptp(self.evaluated(2)[0][:, 2]), before, delta=1.0)
+        self.save_and_open()
+        modifier = weathering.modifier_of(self.block(2))
+        found = [versions.group_input(modifier, name) for name in ("Seed", "Hardness", "Edge Rounding")]
+        self.assertEqual(found, [4, 0.125, 0.25])
+        self.assertAlmostEqual(np.ptp(self.evaluated(2)[0][:, 2]), before, delta=1.0)
+
+    def test_one_undo_step(self):
+        bpy.ops.ed.undo_push(message="before")
+        ops.weathering()
+        bpy.ops.ed.undo_push(message="after")
+        bpy.ops.ed.undo()
+        self.assertIsNone(weathering.modifier_of(self.block(1)))

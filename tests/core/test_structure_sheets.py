@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where sheets are looked at beside faults: in every part that other faults leave, however small."""
+
+import numpy as np
+import pytest
+from realmodel.core import Fault, Project, Rock, Surface, build
+from realmodel.core.structures.between_sheets import torn_triangles
+from realmodel.core.structures.tips import _meet_within
+from realmodel.core.structures.within import parts_of_lines
+from structure_cases import plane_fault
+
+
+class Between:
+    """The compartment between two vertical planes across x."""
+
+    def __init__(self, low, high):
+        self.low, self.high = low, high
+
+    def __call__(self, points):
+        return (points[:, 0] > self.low) & (points[:, 0] < self.high)
+
+    def walls(self, box):
+        planes = (plane_fault(x, z=(-50.0, 50.0), y=(-50.0, 50.0)) for x in (self.low, self.high))
+        return np.concatenate([vertices[triangles] for vertices, triangles in planes])
+
+
+LEVEL = np.array([[0.0, 0, 0], [10, 0, 0], [5, 9, 0]])
+
+
+@pytest.mark.parametrize(("low", "high"), [(4.0, 4.0001), (1.23456, 1.2346), (9.99444, 20.0)])
+def test_triangles_meet_in_a_narrow_compartment(low, high):
+    upright = np.array([[[-20.0, 0.01, -30], [40, 0.01, -30], [5, 0.01, 40]]])
+    assert _meet_within(LEVEL[None], upright, Between(low, high)).all()
+    assert not _meet_within(LEVEL[None], upright + np.array([0, 9, 0]), Between(low, high)).any()
+
+
+def test_lines_in_the_plane_of_a_triangle_are_divided_where_they_leave_it():
+    line, share = parts_of_lines(np.array([[-1.0, 3, 0]]), np.array([[11.0, 3, 0]]), LEVEL[None])
+    assert line.tolist() == [0, 0, 0]
+    assert share == pytest.approx([(8 / 3) / 24, 0.5, 1 - (8 / 3) / 24])
+
+
+@pytest.mark.parametrize(("height", "is_torn"), [(1.5, True), (0.5, False), (2.5, False)])
+def test_what_lies_between_two_sheets_tears_them(height, is_torn):
+    nodes, triangles = LEVEL[:, :2], np.array([[0, 1, 2]])
+    level = np.array([[[-20.0, -20, 1.5], [40, -20, 1.5], [5, 60, 1.5]]])
+    level[:, :, 2] = height
+    sheets = np.full(3, 1.0), np.full(3, 2.0)
+
+    def everywhere(points):
+        return np.ones(len(points), bool)
+
+    for pair in (sheets, sheets[::-1]):
+        found = torn_triangles(nodes, triangles, pair, level, Between(5.0, 5.001), everywhere)
+        assert found.tolist() == [is_torn]
+    assert not torn_triangles(nodes, triangles, sheets, level, Between(11.0, 12.0), everywhere).any()
+
+
+def test_points_that_dsi_ignores_are_no_data_of_a_compartment():
+    """Above the fault all points lie outside of the region: the surface goes on as below it."""
+    ring = np.array([[0.0, 0], [10, 0], [10, 4], [6, 4], [6, 10], [0, 10]])
+    points = np.array([[1.0, 1, 0], [4, 8, 1], [3, 2, 0.5], [8, 9, 3], [9, 8, 4]])
+    surface = Surface("S", points=points, method="dsi")
+    rock = Rock("r", [surface], region=[ring], edge_length=3.0, base_elevation=-5.0)
+    vertices, triangles = plane_fault(6.5)
+    model = build(Project("p", [rock], faults=[Fault("F", vertices, triangles)]))
+    assert sorted(model.compartment_names) == ["above F", "below F"]
+    texts = [warning.text for warning in model.warnings]
+    assert any("it has no points on the mesh in compartment" in text for text in texts), texts
