@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, nearest_distance.
+// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, nearest_distance, line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -12,6 +12,7 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/inverse_distance.hpp"
 #include "realmodel/interpolation/kriging.hpp"
+#include "realmodel/interpolation/line_sums.hpp"
 #include "realmodel/interpolation/nearest_distance.hpp"
 #include "realmodel/interpolation/thin_plate.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
@@ -133,6 +134,22 @@ Array<double> nearest_distance(const Array<double>& points, const Array<double>&
     return to_array(std::move(distances));
 }
 
+Array<double> line_sums(const Array<double>& nodes, const Array<double>& directions,
+                        const Array<double>& starts, const Array<double>& values, double step,
+                        int threads, Progress* control) {
+    const auto to = rows<2>(nodes, "nodes");
+    const interpolation::Lines lines{rows<2>(directions, "directions"),
+                                     {starts.data(), static_cast<std::size_t>(starts.size())},
+                                     {values.data(), static_cast<std::size_t>(values.size())},
+                                     step};
+    std::vector<double> sums;
+    {
+        const py::gil_scoped_release unlocked;
+        sums = interpolation::line_sums(to, lines, threads, control);
+    }
+    return to_array(std::move(sums));
+}
+
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
                        bool finds_anisotropy, const std::string& drift, int neighbours, int threads,
                        Progress* control) {
@@ -232,6 +249,17 @@ Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
                R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
 
 Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
+    module.def("line_sums", &line_sums, arg("nodes"), arg("directions"), arg("starts"),
+               arg("values"), arg("step"), arg("threads") = 0, arg("control") = py::none(),
+               R"(Sums of processes on lines, by linear interpolation of their samples.
+
+nodes       (N, 2) float64
+directions  (L, 2) float64: on line l a node p is at p . d
+starts      (L,) float64: where the first sample of each line is
+values      (L, M) float64: samples at equal steps
+step        between samples
+
+Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
                arg("anisotropy_azimuth") = 0.0, arg("finds_anisotropy") = false,
                arg("drift") = "constant", arg("neighbours") = 32, arg("threads") = 0,

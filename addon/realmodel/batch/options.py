@@ -114,6 +114,25 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone, which "
         "models with bodies and inclined faults and halves of cuts need",
     )
+    parser.add_argument(
+        "--ensemble",
+        metavar="N",
+        type=_whole,
+        help="build N realizations on several processes by Dask, and write their volumes to the folder --out",
+    )
+    parser.add_argument("--out", metavar="FOLDER", type=Path, help="the folder of --ensemble")
+    parser.add_argument("--seed", metavar="S", type=_whole, help="of the random numbers (default: 0)")
+    parser.add_argument(
+        "--correlation",
+        metavar="C",
+        type=_correlation,
+        help="of the errors of each surface with those of the next older one, -1 to 1 (default: 0)",
+    )
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="of a running scheduler of Dask (default: the processors of this machine)",
+    )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
     parser.add_argument(
         "--cells",
@@ -186,14 +205,38 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
     outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut", "--mesh")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
+    of_ensemble = ("out", "seed", "correlation", "scheduler")
+    if options.ensemble is None:
+        for name in of_ensemble:
+            if getattr(options, name) is not None:
+                parser.error(f"--{name} goes with --ensemble")
+    elif options.out is None:
+        parser.error("--ensemble needs --out FOLDER")
+    elif IN_BLENDER:
+        parser.error("--ensemble needs plain Python; run it as: python3 build_model.py PROJECT ...")
+    elif others := _set_beside(parser, options, {"ensemble", *of_ensemble, "quiet"}):
+        parser.error(f"--ensemble goes without {', '.join(others)}")
     of_mesh = ("edge", "thickness", "layers", "layer_thickness", "elements")
     for name in of_mesh:
         if getattr(options, f"mesh_{name}") is not None and options.mesh is None:
             parser.error(f"--mesh-{name.replace('_', '-')} goes with --mesh")
 
 
+def _set_beside(parser: argparse.ArgumentParser, options: argparse.Namespace, names: set[str]) -> list[str]:
+    """The options that were given beside those of these names."""
+    return [
+        f"--{name.replace('_', '-')}"
+        for name, value in vars(options).items()
+        if name not in {"project", *names} and value != parser.get_default(name)
+    ]
+
+
 def _length(text: str) -> float:
     return _number(text, lambda value: 0.0 < value < math.inf, "a length above 0")
+
+
+def _correlation(text: str) -> float:
+    return _number(text, lambda value: -1.0 <= value <= 1.0, "a number from -1 to 1")
 
 
 def _gigabytes(text: str) -> int:

@@ -26,7 +26,7 @@ from ..core.simulation.mesh_request import MeshRequest, cleaned_line
 from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from .cuts import cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
-from .table import surface_table, volume_table
+from .table import ensemble_table, surface_table, volume_table
 from .terminal import TerminalProgress
 
 
@@ -43,6 +43,9 @@ def run(options: argparse.Namespace) -> None:
         return
     if options.surfaces_only:
         _surfaces_only(options, project, progress)
+        return
+    if options.ensemble is not None:
+        _ensemble(options, project, progress)
         return
     with Outputs(project.input_files()) as outputs, Interruptible(outputs):
         try:
@@ -116,6 +119,31 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     limit = found.available if options.memory is None else options.memory
     if found.memory > limit:
         print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
+
+
+def _ensemble(options: argparse.Namespace, project, progress) -> None:
+    from ..distributed import ensemble
+    from ..distributed.workers import connected
+
+    client = None if options.scheduler is None else connected(options.scheduler)
+    try:
+        found = ensemble(
+            project,
+            options.ensemble,
+            options.out,
+            options.seed or 0,
+            client,
+            correlation=options.correlation or 0.0,
+            progress=progress,
+        )
+    finally:
+        progress.close()
+        if client is not None:
+            client.close()
+    if not options.quiet:
+        for warning in found.model.warnings:
+            print(f"warning: {warning}")
+        print(ensemble_table(found), flush=True)
 
 
 def _erosion(options: argparse.Namespace, model, progress):

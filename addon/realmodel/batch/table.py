@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.ensembles import PERCENTILES
 from ..core.erosion import Erosion
 
 _HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
@@ -28,12 +29,10 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
         headings = (*headings, _HEADING_OF_BODIES)
     rows = []
     for number, block in reversed(list(enumerate(model.blocks))):
-        entry = library.get(block.property) if library else None
-        name = entry.name if entry else str(block.property) if block.property else "none"
         parts = model.component_volumes[number]
         row = [
             block.name,
-            name,
+            _property(library, block),
             model.project.rocks[block.rock].name,
             _figure(block.volume),
             _share(block.volume, total),
@@ -103,6 +102,38 @@ def surface_table(surfaces) -> str:
     widths = [max(len(row[i]) for row in (_HEADINGS_OF_SURFACES, *rows)) for i in range(len(rows[0]))]
     rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
     return "\n".join([_line(_HEADINGS_OF_SURFACES, widths), rule, *(_line(row, widths) for row in rows)])
+
+
+_HEADINGS_OF_ENSEMBLE = ("block", "property", "rock", "interpolated", "mean", "deviation")
+
+
+def ensemble_table(ensemble) -> str:
+    """A line for each block, youngest first: its volume with the interpolated heights, and of the volumes of
+    all realizations the mean, the standard deviation and percentiles."""
+    headings = (*_HEADINGS_OF_ENSEMBLE, *(f"P{percent}" for percent in PERCENTILES))
+    percentiles = ensemble.percentiles()
+    library = ensemble.model.project.library
+    rows = []
+    for number, block in reversed(list(enumerate(ensemble.model.blocks))):
+        drawn = ensemble.volumes[:, number]
+        deviation = drawn.std(ddof=1) if len(drawn) > 1 else 0.0
+        figures = (block.volume, drawn.mean(), deviation, *percentiles[:, number])
+        rows.append(
+            [
+                block.name,
+                _property(library, block),
+                ensemble.model.project.rocks[block.rock].name,
+                *map(_figure, figures),
+            ]
+        )
+    widths = [max(len(row[i]) for row in (headings, *rows)) for i in range(len(headings))]
+    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
+    return "\n".join([_line(headings, widths), rule, *(_line(row, widths) for row in rows)])
+
+
+def _property(library, block) -> str:
+    entry = library.get(block.property) if library else None
+    return entry.name if entry else str(block.property) if block.property else "none"
 
 
 def _share(part: float, whole: float) -> str:

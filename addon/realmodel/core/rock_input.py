@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from .structures.rock_structure import RockStructure
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work, run
 from .wrong_sides import points_too_low
+
+if TYPE_CHECKING:
+    from .ensembles.draws import Draw
 
 _EDGE_LENGTH_KINDS = (
     "edge_length",
@@ -44,6 +48,7 @@ class RockInput:
     known of its vertices (surface_heights.told_of). warnings: what reading and interpolating
     had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
     structure: the compartments of a rock mass with faults, and their sheets; a surface is all its sheets.
+    draws: how each surface is drawn in a realization of an ensemble; else None.
     """
 
     rock: Rock
@@ -55,6 +60,7 @@ class RockInput:
     whole: RockInput | None = None
     told: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
+    draws: list[Draw] | None = None
 
     def stage(self, m: int) -> RockInput:
         """The same with the surfaces up to m only; the region stays what it was. A surface made from one that

@@ -80,7 +80,8 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
     method, settings = surface.method_options()
     others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
-        result = heights(work, surface.points, nodes, method, settings, threads, triangles, others)
+        give = heights if entry.draws is None else entry.draws[number].heights
+        result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
         shape = where_known(nodes, triangles, result.z)
         told_of_vertices = told_of(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]

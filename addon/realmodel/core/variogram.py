@@ -108,24 +108,24 @@ class Variogram:
         """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
         distance = np.asarray(distance, np.float64)
         gamma = np.full(distance.shape, self.nugget)
-        for part in self._parts():
+        for part in self.parts():
             gamma = gamma + part.sill * _SHAPES[part.model](distance / part.range)
         return np.where(distance > 0, gamma, 0.0)
 
     def settings(self) -> dict:
         """As a project file writes it."""
         if self.structures or self.anisotropy:
-            return {"nugget": self.nugget, "structures": [part.settings() for part in self._parts()]}
+            return {"nugget": self.nugget, "structures": [part.settings() for part in self.parts()]}
         return {"model": self.model, "range": self.range, "sill": self.sill, "nugget": self.nugget}
 
-    def _parts(self) -> tuple[Structure, ...]:
+    def parts(self) -> tuple[Structure, ...]:
         """Those of a sum, or the one there is."""
         own = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
         return self.structures or (own,)
 
     def native(self, anisotropy: dict | None) -> dict:
         """The arguments of the native kriging functions. anisotropy: of parts that have none of their own."""
-        first, *further = self._parts()
+        first, *further = self.parts()
         anisotropy = anisotropy or NO_ANISOTROPY
         own = first.anisotropy or anisotropy
         return {

@@ -33,7 +33,8 @@ class Work:
     def __init__(self):
         self._lock = threading.Lock()
         self._control = None
-        self._start, self._end = 0.0, 1.0
+        self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
+        self._part = 0.0, 1.0
         self._share = 0.0
         self._told = 0.0
         self._text = ""
@@ -49,6 +50,20 @@ class Work:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
         yield
         self.step(1.0)
+
+    @contextmanager
+    def part(self, start: float, end: float):
+        """Phases in here take the progress from `start` to `end` only: what is a job elsewhere, as a part of
+        this one."""
+        before = self._part
+        low, high = before
+        with self._lock:
+            self._part = low + (high - low) * start, low + (high - low) * end
+            self._start, self._end, self._share = 0.0, 1.0, 0.0
+        yield
+        with self._lock:
+            self._part = before
+            self._start, self._end, self._share = start, end, 1.0
 
     @property
     def stretch(self) -> tuple[float, float]:
@@ -92,7 +107,9 @@ class Work:
             share = self._share
             if self._control is not None:
                 share = max(share, self._control.fraction)
-            self._told = max(self._told, self._start + (self._end - self._start) * share)
+            low, high = self._part
+            share = self._start + (self._end - self._start) * share
+            self._told = max(self._told, low + (high - low) * share)
             return self._told, self._text
 
     def cancel(self) -> None:

@@ -115,31 +115,49 @@ class ClosedForm:
         return blocks
 
     def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
-        """The events oldest first, at points of one compartment."""
-        has_base = self.base_elevation is not None
-        state = np.full(len(points), AIR, np.int64)
-        covered = np.zeros(len(points), bool)
-        protected = np.zeros(len(points), bool)
+        """The block at points of one compartment."""
         every = [heights_at(points[:, :2], *sheet, self._grid(sheet)) for sheet in sheets]
         if self.region is None:  # the rock mass reaches as far as its surfaces
             reached = ~np.isnan(every).all(axis=0)
             insides = [inside & reached for inside in insides]
-        for k, (rule, heights) in enumerate(zip(self.rules, every, strict=True)):
-            exists = ~np.isnan(heights)
-            below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
-            if RULES[rule].cuts:
-                state[above & ~protected] = AIR
-            oldest = self.blocks[0] if k == 0 and has_base else _BASEMENT
-            filled = below & (state == AIR)
-            state[filled] = np.where(covered, self.blocks[k], oldest)[filled]
-            covered |= exists
-            if RULES[rule].protects:
-                protected |= below | (exists & (state != AIR))
-            for body, inside in zip(self.bodies, insides, strict=True):
-                if body.after == k:
-                    state[inside & (has_base | (state != _BASEMENT))] = body.block
-        state[state == _BASEMENT] = AIR
-        return state
+        has_base = self.base_elevation is not None
+        return history(points[:, 2], every, self.rules, self.blocks, has_base, self.bodies, insides)
+
+
+def history(
+    z: np.ndarray,
+    heights: Sequence[np.ndarray],
+    rules: Sequence[str],
+    blocks: Sequence[int],
+    has_base: bool,
+    bodies: Sequence[BodyOfRock] = (),
+    insides: Sequence[np.ndarray] = (),
+) -> np.ndarray:
+    """(N,) the block at points, by the events oldest first; AIR for none. Base elevation and region are not
+    looked at.
+
+    z: (N,) of the points. heights: of each surface there (N,), NaN where it does not exist. rules, blocks: of
+    each surface, as ClosedForm. insides: of each body (N,) bool.
+    """
+    state = np.full(len(z), AIR, np.int64)
+    covered = np.zeros(len(z), bool)
+    protected = np.zeros(len(z), bool)
+    for k, (rule, at) in enumerate(zip(rules, heights, strict=True)):
+        exists = ~np.isnan(at)
+        below, above = exists & (z < at), exists & (z > at)
+        if RULES[rule].cuts:
+            state[above & ~protected] = AIR
+        oldest = blocks[0] if k == 0 and has_base else _BASEMENT
+        filled = below & (state == AIR)
+        state[filled] = np.where(covered, blocks[k], oldest)[filled]
+        covered |= exists
+        if RULES[rule].protects:
+            protected |= below | (exists & (state != AIR))
+        for body, inside in zip(bodies, insides, strict=True):
+            if body.after == k:
+                state[inside & (has_base | (state != _BASEMENT))] = body.block
+    state[state == _BASEMENT] = AIR
+    return state
 
 
 def _flat(region: Triangulation) -> Triangulation:

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Heights that points allow, drawn at random: conditional realizations of an interpolated surface.
+
+A field S with the surface's variogram is drawn without regard to the points. The surface's method
+interpolates it from its values at the points. The difference is an error as the method makes it, 0 at the
+points; it is added to the interpolated heights (Chiles and Delfiner 2012, "Geostatistics", section 7.3).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..heights import Interpolation, heights
+from ..heights.from_neighbours import structure
+from ..heights.interpolation import Task
+from ..heights.on_mesh import border_nodes
+from ..heights.surface_reference import heights_of
+from ..methods import SURFACE_OPTIONS, checked_options
+from ..mis_ties import without_mis_ties
+from ..variogram import Variogram
+from ..work import Work
+from .turning_bands import Frame, Noise, gaussian_field
+
+_LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
+_NUGGET = -1  # the part of a noise that is no line
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What does not change from one realization to the next: the interpolated heights, the method and the
+    options that reproduce them, the variogram."""
+
+    result: Interpolation
+    method: str
+    settings: dict
+    variogram: Variogram | None
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A realization of one surface. known: by points and nodes, filled as they come, shared by all
+    realizations of the surface."""
+
+    frame: Frame
+    noise: Noise
+    known: dict[bytes, _Known]
+
+    def heights(
+        self, work: Work, points, nodes, method: str, settings: dict, threads: int, triangles, surfaces
+    ) -> Interpolation:
+        """As heights.heights, with an error drawn at random added; 0 at the points."""
+        own = self._known(work, points, nodes, method, settings, threads, triangles, surfaces)
+        if own.variogram is None:
+            return own.result
+        points, _ = without_mis_ties(points)
+        at_points, at_nodes = self._field(work, own, points[:, :2], nodes, threads)
+        drawn = np.column_stack([points[:, :2], at_points])
+        plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
+        plain = {option: value for option, value in plain.items() if option in own.settings}
+        told = heights(work, drawn, nodes, own.method, plain, threads, triangles)
+        z = own.result.z + (at_nodes - told.z)
+        return replace(own.result, z=_bounded(z, own, work, nodes, threads, triangles, surfaces))
+
+    def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
+        key = hashlib.sha256(np.ascontiguousarray(points)).digest() + hashlib.sha256(nodes).digest()
+        if key in self.known:
+            return self.known[key]
+        result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
+        if result.method != method:
+            settings = {**checked_options(result.method, {}), "extrapolate": settings["extrapolate"]}
+        variogram = result.variogram
+        plain, _ = without_mis_ties(points)
+        if variogram is None and len(np.unique(plain[:, :2], axis=0)) >= _LEAST_POINTS:
+            asked = checked_options("kriging", {})
+            variogram = structure(Task(work, plain, nodes, asked, threads)).variogram
+        if variogram is not None and "variogram" in settings:
+            settings = {**settings, "variogram": variogram.settings(), "neighbours": result.neighbours}
+        if variogram is not None and variogram.sill <= 0:
+            variogram = None
+        self.known[key] = _Known(result, result.method, settings, variogram)
+        return self.known[key]
+
+    def _field(self, work, own: _Known, points, nodes, threads) -> tuple[np.ndarray, np.ndarray]:
+        """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
+        anisotropy = own.settings.get("anisotropy")
+        at_points, at_nodes = (
+            gaussian_field(work, own.variogram, anisotropy, self.frame, places, self.noise, threads)
+            for places in (points, nodes)
+        )
+        if own.variogram.nugget > 0:
+            _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
+            noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
+            noise *= math.sqrt(own.variogram.nugget)
+            of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
+            number = {tuple(point): n for n, point in enumerate(points.tolist())}
+            for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):
+                point = number.get(tuple(nodes[node].tolist()))
+                if point is not None:
+                    of_nodes[node] = of_points[point]
+            at_points += of_points
+            at_nodes += of_nodes
+        return at_points, at_nodes
+
+
+def _bounded(z, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
+    """Heights that keep to the surfaces that the options name, as the interpolated ones do."""
+    settings = own.settings
+    task = Task(work, np.empty((0, 3)), nodes, settings, threads, triangles, surfaces=surfaces or {})
+    for option, limit in (("above", np.fmax), ("below", np.fmin)):
+        if settings.get(option) is not None:
+            bound = heights_of(task, settings[option], nodes, option)
+            z = np.where(np.isnan(z), z, limit(z, bound))
+    if settings.get("border") is not None:
+        border = border_nodes(triangles, len(nodes))
+        z = np.where(border, own.result.z, z)
+    return z

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What many realizations of a model say together: volumes, heights, and which block is where."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..build import build
+from ..errors import UsageError
+from ..model import Model
+from ..project import Project
+from ..work import Cancel, Progress, Work, run
+from .places import blocks_at
+from .realization import Realizer
+
+BATCH = (
+    8  # realizations that are summed before others are added: so sums do not depend on the number of workers
+)
+PERCENTILES = (10, 50, 90)
+
+
+@dataclass
+class Sums:
+    """Of some realizations, in order. volumes: (K, B) float64 of the blocks. heights, squares: for each
+    surface the sum of differences (V,) from its interpolated heights, and of their squares; None where it has
+    no points or a fault displaces it. counts: (N, B) int64: how often each block is at each place."""
+
+    volumes: np.ndarray
+    heights: list[np.ndarray | None]
+    squares: list[np.ndarray | None]
+    counts: np.ndarray
+
+    def plus(self, other: Sums) -> Sums:
+        def sums(own, its):
+            return [None if a is None else a + b for a, b in zip(own, its, strict=True)]
+
+        return Sums(
+            np.concatenate([self.volumes, other.volumes]),
+            sums(self.heights, other.heights),
+            sums(self.squares, other.squares),
+            self.counts + other.counts,
+        )
+
+
+def batches(realizations: int) -> list[range]:
+    """The numbers of the realizations in each batch."""
+    return [range(n, min(n + BATCH, realizations)) for n in range(0, realizations, BATCH)]
+
+
+def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 0) -> Sums:
+    """Those of one realization. places: (N, 3)."""
+    base, model = realizer.model, realizer.realization(number, threads=threads)
+    differences = [
+        None if drawn is None or base.structures is not None else drawn.z - given.z
+        for drawn, given in zip(model.interpolations, base.interpolations, strict=True)
+    ]
+    blocks = blocks_at(model, places, threads)
+    return Sums(
+        np.array([[block.volume for block in model.blocks]]),
+        differences,
+        [None if each is None else each**2 for each in differences],
+        (blocks[:, None] == np.arange(len(model.blocks))).astype(np.int64),
+    )
+
+
+def added(parts: Iterable[Sums]) -> Sums:
+    """The sum of parts, in their order."""
+    return functools.reduce(Sums.plus, parts)
+
+
+@dataclass(eq=False)
+class Ensemble:
+    """Realizations of a model.
+
+    model: with the interpolated heights. volumes: (R, B) float64, of each block in each realization.
+    surface_mean, surface_deviation: for each surface (V,) float64 at its vertices, the mean of the heights
+    and their standard deviation; None for ready meshes and surfaces that faults displace. places: (N, 3).
+    probability: (N, B) float64, of each block at each place.
+    """
+
+    model: Model
+    seed: int
+    correlation: float
+    volumes: np.ndarray
+    surface_mean: list[np.ndarray | None] = field(repr=False)
+    surface_deviation: list[np.ndarray | None] = field(repr=False)
+    places: np.ndarray = field(repr=False)
+    probability: np.ndarray = field(repr=False)
+
+    @classmethod
+    def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
+        count = len(sums.volumes)
+        means, deviations = [], []
+        for given, total, squares in zip(
+            realizer.model.interpolations, sums.heights, sums.squares, strict=True
+        ):
+            if total is None:
+                means.append(None)
+                deviations.append(None)
+                continue
+            means.append(given.z + total / count)
+            rest = np.maximum(squares - total**2 / count, 0.0)
+            deviations.append(np.sqrt(rest / max(1, count - 1)))
+        return cls(
+            realizer.model,
+            realizer.seed,
+            realizer.correlation,
+            sums.volumes,
+            means,
+            deviations,
+            places,
+            sums.counts / count,
+        )
+
+    @property
+    def block_names(self) -> list[str]:
+        return [block.name for block in self.model.blocks]
+
+    def percentiles(self, percent: Iterable[float] = PERCENTILES) -> np.ndarray:
+        """(len(percent), B) float64: volumes that so many percent of the realizations do not exceed."""
+        return np.percentile(self.volumes, list(percent), axis=0)
+
+    def entropy(self) -> np.ndarray:
+        """(N,) float64, bits: how uncertain the block at each place is; 0 where all realizations agree.
+        Outside of all blocks counts as one more (Shannon 1948; Wellmann and Regenauer-Lieb 2012)."""
+        outside = 1.0 - self.probability.sum(axis=1, keepdims=True)
+        every = np.column_stack([self.probability, np.maximum(outside, 0.0)])
+        shares = np.where(every > 0, every, 1.0)
+        return np.abs((shares * np.log2(shares)).sum(axis=1))
+
+
+def ensemble(
+    project: Project,
+    realizations: int = 200,
+    seed: int = 0,
+    *,
+    correlation: float = 0.0,
+    places: np.ndarray | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Ensemble:
+    """Builds a project, and realizations of it: models whose interpolated heights are drawn at random, as
+    the points and each surface's variogram allow. The result depends on the seed alone.
+
+    correlation: of the errors of each surface with those of the next older one, -1 to 1. places: (N, 3)
+    points of which the probability of each block is wanted. Other arguments as `build`.
+    Raises as `build`; UsageError.
+    """
+    check_request(realizations, seed, correlation)
+    points = np.zeros((0, 3)) if places is None else np.asarray(places, np.float64).reshape(-1, 3)
+
+    def task(work: Work) -> Ensemble:
+        steps = np.linspace(0.0, 1.0, realizations + 2)
+        with work.part(*steps[:2]):
+            model = build(project, cells="blocks", threads=threads)
+        realizer = Realizer(model, seed, correlation)
+
+        def one(number: int) -> Sums:
+            with work.part(*steps[number + 1 : number + 3]):
+                return sums_of(realizer, number, points, threads)
+
+        sums = added(added(map(one, numbers)) for numbers in batches(realizations))
+        return Ensemble.of(realizer, sums, points)
+
+    return run(task, progress, cancel)
+
+
+def check_request(realizations: int, seed: int, correlation: float) -> None:
+    """Raises UsageError."""
+    if realizations < 1:
+        raise UsageError(f"an ensemble needs at least one realization, not {realizations}")
+    if seed < 0:
+        raise UsageError(f"the seed must be a whole number from 0, not {seed}")
+    if not -1.0 <= correlation <= 1.0:
+        raise UsageError(f"the correlation must lie between -1 and 1, not {correlation:g}")

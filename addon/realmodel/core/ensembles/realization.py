@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One realization of a model: its surfaces drawn anew, intersected and cut as in every build."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..assembly import assemble, intersect
+from ..model import Model
+from ..rock_input import RockInput, interpolate_rock
+from ..structures.setup import make_structures
+from ..work import Cancel, Progress, Work, run
+from .draws import Draw
+from .turning_bands import Frame, Noise
+
+_INTERPOLATED = 0.5  # of the time
+
+
+@dataclass
+class Realizer:
+    """Makes the realizations of a built model, each from the seed and its number alone.
+
+    model: as `build` gives it. seed: from 0. correlation: of the errors of each surface with those of the
+    next older one of its rock mass, from -1 to 1; exact where both have the same variogram.
+    """
+
+    model: Model
+    seed: int = 0
+    correlation: float = 0.0
+    _known: dict[tuple[int, int], dict] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self):
+        places = [entry.region[0] for entry in self.model.rock_inputs if entry.region is not None]
+        for entry in self.model.rock_inputs:
+            places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
+        places = [each for each in places if len(each)] or [np.zeros((1, 2))]
+        low = np.min([each.min(axis=0) for each in places], axis=0)
+        high = np.max([each.max(axis=0) for each in places], axis=0)
+        self._frame = Frame(low, high)
+
+    def realization(
+        self,
+        number: int,
+        cells: str = "blocks",
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Model:
+        """The model with heights drawn for the number-th time, from 0. Ready meshes, faults and bodies stay.
+
+        Raises InputRefused, BuildFailed, Cancelled.
+        """
+        return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+
+    def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
+        began = time.perf_counter()
+        given = self.model
+        inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(given.rock_inputs)]
+        project = given.project
+        structures = None
+        if given.structures is not None:
+            structures = make_structures(
+                work, project, project.faults, project.bodies, inputs, threads, None, 0.0, _INTERPOLATED
+            )
+        else:
+            steps = np.linspace(0.0, _INTERPOLATED, len(inputs) + 1).tolist()
+            for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
+                interpolate_rock(work, entry, start, end, threads)
+        interpolated = time.perf_counter()
+        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
+        timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
+        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+
+    def _drawn(self, entry: RockInput, rock: int, number: int) -> RockInput:
+        """An entry without heights, whose surfaces will be drawn."""
+        surfaces = entry.rock.surfaces
+        draws, noise = [], None
+        for each in range(len(surfaces)):
+            noise = Noise((self.seed, number, rock, each), noise, self.correlation)
+            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {})))
+        return replace(
+            entry,
+            surfaces=[
+                None if surface.interpolated else shape
+                for surface, shape in zip(surfaces, entry.surfaces, strict=True)
+            ],
+            interpolations=[None] * len(surfaces),
+            warnings=[],
+            told={},
+            structure=None,
+            draws=draws,
+        )

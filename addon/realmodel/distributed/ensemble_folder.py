@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An ensemble in a folder: batches of realizations by workers, resumed where a run ended, and the result."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from ..core import OutputFailed, UsageError, build
+from ..core.ensembles import Ensemble, Realizer
+from ..core.ensembles.ensemble import Sums, added, batches, check_request, sums_of
+from ..core.ensembles.files import write_ensemble
+from .workers import client_of, in_any_order
+
+_BATCHES = "batches"
+_BUILT = 0.05  # of the time: the model that all realizations start from
+
+
+def ensemble(
+    project,
+    realizations: int,
+    folder: str | Path,
+    seed: int = 0,
+    client=None,
+    *,
+    correlation: float = 0.0,
+    places: np.ndarray | None = None,
+    progress=None,
+    cancel=None,
+) -> Ensemble:
+    """As core.ensembles.ensemble, by workers of Dask, with the result in a folder: `ensemble.json`,
+    `volumes.csv` and `ensemble.npz` (docs/reference/output_files.md).
+
+    client: of distributed; None: a LocalCluster with a process for each processor. A run that was stopped
+    goes on where it was when it is started again with the same project, seed, correlation and places; the
+    number of realizations may be larger. The result is the same for any number of workers.
+
+    Raises as core.ensembles.ensemble; UsageError where Dask is missing or the folder holds another ensemble;
+    OutputFailed.
+    """
+    check_request(realizations, seed, correlation)
+    points = np.zeros((0, 3)) if places is None else np.asarray(places, np.float64).reshape(-1, 3)
+    told = progress or (lambda _share, _text: None)
+    model = build(
+        project,
+        cells="blocks",
+        progress=lambda share, text: told(_BUILT * share, text),
+        cancel=cancel,
+    )
+    realizer = Realizer(model, seed, correlation)
+    store = _Store(Path(folder), _digest(realizer, points))
+    todo = [numbers for numbers in batches(realizations) if not store.has(numbers)]
+    done = realizations - sum(map(len, todo))
+    if todo:
+        with client_of(client) as workers:
+            for numbers, sums in in_any_order(workers, _batch, (realizer, points), todo, cancel):
+                store.put(numbers, sums)
+                done += len(numbers)
+                told(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")
+    found = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
+    write_ensemble(found, folder)
+    store.remove()
+    return found
+
+
+def _batch(shared: tuple[Realizer, np.ndarray], numbers: range) -> Sums:
+    realizer, points = shared
+    return added(sums_of(realizer, number, points, threads=1) for number in numbers)
+
+
+def _digest(realizer: Realizer, points: np.ndarray) -> str:
+    """Of all that the sums of a batch depend on."""
+    digest = hashlib.sha256(repr((realizer.seed, realizer.correlation)).encode())
+    model = realizer.model
+    digest.update(np.ascontiguousarray(points))
+    for array in (model.surface_vertices, model.surface_triangles, model.vertices, model.face_vertices):
+        digest.update(np.ascontiguousarray(array))
+    for entry in model.rock_inputs:
+        for surface in entry.rock.surfaces:
+            digest.update(repr((surface.name, surface.rule, surface.method, surface.options)).encode())
+            if surface.points is not None:
+                digest.update(np.ascontiguousarray(surface.points))
+    return digest.hexdigest()
+
+
+class _Store:
+    """The sums of batches in a folder, each file whole or not there."""
+
+    def __init__(self, folder: Path, digest: str):
+        self._folder = folder / _BATCHES
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            of = self._folder / "digest"
+            if of.exists() and of.read_text() != digest:
+                raise UsageError(
+                    f"{folder}: it holds an unfinished ensemble of another project, seed or correlation; "
+                    "choose another folder, or delete this one"
+                )
+            of.write_text(digest)
+        except OSError as error:
+            raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+    def _file(self, numbers: range) -> Path:
+        return self._folder / f"{numbers.start:06d}-{numbers.stop:06d}.npz"
+
+    def has(self, numbers: range) -> bool:
+        return self._file(numbers).exists()
+
+    def put(self, numbers: range, sums: Sums) -> None:
+        arrays = {"volumes": sums.volumes, "counts": sums.counts}
+        for name, values in (("heights", sums.heights), ("squares", sums.squares)):
+            arrays |= {f"{name}_{k}": each for k, each in enumerate(values) if each is not None}
+        file = self._file(numbers)
+        part = file.with_suffix(".part")
+        try:
+            with part.open("wb") as out:
+                np.savez(out, surfaces=len(sums.heights), **arrays)
+                out.flush()
+                os.fsync(out.fileno())
+            part.replace(file)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise OutputFailed(f"{file}: {error.strerror or error}") from error
+
+    def get(self, numbers: range) -> Sums:
+        file = self._file(numbers)
+        try:
+            with np.load(file) as arrays:
+                surfaces = range(int(arrays["surfaces"]))
+                heights, squares = (
+                    [arrays[f"{name}_{k}"] if f"{name}_{k}" in arrays else None for k in surfaces]
+                    for name in ("heights", "squares")
+                )
+                return Sums(arrays["volumes"], heights, squares, arrays["counts"])
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+            raise OutputFailed(f"{file}: it cannot be read; delete it and start again") from error
+
+    def remove(self) -> None:
+        shutil.rmtree(self._folder, ignore_errors=True)

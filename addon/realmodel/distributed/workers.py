@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tasks on the workers of Dask, or one after another in this process."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+from ..core import Cancelled, UsageError
+
+_POLL_SECONDS = 0.2
+_RETRIES = 3  # of a task whose worker was lost
+
+
+def connected(address: str):
+    """The client of a running scheduler. Raises UsageError."""
+    distributed = _distributed()
+    try:
+        return distributed.Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"no scheduler of Dask answers at {address}") from error
+
+
+@contextlib.contextmanager
+def client_of(given):
+    """`given`, or a client of processes of this machine, one for each processor, which end with it."""
+    if given is not None:
+        yield given
+        return
+    distributed = _distributed()
+    with (
+        distributed.LocalCluster(
+            n_workers=os.cpu_count(), threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+def in_any_order(client, function: Callable, shared, tasks: Sequence, cancel=None) -> Iterator[tuple]:
+    """(task, function(shared, task)) of each task, as they are done. `shared` goes to each worker once.
+
+    Raises what a task raises, and Cancelled; the other tasks are then given up.
+    """
+    distributed = _distributed()
+    everywhere = client.scatter(shared, broadcast=True, hash=False)
+    waiting = {
+        client.submit(function, everywhere, task, pure=False, retries=_RETRIES): task for task in tasks
+    }
+    try:
+        while waiting:
+            if cancel is not None and cancel():
+                raise Cancelled("cancelled")
+            done = [future for future in waiting if future.done()]
+            if not done:
+                time.sleep(_POLL_SECONDS)
+            for future in done:
+                task = waiting.pop(future)
+                yield task, _result(distributed, future)
+    finally:
+        client.cancel(list(waiting))
+
+
+def _result(distributed, future):
+    try:
+        return future.result()
+    except distributed.KilledWorker as error:
+        text = f"workers were lost {_RETRIES + 1} times at the same task: they may lack memory"
+        raise UsageError(text) from error
+
+
+def _distributed():
+    try:
+        import distributed
+    except ImportError as error:
+        text = 'this needs Dask, which is not installed: pip install "dask[distributed]"'
+        raise UsageError(text) from error
+    return distributed

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ensembles on workers of Dask: the same result as in one process, resumed, in spite of killed workers."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
+from realmodel.core import ensembles as core_ensembles
+
+ROOT = Path(__file__).resolve().parents[2]
+PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
+
+distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+
+
+@pytest.fixture(scope="module")
+def client():
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as made,
+    ):
+        yield made
+
+
+def run(folder, client, realizations=12, seed=3, **options):
+    from realmodel.distributed import ensemble
+
+    return ensemble(load_project(PROJECT), realizations, folder, seed, client, **options)
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """The same ensemble in this process."""
+    places = np.random.default_rng(0).uniform([0, 0, -20], [100, 50, 60], (50, 3))
+    return core_ensembles.ensemble(load_project(PROJECT), 20, 3, places=places)
+
+
+def assert_same(found, expected):
+    assert np.array_equal(found.volumes, expected.volumes)
+    assert np.array_equal(found.probability, expected.probability)
+    for name in ("surface_mean", "surface_deviation"):
+        for one, other in zip(getattr(found, name), getattr(expected, name), strict=True):
+            assert np.array_equal(one, other)
+
+
+def test_the_same_as_in_one_process(client, alone, tmp_path):
+    folder = tmp_path / "e"
+    found = run(folder, client, 20, places=alone.places)
+    assert_same(found, alone)
+    assert sorted(path.name for path in folder.iterdir()) == ["ensemble.json", "ensemble.npz", "volumes.csv"]
+    report = json.loads((folder / "ensemble.json").read_text())
+    assert report["realizations"] == 20 and report["seed"] == 3
+    assert [block["name"] for block in report["blocks"]] == ["Clay", "Sand"]
+    assert report["blocks"][0]["p50"] == np.percentile(alone.volumes[:, 0], 50)
+    assert sum(report["blocks"][1]["histogram"]["counts"]) == 20
+    rows = list(csv.reader((folder / "volumes.csv").read_text().splitlines()))
+    assert rows[0] == ["realization", "Clay", "Sand"]
+    assert np.array_equal(np.array(rows[1:], float)[:, 1:], alone.volumes)
+    with np.load(folder / "ensemble.npz") as arrays:
+        assert np.array_equal(arrays["probability"], alone.probability)
+        assert np.array_equal(arrays["surface_deviation_1"], alone.surface_deviation[1])
+
+
+def test_a_stopped_run_goes_on(client, alone, tmp_path):
+    """The second run does only what the first has not done."""
+    files = []
+
+    def stop():
+        files[:] = list(tmp_path.glob("batches/*.npz"))
+        return bool(files)
+
+    with pytest.raises(Cancelled):
+        run(tmp_path, client, 20, places=alone.places, cancel=stop)
+    assert not (tmp_path / "ensemble.json").exists()
+    before = {file: file.stat().st_mtime_ns for file in tmp_path.glob("batches/*.npz")}
+    assert before
+    kept = []
+
+    def watch(_share, _text):
+        kept[:] = [file for file in before if file.exists() and file.stat().st_mtime_ns == before[file]]
+
+    found = run(tmp_path, client, 20, places=alone.places, progress=watch)
+    assert len(kept) == len(before)
+    assert_same(found, alone)
+
+
+def test_the_folder_of_another_ensemble_is_refused(client, tmp_path):
+    with pytest.raises(Cancelled):
+        run(tmp_path, client, cancel=lambda: bool(list(tmp_path.glob("batches/*.npz"))))
+    with pytest.raises(UsageError, match="another project, seed or correlation"):
+        run(tmp_path, client, seed=4)
+
+
+def test_a_folder_that_cannot_be(client, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputFailed):
+        run(tmp_path / "file", client)
+
+
+def test_a_killed_worker_does_not_stop_it(client, alone, tmp_path):
+    killed = []
+
+    def kill():
+        while not list(tmp_path.glob("batches/*.npz")):
+            time.sleep(0.02)
+        pids = client.run(os.getpid)
+        killed.append(next(iter(pids.values())))
+        os.kill(killed[0], signal.SIGKILL)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    found = run(tmp_path, client, 20, places=alone.places)
+    thread.join()
+    assert killed
+    assert_same(found, alone)
+
+
+def batch(*arguments, cwd=None):
+    command = [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+
+
+def test_the_command_line(client, tmp_path):
+    address = client.scheduler.address
+    done = batch("--ensemble", 3, "--out", tmp_path / "e", "--scheduler", address, "--seed", 5)
+    assert done.returncode == 0, done.stderr
+    assert "interpolated" in done.stdout and "P90" in done.stdout and "Sand" in done.stdout
+    report = json.loads((tmp_path / "e" / "ensemble.json").read_text())
+    assert report["realizations"] == 3 and report["seed"] == 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--ensemble", 3], "--ensemble needs --out"),
+        (["--out", "e"], "--out goes with --ensemble"),
+        (["--ensemble", 3, "--out", "e", "--export", "m.npz"], "--ensemble goes without --export"),
+        (["--ensemble", 3, "--out", "e", "--correlation", 2], "from -1 to 1"),
+        (["--ensemble", 0, "--out", "e"], "at least one realization"),
+    ],
+)
+def test_wrong_usage(arguments, said, tmp_path):
+    done = batch(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_scheduler_that_does_not_answer(monkeypatch):
+    from realmodel.distributed import workers
+
+    with pytest.raises(UsageError, match="no scheduler"):
+        workers.connected("nowhere")
+
+
+def test_without_dask(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError, match="pip install"):
+        run(tmp_path, None)

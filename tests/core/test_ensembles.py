@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Realizations of a model: they honor the data, spread as kriging says, and depend on the seed alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dense_kriging import semivariance
+from realmodel.core import Project, Rock, Surface, UsageError, build
+from realmodel.core.ensembles import Ensemble, Realizer, blocks_at, ensemble
+from realmodel.core.ensembles.ensemble import Sums, added
+from realmodel.core.ensembles.turning_bands import Frame, Noise, gaussian_field
+from realmodel.core.project import Fault
+from realmodel.core.variogram import VARIOGRAMS, Structure, Variogram
+from realmodel.core.work import Work
+from structure_cases import plane_fault
+
+SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
+POINTS = np.random.default_rng(3).uniform([2, 2, 8], [98, 98, 12], (12, 3))
+KRIGING = {"variogram": {"model": "spherical", "range": 60.0, "sill": 4.0, "nugget": 0.0}, "neighbours": 0}
+
+
+def project(points=POINTS, method="kriging", options=KRIGING, edge=8.0, **keys):
+    """A block between a level base and one interpolated surface, on a square of 100 x 100."""
+    top = Surface("Top", points=points, method=method, options=dict(options))
+    return Project("one", [Rock("rock", [top], region=SQUARE, edge_length=edge, base_elevation=0.0)], **keys)
+
+
+def drawn(variogram, nodes, seed=1, anisotropy=None, older=None, correlation=0.0):
+    noise = Noise((seed,), older, correlation)
+    frame = Frame(np.array([0.0, 0.0]), np.array([1000.0, 1000.0]))
+    return gaussian_field(Work(), variogram, anisotropy, frame, nodes, noise, 0)
+
+
+@pytest.mark.parametrize("model", VARIOGRAMS)
+def test_fields_have_the_variogram(model):
+    """Pairs all over an area of many ranges, along and across the long axis of an anisotropy."""
+    variogram = Variogram(model, 20.0, 3.0)
+    base = np.random.default_rng(0).uniform(0, 900, (4000, 2))
+    steps = [(0, 0), (0, 4), (0, 10), (0, 30), (5, 0), (15, 0)]
+    nodes = np.concatenate([base + step for step in steps])
+    fields = drawn(variogram, nodes, anisotropy={"ratio": 2.0, "azimuth": 0.0}).reshape(len(steps), -1)
+    assert abs(fields[0].mean()) < 0.15
+    assert fields.var() == pytest.approx(3.0, rel=0.06)
+    found = ((fields[1:] - fields[0]) ** 2).mean(axis=1) / 2
+    expected = variogram.semivariance(np.array([4, 10, 30, 10, 30]))
+    assert found == pytest.approx(expected, rel=0.08, abs=0.02)
+
+
+def test_parts_of_a_nested_variogram_add_up():
+    parts = (Structure("spherical", 15.0, 1.0), Structure("cubic", 60.0, 2.0))
+    nodes = np.random.default_rng(0).uniform(0, 1000, (6000, 2))
+    field = drawn(Variogram("nested", 60.0, 3.5, 0.5, parts), nodes)
+    assert field.var() == pytest.approx(3.0, rel=0.15)  # the nugget is not in it
+
+
+@pytest.mark.parametrize("correlation", [-0.5, 0.8])
+def test_fields_are_correlated_as_their_noises(correlation):
+    variogram = Variogram("exponential", 20.0, 3.0)
+    nodes = np.random.default_rng(0).uniform(0, 1000, (6000, 2))
+    first = drawn(variogram, nodes, 1)
+    second = drawn(variogram, nodes, 2, older=Noise((1,)), correlation=correlation)
+    assert np.corrcoef(first, second)[0, 1] == pytest.approx(correlation, abs=0.05)
+    assert second.var() == pytest.approx(3.0, rel=0.08)
+    assert abs(np.corrcoef(first, drawn(variogram, nodes, 2))[0, 1]) < 0.05
+
+
+def heights(model, number=0):
+    return model.interpolations[number].z
+
+
+def errors(base, count, **options):
+    """(count, N): by how much the heights of realizations differ from the interpolated ones."""
+    realizer = Realizer(base, **options)
+    return np.array([heights(realizer.realization(n, threads=1)) - heights(base) for n in range(count)])
+
+
+@pytest.mark.parametrize("nugget", [0.0, 1.0])
+def test_realizations_spread_as_kriging_says(nugget):
+    variogram = {**KRIGING["variogram"], "nugget": nugget}
+    base = build(project(options={**KRIGING, "variogram": variogram}, edge=14.0), cells="blocks")
+    found = errors(base, 120)
+    expected = base.interpolations[0].variance
+    assert (found**2).mean() == pytest.approx(expected.mean(), rel=0.1)
+    kept = expected > 0.2 * expected.max()
+    assert (found**2).mean(axis=0)[kept] == pytest.approx(expected[kept], rel=0.6)
+
+
+def test_the_volume_spreads_as_the_covariances_say():
+    """The volume is a weighted sum of heights, whose covariance given the points is known."""
+    base = build(project(), cells="blocks")
+    nodes, triangles = base.rock_inputs[0].region
+    corners = nodes[triangles]
+    sides = corners[:, 1:] - corners[:, :1]
+    area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]) / 2
+    weights = np.zeros(len(nodes))
+    np.add.at(weights, triangles, area[:, None] / 3)
+    one = np.ones((1, len(POINTS)))
+    variogram = KRIGING["variogram"]
+    left = np.block([[-semivariance(POINTS, POINTS, variogram), one.T], [one, np.zeros((1, 1))]])
+    right = np.vstack([-semivariance(POINTS, nodes, variogram), np.ones((1, len(nodes)))])
+    given = np.linalg.solve(left, right)
+    covariance = -semivariance(nodes, nodes, variogram) - right.T @ given
+    expected = weights @ covariance @ weights
+    realizer = Realizer(base)
+    volumes = [realizer.realization(n, threads=1).blocks[0].volume for n in range(150)]
+    assert np.var(volumes) == pytest.approx(expected, rel=0.3)
+    assert np.mean(volumes) == pytest.approx(base.blocks[0].volume, abs=4 * np.sqrt(expected / 150))
+
+
+METHODS = {
+    "kriging": {"variogram": {**KRIGING["variogram"], "nugget": 1.0}},
+    "universal_kriging": {},
+    "idw": {},
+    "natural_neighbour": {"extrapolate": "nearest"},
+    "dsi": {},
+    "spline": {},
+    "auto": {},
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_data_are_honored(method):
+    """Nodes that lie on points: the planar mesh contains them."""
+    given = project(method=method, options=METHODS[method])
+    rock = replace(given.rocks[0], constraints=POINTS[:, :2].tolist())
+    base = build(replace(given, rocks=[rock]), cells="blocks")
+    nodes = base.rock_inputs[0].region[0]
+    at = [int(np.flatnonzero((nodes == point).all(axis=1))[0]) for point in POINTS[:, :2]]
+    found = errors(base, 3)
+    assert np.abs(found[:, at]).max() < 1e-6
+    assert np.abs(found).max() > 0.1
+    assert base.interpolations[0].method != "auto"
+
+
+def test_bounds_of_dsi_hold():
+    lower = Surface("Lower", points=POINTS, method="kriging", options=dict(KRIGING))
+    upper = Surface("Upper", points=POINTS + np.array([0, 0, 0.5]), method="dsi", options={"above": "Lower"})
+    rock = Rock("rock", [lower, upper], region=SQUARE, edge_length=10.0, base_elevation=0.0)
+    model = Realizer(build(Project("two", [rock]), cells="blocks")).realization(0)
+    assert (heights(model, 1) >= heights(model, 0)).all()
+
+
+def test_few_points_and_ready_meshes_stay():
+    base = build(project(points=POINTS[:2], options={}, method="plane"), cells="blocks")
+    assert not errors(base, 2).any()
+
+
+def test_a_realization_depends_on_seed_and_number_alone():
+    base = build(project(), cells="blocks")
+    first = Realizer(base, 7).realization(5, threads=1)
+    again = Realizer(base, 7)
+    again.realization(2)
+    assert np.array_equal(again.realization(5, threads=3).vertices, first.vertices)
+    assert not np.array_equal(
+        Realizer(base, 8).realization(5).vertices[:, 2].sum(), first.vertices[:, 2].sum()
+    )
+
+
+def test_realizations_with_faults_are_valid():
+    vertices, triangles = plane_fault(50.0, 10.0, y=(-20.0, 120.0), z=(-30.0, 40.0))
+    points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 3]], 0.0)
+    given = project(points=points, faults=[Fault("F", vertices=vertices, triangles=triangles)])
+    base = build(given, cells="blocks")
+    realizer = Realizer(base)
+    volumes = set()
+    for number in range(2):
+        model = realizer.realization(number)
+        assert model.validate(300).passed
+        assert model.compartment_names == base.compartment_names
+        volumes.add(model.blocks[0].volume)
+    assert len(volumes) == 2
+
+
+def test_blocks_at_points():
+    base = build(project(), cells="blocks")
+    points = np.array([[50, 50, -1], [50, 50, 1], [50, 50, 100], [500, 50, 1.0]])
+    assert blocks_at(base, points).tolist() == [-1, 0, -1, -1]
+
+
+def test_an_ensemble_says_what_its_realizations_say():
+    places = np.array([[50.0, 50.0, 1.0], [50.0, 50.0, heights(build(project())).mean()], [50.0, 50.0, 50.0]])
+    told = []
+    found = ensemble(project(), 20, seed=2, places=places, progress=lambda share, _: told.append(share))
+    assert told == sorted(told) and told[-1] == 1.0
+    realizer = Realizer(found.model, 2)
+    every = [realizer.realization(n) for n in range(20)]
+    assert found.volumes[:, 0].tolist() == [model.blocks[0].volume for model in every]
+    z = np.array([heights(model) for model in every])
+    assert found.surface_mean[0] == pytest.approx(z.mean(axis=0))
+    assert found.surface_deviation[0] == pytest.approx(z.std(axis=0, ddof=1), abs=1e-9)
+    assert found.probability[:, 0] == pytest.approx(
+        np.mean([blocks_at(m, places) == 0 for m in every], axis=0)
+    )
+    assert found.probability[0, 0] == 1 and found.probability[2, 0] == 0
+    assert found.entropy()[[0, 2]].tolist() == [0, 0]
+    low, middle, high = found.percentiles()[:, 0]
+    assert low < middle < high
+
+
+def test_entropy_of_known_probabilities():
+    base = build(project(), cells="blocks")
+    counts = np.array([[8], [4], [2], [0]])
+    sums = Sums(np.ones((8, 1)), [None], [None], counts)
+    found = Ensemble.of(Realizer(base), sums, np.zeros((4, 3)))
+    assert found.entropy() == pytest.approx([0, 1, 0.25 * 2 + 0.75 * np.log2(4 / 3), 0])
+
+
+def test_sums_keep_their_order():
+    parts = [Sums(np.array([[float(n)]]), [None], [None], np.ones((1, 1), np.int64)) for n in range(3)]
+    total = added(parts)
+    assert total.volumes[:, 0].tolist() == [0, 1, 2] and total.counts[0, 0] == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"realizations": 0}, "at least one"),
+        ({"seed": -1}, "seed"),
+        ({"correlation": 1.5}, "between -1 and 1"),
+    ],
+)
+def test_wrong_requests(arguments, said):
+    with pytest.raises(UsageError, match=said):
+        ensemble(project(), **arguments)
