@@ -23,6 +23,7 @@ IMAGES = ROOT / "docs" / "images" / "gallery"
 SAMPLES = ROOT / "blend_samples"
 SIZE = (1800, 1100)
 RAYS, SECONDS = 32, 200.0  # of a pixel, and of a picture at most
+IN_GUIDE, NARROW = ("tunnel",), 900  # pictures that the guide, and so the zip, has too; pixels
 FRAME = (600, 300)  # of a film strip
 EXPOSURE = 0.2
 POINTS = 900.0  # the width of a picture, as labels are measured
@@ -47,6 +48,10 @@ def main(names):
                 palette = whole.quantize(256, Image.Quantize.FASTOCTREE)
                 small = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
                 small.save(IMAGES / path.name, optimize=True)
+                if path.stem in IN_GUIDE:
+                    whole.thumbnail((NARROW, NARROW), Image.Resampling.LANCZOS)
+                    narrow = whole.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+                    narrow.save(IMAGES.parent / "guide" / path.name, optimize=True)
     return done.returncode
 
 
