@@ -85,7 +85,7 @@ def make_sheet(pictures, labels):
             picture.crop(box).resize((PREVIEW, PREVIEW), Image.Resampling.LANCZOS), (number * PREVIEW, 0)
         )
     place = (len(labels) % COLUMNS * SMALL[0] + 12, (rows - 1) * SMALL[1] + 8)
-    pen.text(place, f"Each block is {WIDE:.0f} m wide,\nat texture scale 1 for 250 m", INK, font)
+    pen.text(place, f"Each block is {WIDE:.0f} m wide, with\nthe texture of a model of 250 m", INK, font)
     sheet.save(SHEET, quality=78, optimize=True)
     PREVIEWS.parent.mkdir(exist_ok=True)
     strip.save(PREVIEWS, quality=82, optimize=True)

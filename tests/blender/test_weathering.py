@@ -35,8 +35,11 @@ class Weathering(PanelCase):
 
     def test_the_evaluated_mesh_is_worn_and_the_block_is_not(self):
         plain = [meshes.mesh_coordinates(self.block(n).data) for n in (1, 2)]
-        volumes = self.volumes()
+        volumes, files = self.volumes(), [self.folder / name for name in ("plain.ply", "weathered.ply")]
+        ops.export(filepath=str(files[0]))
         ops.weathering(strength=2.0, detail=3)
+        ops.export(filepath=str(files[1]))
+        self.assertEqual(*(file.read_bytes() for file in files))
         low = self.evaluated(1)[0]
         for number in (1, 2):
             self.assertTrue(
@@ -56,6 +59,14 @@ class Weathering(PanelCase):
         ops.weathering_remove()
         self.assertEqual(len(self.evaluated(1)[0]), len(plain[0]))
         self.refused(ops.weathering_remove, "no block is weathered")
+
+    def test_sheets_between_blocks_do_not_stick_out(self):
+        """Polygons are smaller here than what is worn away."""
+        ops.weathering(strength=6.0, detail=5)
+        for number, most in ((1, 49.0), (2, 49.7)):
+            found = self.evaluated(number)[0]
+            away = np.abs(found - (found.min(axis=0) + found.max(axis=0)) / 2)[:, :2]
+            self.assertLess(away[away[:, 1] < 30.0, 0].max(), most)
 
     def test_soft_rock_falls_back_behind_hard_rock(self):
         ops.weathering(strength=3.0, rounding=0.0, detail=3)

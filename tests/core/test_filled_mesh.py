@@ -125,6 +125,15 @@ def test_check_mesh(faulted, tmp_path):
     assert all("small determinant" in line and int(line.split()[-1]) <= 3 for line in faults), faults
 
 
+@pytest.mark.skipif(foam_program("checkMesh") is None, reason="OpenFOAM is absent")
+def test_check_mesh_finds_no_fault_in_the_sample(tmp_path):
+    """Eight elements of it were too flat before flat ones were made thicker."""
+    model = build(load_project(SAMPLES / "fault_blocks" / "project.toml"))
+    save_mesh(filled(model, 166.7, 33.33), tmp_path / "case.foam")
+    told = run_foam("checkMesh", tmp_path / "case.foam", "-allGeometry", "-allTopology")
+    assert "Mesh OK." in told, [line for line in told.splitlines() if "***" in line]
+
+
 def test_the_same_bytes(faulted):
     one, two = (faulted.simulation_mesh(12.0, 2.0, elements="tetrahedra", threads=n) for n in (1, 2))
     assert one.points.tobytes() == two.points.tobytes()

@@ -37,7 +37,7 @@ class Nodes:
         self.link(first, node.inputs[0])
         if second is not None:
             self.link(second, node.inputs["Scale" if operation == "SCALE" else 1])
-        return node.outputs[0]
+        return node.outputs["Value" if operation == "DOT_PRODUCT" else "Vector"]
 
     def about(self, value, strength):
         """A value from 0 to 1 around 0, times a strength."""

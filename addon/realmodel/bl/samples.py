@@ -20,6 +20,10 @@ _LABELS = {
     ),
     "intrusion": ("Intrusion", "A granite and a dike in lifted layers, cut by erosion"),
     "tunnel": ("Tunnel", "A tunnel and a shaft through a hill: the rock that they take of each layer"),
+    "canyon": ("Canyon", "Forty beds in the walls of a canyon, and the river in it"),
+    "quarry": ("Quarry", "Benches and ramps cut exactly; the volume of each layer that they take"),
+    "block_diagram": ("Block Diagram", "Plunging folds below an unconformity, and a valley through both"),
+    "sculpted_island": ("Sculpted Island", "A sculpted mesh as the ground of folded strata"),
 }
 _items = []  # Blender does not keep the texts of dynamic enums itself
 

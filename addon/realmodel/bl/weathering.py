@@ -22,7 +22,7 @@ HARDNESS = "realmodel_hardness"  # on a block: the hardness that the library gav
 _VERSION = 1
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
-_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 0.8}  # texture units (looks) at 1
+_UNITS = {"Strength": 0.8, "Noise Scale": 3.0, "Bed Thickness": 1.6}  # texture units (looks) at 1
 FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
@@ -145,15 +145,20 @@ def _fill(nodes):
     at_points = nodes.on("FACE", exposed)  # at a point the share of its faces
     worn = nodes.math("GREATER_THAN", at_points, 0.0)
     position = nodes.of("GeometryNodeInputPosition", "Position")
+    part = nodes.to("GeometryNodeSeparateGeometry", geometry, Selection=exposed)
+    part.node.domain = "FACE"
+    depth = nodes.math("MULTIPLY", _depth(nodes, given, position), given["Strength"])
+    inward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), -1.0)
+    # Each vertex goes at least as far inwards as the exposed point beside it: else faces between blocks would
+    # stick out of the walls that fell back.
+    place, inward, depth = nodes.nearest(part, position, (position, inward, depth))
+    reached = nodes.vector("DOT_PRODUCT", nodes.vector("SUBTRACT", position, place), inward)
+    push = nodes.math("MAXIMUM", nodes.math("SUBTRACT", depth, reached), 0.0)
+    geometry = nodes.to("GeometryNodeSetPosition", geometry, Offset=nodes.vector("SCALE", inward, push))
     for _ in range(_STEPS):  # each vertex towards the middle of its neighbors
         middle = nodes.on("POINT", nodes.on("EDGE", position))
         shift = nodes.vector("SCALE", nodes.vector("SUBTRACT", middle, position), given["Edge Rounding"])
         geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=shift)
-    outward = nodes.vector("SCALE", nodes.of("GeometryNodeInputNormal", "Normal"), exposed)
-    outward = nodes.vector("NORMALIZE", nodes.on("FACE", outward))
-    depth = nodes.math("MULTIPLY", _depth(nodes, given, position), given["Strength"])
-    offset = nodes.vector("SCALE", outward, nodes.math("MULTIPLY", depth, -1.0))
-    geometry = nodes.to("GeometryNodeSetPosition", geometry, Selection=worn, Offset=offset)
     geometry = _covered(nodes, given, geometry, is_top, position)
     geometry = nodes.to("GeometryNodeSetShadeSmooth", geometry)
     nodes.link(geometry, nodes.new("NodeGroupOutput").inputs["Geometry"])
@@ -210,6 +215,22 @@ class _Nodes(Nodes):
         node.data_type = kind
         node.inputs["Name"].default_value = meshes.PREFIX + name
         return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
+
+    def nearest(self, geometry, place, values):
+        """What fields are at the point of a geometry that is nearest to a place."""
+        found = self.new("GeometryNodeSampleNearest")
+        self.link(geometry, next(s for s in found.inputs if s.type == "GEOMETRY"))
+        self.link(place, found.inputs["Sample Position"])
+        sampled = []
+        for value in values:
+            node = self.new("GeometryNodeSampleIndex")
+            kind = "VECTOR" if value.type == "VECTOR" else "VALUE"
+            node.data_type = "FLOAT_VECTOR" if kind == "VECTOR" else "FLOAT"
+            self.link(geometry, next(s for s in node.inputs if s.type == "GEOMETRY"))
+            self.link(value, _of_type(node.inputs, kind))
+            self.link(found.outputs["Index"], node.inputs["Index"])
+            sampled.append(_of_type(node.outputs, kind))
+        return sampled
 
     def on(self, domain, value):
         """A number or a vector as a domain has it."""

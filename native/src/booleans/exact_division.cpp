@@ -226,6 +226,7 @@ std::vector<Corners> ExactDivision::divided(const Region& region) const {
 }
 
 void ExactDivision::divide(const std::vector<Meeting>& at) {
+    pieces_.points.reserve_intersections(at.size());  // each is an end of two segments
     for (std::size_t i = 0; i < at.size(); ++i) {
         poll(progress_, i);
         arrangement_.insert(at[i]);

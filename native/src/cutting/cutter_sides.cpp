@@ -196,8 +196,23 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
     const SpacePointId p = is_region
                                ? overlay_.inner_point(item)
                                : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
+    const Position at = points.rounded(p);
+    const auto& vertices = overlay_.surface().vertices;
+    const double margin = std::max(rounding_of(std::array<Position, 1>{at}), rounding_of(vertices));
+    /// Whether the line along the axis is away from a triangle.
+    const auto is_aside = [&](const std::array<std::int32_t, 3>& t) {
+        for (std::size_t k = 1; k < 3; ++k) {
+            const std::size_t axis = (seen.first + k) % 3;
+            const auto [low, high] =
+                std::minmax({vertices[index(t[0])][axis], vertices[index(t[1])][axis],
+                             vertices[index(t[2])][axis]});
+            if (at[axis] < low - margin || at[axis] > high + margin) return true;
+        }
+        return false;
+    };
     bool inside = false;
     for (const auto& t : overlay_.surface().triangles) {
+        if (is_aside(t)) continue;
         std::array<SpacePointId, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points.add(overlay_.surface().vertices[index(t[i])]);

@@ -345,6 +345,10 @@ void SurfaceOverlay::overlay_all() {
         }
     });
     if (progress_ != nullptr) progress_->begin(0.15, 0.3, "dividing faces and surface");
+    std::size_t segments = 0;
+    for (const auto& intersections : found)
+        segments += intersections.size();
+    points_.reserve_intersections(segments);  // each is an end of two segments
     for (const auto& intersections : found) {
         if (progress_ != nullptr) progress_->check();
         for (const TriangleArrangement::Intersection& intersection : intersections)

@@ -29,7 +29,7 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     number_parts();
     if (progress != nullptr) progress->begin(0.77, 0.85, "dividing faces into polygons");
     write_patches(progress);
-    write_caps();
+    write_caps(progress);
     find_touches(progress);
 }
 

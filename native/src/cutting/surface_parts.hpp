@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
@@ -75,7 +76,13 @@ private:
         std::int8_t half;
         EdgeUse use;
         std::int32_t slot;
-        auto operator<=>(const SlotUse&) const = default;
+        bool operator<(const SlotUse& other) const {
+            const auto key = [](const SlotUse& s) {
+                return std::tie(s.cell, s.half, s.use.edge[0], s.use.edge[1], s.use.item,
+                                s.use.direction, s.slot);
+            };
+            return key(*this) < key(other);
+        }
     };
 
     void make_patches(Progress* progress);
@@ -98,7 +105,7 @@ private:
     void attach_hollows(const Shells& of_cell);
     void number_parts();
     void write_patches(const Progress* progress);
-    void write_caps();
+    void write_caps(const Progress* progress);
     void divide(const Patch& patch, Polygons& polygons);
     void write(const Polygons& polygons, std::size_t first, std::size_t end, bool reversed,
                std::int32_t face, std::array<std::int32_t, 2> slots, bool level);

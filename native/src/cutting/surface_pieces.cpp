@@ -43,6 +43,37 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
     return divided;
 }
 
+/// Many things in polygons, which are found on several threads.
+class DividedInChunks {
+public:
+    /// @param divide  divide(i, polygons) adds those of the i-th
+    template <class Divide>
+    DividedInChunks(std::size_t count, const Divide& divide, int threads, const Progress* progress)
+        : chunks_((count + kChunk - 1) / kChunk) {
+        parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            Chunk& own = chunks_[begin / kChunk];
+            for (std::size_t i = begin; i < end; ++i) {
+                divide(i, own.polygons);
+                own.ends.push_back(own.polygons.size());
+            }
+        });
+    }
+    /// Calls visit(polygons, first, end) for those of the i-th.
+    template <class Visit>
+    void visit(std::size_t i, const Visit& visit) const {
+        const Chunk& own = chunks_[i / kChunk];
+        visit(own.polygons, i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1], own.ends[i % kChunk]);
+    }
+
+private:
+    static constexpr std::size_t kChunk = 1 << 10;
+    struct Chunk {
+        Polygons polygons;
+        std::vector<std::size_t> ends;  ///< of the polygons of each
+    };
+    std::vector<Chunk> chunks_;
+};
+
 }  // namespace
 
 bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
@@ -139,31 +170,20 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
 
 /// Patches are divided on all threads and written in their order.
 void SurfaceParts::write_patches(const Progress* progress) {
-    constexpr std::size_t kChunk = 1 << 10;
-    struct Divided {
-        Polygons polygons;
-        std::vector<std::size_t> ends;  ///< of each patch's polygons
-    };
-    std::vector<Divided> divided((patches_.size() + kChunk - 1) / kChunk);
-    parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        Divided& own = divided[begin / kChunk];
-                        for (std::size_t i = begin; i < end; ++i) {
-                            divide(patches_[i], own.polygons);
-                            own.ends.push_back(own.polygons.size());
-                        }
-                    });
+    const DividedInChunks divided(
+        patches_.size(),
+        [this](std::size_t i, Polygons& polygons) { divide(patches_[i], polygons); },
+        overlay_.threads(), progress);
     for (std::size_t i = 0; i < patches_.size(); ++i) {
-        const Divided& own = divided[i / kChunk];
-        const std::size_t first = i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1];
-        write(own.polygons, first, own.ends[i % kChunk], false, patches_[i].face, patches_[i].slots,
-              false);
+        divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
+            write(polygons, first, end, false, patches_[i].face, patches_[i].slots, false);
+        });
     }
 }
 
 /// Between what is on either side of the surface; of cells that overlap or are inside out on one
 /// side, those that make up for each other have the polygon between them.
-void SurfaceParts::write_caps() {
+void SurfaceParts::write_caps(const Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
@@ -172,15 +192,26 @@ void SurfaceParts::write_caps() {
         if (model.cell(face, 1) < 0)
             outer_face[index(winding_.level(r))] = static_cast<std::int32_t>(face);
     }
+    const DividedInChunks in_polygons(
+        caps_.size(),
+        [this](std::size_t i, Polygons& polygons) {
+            const std::size_t region = index(caps_[i].region);
+            const auto& triangle = overlay_.corners(region);
+            std::array<Position, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = overlay_.points().rounded(triangle[k]);
+            divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false,
+                         polygons);
+        },
+        overlay_.threads(), progress);
     Polygons polygons;
-    for (const Caps& caps : caps_) {
-        const auto& triangle = overlay_.corners(index(caps.region));
-        std::array<Position, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = overlay_.points().rounded(triangle[i]);
+    for (std::size_t i = 0; i < caps_.size(); ++i) {
+        const Caps& caps = caps_[i];
         polygons.clear();
-        divide_loops(overlay_, polygon_normal(corners), overlay_.loops(index(caps.region)), false,
-                     polygons);
+        in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
+            for (std::size_t p = first; p < end; ++p)
+                polygons.add(all[p]);
+        });
         // no two polygons of a half may be the same
         std::array<int, 2> written{0, 0};
         const auto add = [&](bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,

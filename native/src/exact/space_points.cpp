@@ -117,6 +117,19 @@ bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointI
     return own[0] == line || own[1] == line;
 }
 
+void SpacePoints::reserve_intersections(std::size_t more) {
+    const auto reserve = [more](auto& values) {
+        if (values.capacity() - values.size() < more)
+            values.reserve(std::max(values.size() + more, 2 * values.capacity()));
+    };
+    reserve(rounded_);
+    reserve(source_);
+    reserve(constructions_);
+    reserve(intersections_);
+    by_doubles_.reserve(rounded_.size() + more);
+    by_intersection_.reserve(intersections_.size() + more);
+}
+
 SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePointId a,
                                        SpacePointId b, SpacePointId c) {
     assert(orient3d(*this, a, b, c, p) * orient3d(*this, a, b, c, q) <= 0);

@@ -40,6 +40,7 @@
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
 #include "simulation/corner_tetrahedra.hpp"
+#include "simulation/flat_tetrahedra.hpp"
 
 namespace realmodel::simulation {
 
@@ -456,6 +457,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     FilledMesh mesh = arrays_of(complex, domain, kept);
     require_volume(mesh);
     divide_corner_tetrahedra(mesh, progress);
+    thicken_flat_tetrahedra(mesh, tolerance, progress);
     return mesh;
 }
 

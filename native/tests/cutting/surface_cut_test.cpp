@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "../strata/complex_checks.hpp"
 #include "realmodel/base/errors.hpp"
@@ -273,6 +275,40 @@ TEST(SurfaceCut, RefusesWhatDoesNotPartTheModel) {
     EXPECT_EQ(refusal(c, wrong), "bad_index");
     wrong = box({0, 0, 0}, {1, 1, NAN});
     EXPECT_EQ(refusal(c, wrong), "not_finite");
+}
+
+TEST(SurfaceCut, ALargeModelGivesTheSameHalvesOnAnyNumberOfThreads) {
+    const CellComplex c = level_layers({0, 1, 2}, 10, 60);  // more faces than one thread takes
+    ASSERT_GT(c.face_cells.size(), 40000U);
+    const OwnedSurface sheet = grid(7, 7, -1, -1, 11, 11, [](double x, double y) {
+        return 0.7 + 0.04 * x + 0.3 * std::sin(x + 2 * y);
+    });
+    std::optional<Cut> first;
+    for (const int threads : {1, 2, 5}) {
+        const Cut cut = cut_by_surface(c, view(sheet), threads, nullptr);
+        for (const CellComplex* half : {&cut.below, &cut.above}) {
+            // vertices are numbered in the order in which they come up
+            std::int32_t next = 0;
+            for (const std::int32_t v : half->face_vertices) {
+                ASSERT_LE(v, next);
+                next += v == next ? 1 : 0;
+            }
+            EXPECT_EQ(static_cast<std::size_t>(next), half->vertices.size());
+        }
+        if (!first) first = cut;
+        for (const auto& [one, other] :
+             {std::pair(&first->below, &cut.below), std::pair(&first->above, &cut.above)}) {
+            EXPECT_EQ(one->vertices, other->vertices);
+            EXPECT_EQ(one->face_offsets, other->face_offsets);
+            EXPECT_EQ(one->face_vertices, other->face_vertices);
+            EXPECT_EQ(one->face_cells, other->face_cells);
+            EXPECT_EQ(one->face_surface, other->face_surface);
+            EXPECT_EQ(one->cell_block, other->cell_block);
+        }
+        EXPECT_EQ(first->section.polygon_vertices, cut.section.polygon_vertices);
+        EXPECT_EQ(first->above_cells, cut.above_cells);
+    }
+    checked(c, *first);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "realmodel/base/errors.hpp"
 #include "simulation/corner_tetrahedra.hpp"
+#include "simulation/flat_tetrahedra.hpp"
 
 namespace realmodel::simulation {
 namespace {
@@ -191,6 +192,74 @@ TEST(CornerTetrahedraTest, ASingleTetrahedronIsLeftOut) {
     EXPECT_EQ(std::count(mesh.surface.begin(), mesh.surface.end(), 7), 0);
     for (const auto& p : mesh.points)
         EXPECT_LT(p[0], 2);
+}
+
+/// An octahedron of eight tetrahedra around its point 6. Above and below are two regions.
+FilledMesh octahedron(const std::array<double, 3>& middle, bool is_divided) {
+    FilledMesh mesh;
+    mesh.points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, middle};
+    for (std::int32_t i = 0; i < 4; ++i) {
+        const std::int32_t j = (i + 1) % 4;
+        mesh.tetrahedra.push_back({6, i, j, 4});
+        mesh.tetrahedra.push_back({6, j, i, 5});
+        mesh.region.insert(mesh.region.end(), {0, is_divided ? 1 : 0});
+        mesh.triangles.push_back({i, j, 4});
+        mesh.triangles.push_back({j, i, 5});
+        mesh.surface.insert(mesh.surface.end(), {1, 2});
+        if (!is_divided) continue;
+        mesh.triangles.push_back({i, j, 6});
+        mesh.surface.push_back(0);
+    }
+    return mesh;
+}
+
+double flattest(const FilledMesh& mesh) {
+    double least = 1;
+    for (const auto& corners : mesh.tetrahedra)
+        least = std::min(least, roundness(mesh, corners));
+    return least;
+}
+
+TEST(FlatTetrahedraTest, RoundnessIsThatOfCheckMesh) {
+    FilledMesh mesh;
+    mesh.points = {{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}, {0, 0, 1}};
+    EXPECT_NEAR(roundness(mesh, {0, 1, 2, 3}), 64.0 / 27 / 8, 1e-12);
+    EXPECT_EQ(roundness(mesh, {0, 1, 4, 4}), 0);
+}
+
+TEST(FlatTetrahedraTest, CornersInsideMoveUntilNothingIsFlat) {
+    FilledMesh mesh = octahedron({0.33, 0.33, 0.33}, false);
+    const auto before = mesh.points;
+    ASSERT_LT(flattest(mesh), 0.001);
+    EXPECT_EQ(thicken_flat_tetrahedra(mesh, 0.01, nullptr), 0u);
+    EXPECT_GE(flattest(mesh), 0.002);
+    expect_valid(mesh);
+    EXPECT_NE(mesh.points[6], before[6]);
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_EQ(mesh.points[i], before[i]);
+}
+
+TEST(FlatTetrahedraTest, CornersOnSurfacesMoveByHalfOfTheToleranceAtMost) {
+    for (const double tolerance : {0.02, 0.1}) {
+        FilledMesh mesh = octahedron({0.33, 0.33, 0.33}, true);
+        const double before = flattest(mesh);
+        const std::size_t left = thicken_flat_tetrahedra(mesh, tolerance, nullptr);
+        EXPECT_GT(flattest(mesh), before);
+        EXPECT_EQ(left == 0, flattest(mesh) >= 0.002);
+        expect_valid(mesh);
+        double moved = 0;
+        for (const double x : mesh.points[6])
+            moved += (x - 0.33) * (x - 0.33);
+        EXPECT_GT(moved, 0);
+        EXPECT_LE(moved, 0.25 * tolerance * tolerance);
+    }
+}
+
+TEST(FlatTetrahedraTest, WhatIsRoundStays) {
+    FilledMesh mesh = octahedron({0.1, 0, 0}, false);
+    const auto before = mesh.points;
+    EXPECT_EQ(thicken_flat_tetrahedra(mesh, 1, nullptr), 0u);
+    EXPECT_EQ(mesh.points, before);
 }
 
 }  // namespace

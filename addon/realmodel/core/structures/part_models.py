@@ -110,8 +110,8 @@ def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> 
 
 def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
     """The top of what is below the oldest surface, with numbers of surfaces; none where only bodies are."""
-    pieces = [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never()]
-    return [(sheet, of) for sheet, of in pieces if of != FILLER]
+    fills = [of == FILLER for of in stack.surfaces[: len(before.sheets)]]
+    return [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never(fills)]
 
 
 def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Stack:

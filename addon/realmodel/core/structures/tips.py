@@ -31,7 +31,6 @@ _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _TOUCHES, _PASSES = 1, 2
-_LEAST_MOST = np.minimum, np.maximum
 
 
 @dataclass(frozen=True)
@@ -207,12 +206,16 @@ def with_equal_ends(
     every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
     continuations = [_continued(fault, box_of(every)) for fault in faults]
     drawn = _Drawn(plan, ramps, _sides_of_branches(work, plan, heights, faults, threads))
+    looked_at: dict[tuple, np.ndarray] = {}
     while True:
         found = blended(heights, near, on_side, drawn.weights)
         for number, fault in enumerate(faults):
             for sides, z in found.items():
                 some = doubtful[number]
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
+                if np.array_equal(looked_at.get((number, sides)), z[some]):
+                    continue
+                looked_at[number, sides] = z[some]
                 sheet = np.column_stack([plan, np.where(known, z, 0.0)])
                 met = _met(work, fault, sheet, sheet, some, threads)
                 passes = met == _PASSES
@@ -281,14 +284,23 @@ def _draw_between(
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
     with_equal_ends has them, changed."""
     is_torn = False
+    every = np.array(list(found.values()))
+    low, high = (np.column_stack([plan, each.reduce(every, axis=0)]) for each in (np.fmin, np.fmax))
+    differ = triangles[(low[:, 2] < high[:, 2])[triangles].any(axis=1)]
+    low, high = np.nan_to_num(low), np.nan_to_num(high)
     for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
-        for one, other in _pairs(found, number) if fault.dies_out else ():
-            low, high = (np.column_stack([plan, each(found[one], found[other])]) for each in _LEAST_MOST)
-            differ = (low[:, 2] < high[:, 2])[triangles].any(axis=1)
-            some = triangles[differ & np.isfinite(low[:, 2])[triangles].all(axis=1)]
-            low, high = np.nan_to_num(low), np.nan_to_num(high)
-            some = some[_met(work, fault, low, high, some, threads) == _PASSES]
-            if not len(some):
+        some = differ[_met(work, fault, low, high, differ, threads) == _PASSES] if fault.dies_out else ()
+        if not len(some):
+            continue
+        corners = [np.column_stack([plan, np.nan_to_num(z)])[some.ravel()] for z in found.values()]
+        asked = fault_sides(work, np.concatenate(corners), fault, threads)
+        side = dict(zip(found, asked.reshape(len(found), -1, 3), strict=True))
+        for one, other in _pairs(found, number):
+            both = np.column_stack([side[one], side[other]])
+            heights = found[one][some], found[other][some]
+            apart = (both != both[:, :1]).any(axis=1) & np.isfinite(heights).all(axis=(0, 2))
+            few = some[apart & (heights[0] != heights[1]).any(axis=1)]
+            if not len(few):
                 continue
             rest = [n for n in range(len(faults)) if n != number]
             asked = [(faults[n], one[n] or other[n]) for n in rest]
@@ -297,7 +309,7 @@ def _draw_between(
                 sides = [fault_sides(work, points, shape, threads) == side for shape, side in asked if side]
                 return np.all(sides, axis=0) if sides else np.ones(len(points), bool)
 
-            torn = some[torn_triangles(plan, some, (found[one], found[other]), others, within, on_sides)]
+            torn = few[torn_triangles(plan, few, (found[one], found[other]), others, within, on_sides)]
             for sides in (one, other):
                 drawn.let_be_equal(number, sides, torn)
                 is_torn = is_torn or not near[sides][torn].all()

@@ -54,12 +54,14 @@ class Older(NamedTuple):
         floors = [level(plan, far) for plan in self.plans]
         return self.build([*floors, *sheets], region, [*[_DEPOSITS] * len(floors), *rules])
 
-    def never(self) -> list[Piece]:
-        """The top of what is below the oldest surface, where there is one."""
+    def never(self, fills: Sequence[bool]) -> list[Piece]:
+        """The top of what is below the oldest surface, where there is one. fills: sheets that fill bodies:
+        nothing is below these."""
         model = self._built(self.sheets, self.rules, self.region)
         count = len(self.plans)
         chosen = np.zeros(len(model["cell_block"]), bool)
         chosen[model["face_cells"][model["face_surface"] >= 0][_are_floors(model, count)].max(axis=1)] = True
+        chosen &= ~np.array([*[False] * count, *fills], bool)[model["cell_block"]]
         return _tops(self.build, model, chosen, count)
 
     def protected(self) -> list[Piece]:

@@ -10,13 +10,13 @@ import numpy as np
 from ..work import Work, native_module
 from .families import DIES_OUT, Family, keys_of
 from .sides import sides_of
-from .triangles import crossing_pairs, segments_hit, shares_hit
+from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
 _ON = 1e-9  # of the extent of a line: what is so near to a plane is in it
 _LEAST = 1e-12  # of a line: shorter parts are rounding
 
 
-@dataclass(frozen=True)
+@dataclass
 class Within:
     """Which points lie in the compartments of a family of surface `number` of a RockInput."""
 
@@ -25,6 +25,7 @@ class Within:
     number: int
     family: Family
     threads: int
+    known: tuple[np.ndarray, np.ndarray] | None = None  # a box and its walls
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """(N,) bool of points (N, 3)."""
@@ -37,13 +38,23 @@ class Within:
     def walls(self, box: np.ndarray) -> np.ndarray:
         """(M, 3, 3) triangles of all faults and of what continues them in a box (2, 3): between them nothing
         changes."""
-        found = [np.empty((0, 3, 3))]
-        for shape in self.entry.structure.faults.shapes:
-            beyond = native_module().structure_continuation(shape.native(), np.ascontiguousarray(box))
-            corners = np.concatenate([shape.vertices[shape.triangles], beyond.reshape(-1, 3, 3)])
-            apart = (corners.min(axis=1) > box[1]).any(axis=1) | (corners.max(axis=1) < box[0]).any(axis=1)
-            found.append(corners[~apart])
-        return np.concatenate(found)
+        faults = self.entry.structure.faults
+        parting = [
+            self.family.key[n] != DIES_OUT or faults.ends[n]
+            for n in np.flatnonzero(faults.active(self.number))
+        ]
+        if not any(parting):
+            return np.empty((0, 3, 3))
+        if self.known is None or (box[0] < self.known[0][0]).any() or (box[1] > self.known[0][1]).any():
+            wider = box if self.known is None else box_of(box, self.known[0])
+            found = []
+            for shape in faults.shapes:
+                beyond = native_module().structure_continuation(shape.native(), np.ascontiguousarray(wider))
+                corners = np.concatenate([shape.vertices[shape.triangles], beyond.reshape(-1, 3, 3)])
+                low, high = extents(corners)
+                found.append(corners[((low <= wider[1]) & (high >= wider[0])).all(axis=1)])
+            self.known = wider, np.concatenate(found)
+        return self.known[1]
 
 
 def parts_of_lines(
