@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from realmodel.core import InputRefused, PointFile, load_library, load_project
+from realmodel.core import BuildFailed, InputRefused, PointFile, load_library, load_project
 from realmodel.core.readers import read_mesh, read_point_file, read_points, read_region
 from realmodel.core.readers.fault_sticks import read_fault_points
 
@@ -97,6 +97,9 @@ VTP += b'<DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataA
 VTP += b'<DataArray type="Int32" Name="offsets" format="binary">BAAAAAMAAAA=</DataArray></Polys></Piece></PolyData>'  # noqa: E501
 VTP += b'<AppendedData encoding="raw">_' + struct.pack("<I9f", 36, 0, 0, 0, 1, 0, 0, 0, 1, 0)
 VTP += b"</AppendedData></VTKFile>"
+VTU = VTP.replace(b"PolyData", b"UnstructuredGrid").replace(b"Polys", b"Cells")
+VTU = VTU.replace(b"</Cells>", b'<DataArray type="UInt8" Name="types" format="ascii">5</DataArray></Cells>')
+WKT = b"POLYGON ((0 0, 4 0, 4 3, 0 3.5, 0 0), (1 1, 2 1, 2 2, 1 1))\n"
 
 
 STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
@@ -121,7 +124,9 @@ READERS = {
     "b.msh": (BINARY_MSH, read_mesh),
     "m.xml": (LANDXML, read_mesh),
     "m.vtp": (VTP, read_mesh),
+    "m.vtu": (VTU, read_mesh),
     "r.geojson": (REGION, read_region),
+    "r.wkt": (WKT, read_region),
 }
 
 MILD = [b" ", b"0", b"1", b"2", b"5"]
@@ -180,3 +185,38 @@ def test_read_or_refused(folder, name):
     try_it()
     assert outcomes["read"] >= 5, outcomes
     assert outcomes["refused"] >= 100, outcomes
+
+
+@pytest.mark.parametrize(("ending", "driver"), [("gpkg", "GPKG"), ("shp", "ESRI Shapefile")])
+def test_maps_are_read_or_refused(tmp_path, ending, driver):
+    """Files of GDAL, cut off or with bytes changed. SQLite's messages may have bytes of the damage."""
+    pyogrio, shapely = pytest.importorskip("pyogrio"), pytest.importorskip("shapely")
+    area = shapely.Polygon([(0, 0), (4, 0), (4, 3), (0, 3.5)], [[(1, 1), (2, 1), (2, 2)]])
+    file = tmp_path / f"a.{ending}"
+    pyogrio.raw.write(
+        file,
+        geometry=np.array([shapely.to_wkb(area)], object),
+        field_data=[],
+        fields=[],
+        geometry_type="Polygon",
+        crs="EPSG:25832",
+        driver=driver,
+    )
+    try:
+        read_region(file)
+    except BuildFailed as error:
+        pytest.skip(str(error))
+    whole, draw, outcomes = file.read_bytes(), np.random.default_rng(1), {"read": 0, "refused": 0}
+    for _ in range(300):
+        raw = bytearray(whole[: draw.integers(1, len(whole))] if draw.random() < 0.3 else whole)
+        for at in draw.integers(0, len(raw), 3):
+            raw[at] = draw.integers(0, 256)
+        file.write_bytes(raw)
+        try:
+            read_region(file)
+            outcomes["read"] += 1
+        except InputRefused as error:
+            assert len(str(error).splitlines()) == 1
+            outcomes["refused"] += 1
+    assert outcomes["read"] >= 5, outcomes
+    assert outcomes["refused"] >= 50, outcomes

@@ -91,6 +91,19 @@ void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> c
         0.02);
 }
 
+void TriangleArrangement::set_outline(std::int32_t triangle,
+                                      std::span<const SpacePointId> outline) {
+    Triangle& t = triangles_[index(triangle)];
+    t.outline.assign(outline.begin(), outline.end());
+    std::ranges::copy_if(outline, std::back_inserter(t.points), [&t](SpacePointId p) {
+        return std::ranges::find(t.corners, p) == t.corners.end();
+    });
+    for (std::size_t i = 0; i < t.edge_count(); ++i) {
+        const auto [a, b] = t.edge(i);
+        of_edge_.push_back({unordered(a, b), triangle});
+    }
+}
+
 SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,
                                               SpacePointId to) const {
     const Triangle& t = triangles_[index(triangle)];
@@ -233,7 +246,13 @@ void TriangleArrangement::insert(const Intersection& intersection) {
     }
     std::array<SpacePointId, 2> ends;
     for (std::size_t i = 0; i < 2; ++i) {
-        const End& end = intersection.ends[i];
+        const End& whole = intersection.ends[i];
+        const bool of_one = whole.plane == intersection.other;
+        const End end =
+            whole.to == kNone
+                ? whole
+                : on_sub_edge(triangles_[index(of_one ? intersection.one : intersection.other)],
+                              whole);
         const auto& plane = triangles_[index(end.plane)].corners;
         ends[i] = end.to == kNone
                       ? end.from
@@ -242,11 +261,38 @@ void TriangleArrangement::insert(const Intersection& intersection) {
     add_segment(intersection.one, intersection.other, ends[0], ends[1]);
 }
 
+/// Of an end between two corners: between which nodes of that edge it is, or the node that it is.
+TriangleArrangement::End TriangleArrangement::on_sub_edge(const Triangle& own,
+                                                          const End& end) const {
+    const auto& nodes = own.outline;
+    if (nodes.empty()) return end;
+    const auto& plane = triangles_[index(end.plane)].corners;
+    const auto start = static_cast<std::size_t>(std::ranges::find(nodes, end.from) - nodes.begin());
+    const std::size_t n = nodes.size();
+    // towards the other corner: of the two ways around that which comes to it first
+    const auto is_forward = [&] {
+        for (std::size_t i = 1;; ++i) {
+            const SpacePointId p = nodes[(start + i) % n];
+            if (std::ranges::find(own.corners, p) != own.corners.end()) return p == end.to;
+        }
+    };
+    const std::size_t step = is_forward() ? 1 : n - 1;
+    SpacePointId below = end.from;
+    for (std::size_t i = (start + step) % n; nodes[i] != end.to; i = (i + step) % n) {
+        const int side = orient3d(points_, plane[0], plane[1], plane[2], nodes[i]);
+        if (side == 0) return {nodes[i]};
+        if (side > 0) return {below, nodes[i], end.plane};
+        below = nodes[i];
+    }
+    return {below, end.to, end.plane};
+}
+
 /// Where the edges of one triangle run over another in its plane.
 void TriangleArrangement::clip_edges(std::int32_t edges_of, std::int32_t into) {
-    const auto corners = triangles_[index(edges_of)].corners;
-    for (std::size_t i = 0; i < 3; ++i)
-        clip_segment(corners[i], corners[(i + 1) % 3], edges_of, into);
+    for (std::size_t i = 0; i < triangles_[index(edges_of)].edge_count(); ++i) {
+        const auto [a, b] = triangles_[index(edges_of)].edge(i);
+        clip_segment(a, b, edges_of, into);
+    }
 }
 
 /// Where a interval of one triangle runs over another in its plane.
@@ -618,8 +664,8 @@ public:
     void add_regions(std::int32_t triangle, Regions& regions) {
         const Triangle& t = arrangement_.triangles_[index(triangle)];
         if (t.facing == 0) return;
-        if (t.points.empty() && t.segments.empty()) {
-            regions.loops.add_loop(t.corners);
+        if (t.is_whole()) {
+            regions.loops.add_loop(t.nodes_around());
             regions.loops.end_region();
             regions.triangles.push_back(triangle);
             return;

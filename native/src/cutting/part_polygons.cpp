@@ -217,6 +217,20 @@ bool PartRounding::is_bent(std::size_t piece) const {
     return !is_sure || !is_nearly_convex(flat, rounding);
 }
 
+/// Whether triangles about a middle would include one of what may be a wall that has no extent in
+/// plan.
+bool PartRounding::lacks_extent(std::size_t piece, const Position& middle) const {
+    if (!joins_models_ || (pieces_[piece].face >= 0 && !is_wall(piece))) return false;
+    const auto nodes = pieces_.polygons[piece];
+    const auto is_below = [&](NodeId node) {
+        return at(node)[0] == middle[0] && at(node)[1] == middle[1];
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (is_below(nodes[i]) && is_below(nodes[(i + 1) % nodes.size()])) return true;
+    }
+    return false;
+}
+
 /// A new node in the middle of a polygon, or beside it where there is one already.
 NodeId PartRounding::add_middle(std::size_t piece) {
     const auto nodes = pieces_.polygons[piece];
@@ -231,6 +245,8 @@ NodeId PartRounding::add_middle(std::size_t piece) {
         const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
     }
+    while (lacks_extent(piece, middle))
+        middle = free_position_beside(middle, Freedom::kLevel, taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }
@@ -369,7 +385,8 @@ void PartRounding::divide_bent() {
         pieces_.size(), 1 << 12, threads_, progress_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
-                is_whole[p] = is_doubled_[p] == 0 && !is_bent(p) ? 1 : 0;
+                is_whole[p] =
+                    is_doubled_[p] == 0 && !is_bent(p) && !(joins_models_ && is_upright(p)) ? 1 : 0;
         },
         0.05);
     if (std::ranges::count(is_whole, 0) == 0) return;

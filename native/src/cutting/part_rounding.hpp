@@ -72,6 +72,7 @@ private:
     void glue_doubled();
     void drop_hollow();
     bool is_bent(std::size_t piece) const;
+    bool lacks_extent(std::size_t piece, const Position& middle) const;
     NodeId add_middle(std::size_t piece);
     NodeId add_between(const std::array<NodeId, 2>& edge);
     void divide_bent();

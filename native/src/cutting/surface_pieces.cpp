@@ -212,16 +212,18 @@ void SurfaceParts::write_caps(const Progress* progress) {
             for (std::size_t p = first; p < end; ++p)
                 polygons.add(all[p]);
         });
-        // no two polygons of a half may be the same
-        std::array<int, 2> written{0, 0};
+        // no two polygons of a half may be the same; between two parts of a half there is one
+        std::array<bool, 2> written{false, false};
         const auto add = [&](bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
                              bool level) {
+            const auto half_of = [this](std::int32_t slot) -> std::size_t {
+                return slots_[index(slot)].half == kAbove ? 1 : 0;
+            };
             bool again = false;
+            for (const std::int32_t slot : slots)
+                again = again || (slot >= 0 && written[half_of(slot)]);
             for (const std::int32_t slot : slots) {
-                if (slot < 0) continue;
-                auto& count = written[slots_[index(slot)].half == kAbove ? 1 : 0];
-                again = again || count > 0;
-                ++count;
+                if (slot >= 0) written[half_of(slot)] = true;
             }
             if (again) {
                 const Polygons divided = from_middle(overlay_, polygons);

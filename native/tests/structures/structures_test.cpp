@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "../strata/complex_checks.hpp"
 #include "cutting/polygons.hpp"
@@ -197,6 +198,23 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
             EXPECT_EQ(j.cell_part[index(a)], j.cell_part[index(b)]);
         }
     }
+}
+
+TEST(JoinModels, WhatLiesBetweenTwoCellsOnAFaultIsNotDividedFromItsMiddle) {
+    const CellComplex west = layers({0, 1, 2}, 1), east = layers({0.5, 1.5, 2.5}, 1);
+    const OwnedSurface inclined = sheet(1, 0.25);
+    const std::array structures{fault(inclined)};
+    const Joined j = joined(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+                            structures, kAllAct);
+    // every corner of such a face is on an edge of one of the two models
+    const ComplexView all = j.complex;
+    std::set<std::int32_t> on_fault, elsewhere;  // vertices
+    for (std::size_t f = 0; f < all.face_count(); ++f) {
+        const auto face = all.face(f);
+        (all.face_surface[f] == 3 ? on_fault : elsewhere).insert(face.begin(), face.end());
+    }
+    EXPECT_GT(on_fault.size(), 8U);
+    EXPECT_TRUE(std::ranges::includes(elsewhere, on_fault));
 }
 
 TEST(JoinModels, AReverseFaultHasASurfaceTwiceAtOnePlace) {

@@ -78,7 +78,7 @@ def _faults(rng, names, masses):
     found, planes = [], []
     for n in range(rng.choice([0, 1, 1, 1, 2, 2, 3])):
         if planes and rng.random() < BRANCHES:
-            fault = _branch_of_plane(rng, n, rng.choice(planes))
+            fault = _branch_of_plane(rng, n, rng.choice(planes), len(masses))
             if fault is not None:
                 found.append((fault, _throw(rng)))
                 continue
@@ -132,7 +132,7 @@ def _areas(corners):
 def _branch(rng, fault, found, own):
     """Lets a fault end at another one."""
     other, _ = rng.choice(found)
-    if len(other.beyond) and not other.dies_out:
+    if other.dies_out or len(other.beyond):
         return
     beside = _Side(other)(fault.vertices[fault.triangles].mean(axis=1))
     corner = _Side(other)(fault.vertices)
@@ -145,21 +145,22 @@ def _branch(rng, fault, found, own):
     crossed = reaches & (corner[fault.triangles] * kept <= 0).any(axis=1)
     if area[crossed].sum() > 0.3 * area[reaches].sum():
         return
-    if _comes_back(fault, reaches, other) or not _meets(fault, reaches, other):
+    if _comes_back(fault, reaches, other):
         return
     fault.ends_at = [other.name]
     fault.youngest, fault.rocks = other.youngest, list(other.rocks)
     own &= reaches
 
 
-def _branch_of_plane(rng, number, other):
-    """A fault that ends at a plane; None where it only passes what is beyond that one's tip."""
+def _branch_of_plane(rng, number, other, masses):
+    """A fault that ends at a plane; None where it does not pass that itself among the surfaces."""
     a, b, c = other.vertices[other.triangles[0]]
-    vertices, triangles, uv, end = shapes.branch_surface(rng, a, np.cross(b - a, c - a))
+    vertices, triangles, uv, end, line = shapes.branch_surface(rng, a, np.cross(b - a, c - a))
     own = (uv[triangles, 1] <= end).all(axis=1)
     fault = FaultCase(f"F{number}", vertices, triangles[own], triangles[~own])
     fault.ends_at, fault.youngest, fault.rocks = [other.name], other.youngest, list(other.rocks)
-    return fault if _meets(fault, np.ones(len(fault.triangles), bool), other) else None
+    line = line[((line > [0, 0, -1]) & (line < [10.0 * masses, 10, 5])).all(axis=1)]
+    return fault if (distances(line, other.vertices[other.triangles]) < 1e-6).sum() > 2 else None
 
 
 def _border(triangles):
@@ -173,21 +174,10 @@ def _border(triangles):
 
 def _comes_back(fault, reaches, other):
     """Whether the line at which a branch is cut off passes the other fault: it would end before that."""
-    corners = other.vertices[np.concatenate([other.triangles, other.beyond])]
+    corners = other.vertices[other.triangles]
     for a, b in _border(fault.triangles[reaches]) - _border(fault.triangles):
         begin, end = fault.vertices[[a]], fault.vertices[b]
         if any(signs.crossings(begin, end, each[None])[0].any() for each in corners):
-            return True
-    return False
-
-
-def _meets(fault, reaches, other):
-    """Whether a branch passes the other fault itself, not only what is beyond its tip."""
-    one, two = fault.vertices[fault.triangles[reaches]], other.vertices[other.triangles]
-    for edges, corners in ((one, two), (two, one)):
-        begin = edges.reshape(-1, 3)
-        end = np.roll(edges, -1, axis=1).reshape(-1, 3)
-        if any(signs.crossings(begin[[k]], end[k], corners)[0].any() for k in range(len(begin))):
             return True
     return False
 

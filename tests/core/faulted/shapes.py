@@ -79,7 +79,7 @@ def fault_surface(rng, kind, tip=None):
 
 def branch_surface(rng, point, normal):
     """As fault_surface, of a plane that passes the one through a point at right angles to a normal: v is 0
-    where they meet; and the least v above 0 of a line of edges."""
+    where they meet; the least v above 0 of a line of edges; and places (N, 3) where the planes meet."""
     strike, dip = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(35, 90))
     across = np.array([math.sin(dip) * math.cos(strike), math.sin(dip) * math.sin(strike), math.cos(dip)])
     along = np.cross(across, normal)
@@ -92,7 +92,7 @@ def branch_surface(rng, point, normal):
     u, v = _between(rng, -9, 9, rng.randint(1, 3)), [-FAR, *rng.choice([[], [-6.0], [-7.0, -3.5]]), end, FAR]
     uv = np.array([(a, b) for a in u for b in v], float)
     vertices = origin + uv[:, :1] * along + uv[:, 1:] * up
-    return vertices, _grid(len(u), len(v), rng), uv, end
+    return vertices, _grid(len(u), len(v), rng), uv, end, origin + np.linspace(-20, 20, 400)[:, None] * along
 
 
 def box(low, high):

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import sqlite3
 from contextlib import closing
 from pathlib import Path
 
 from ..errors import InputRefused
 from ..map_layer import MapLayer
-from .geopackage import connect, is_geopackage
+from .geopackage import UNREADABLE, connect, is_geopackage
 from .map_input import is_map_layer, read_shapes
 from .point_input import RASTER_FORMATS, head_of
 from .points import KNOWN, body_rows, open_table
@@ -48,7 +47,7 @@ def layer_names(file: Path) -> list[str]:
     try:
         with closing(connect(file)) as base:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
-    except sqlite3.Error as error:
+    except UNREADABLE as error:
         raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
 
 

@@ -18,6 +18,8 @@ from .table_layout import names_shown
 from .text import Step, no_step
 
 _MAGIC = b"SQLite format 3\0"
+# Python cannot decode SQLite's message where it names what is damaged
+UNREADABLE = (sqlite3.Error, UnicodeDecodeError)
 _ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by what the flags say
 _POINT, _LINE, _POLYGON = 1, 2, 3
 _COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
@@ -43,7 +45,7 @@ def read_geopackage(
     try:
         with closing(connect(file)) as base:
             return _read(file, base, layer, where or {}, step, heights)
-    except sqlite3.Error as error:
+    except UNREADABLE as error:
         changed = open_changes(file) is not None
         advice = "close it in the program that has it open, so that its last changes are in it"
         what = f"not a GeoPackage that can be read: {error}"

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import InputRefused, place_text
 from ..heights import heights
+from ..methods import CONTINUATION
 from ..work import Work
 from .families import Family
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
@@ -33,6 +34,7 @@ class ReadyMesh:
         for fault in np.flatnonzero(self.active):
             self._divide(int(fault), faults.shapes[fault])
         self.tiling: PlanTiling | None = None
+        self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
     def _divide(self, fault: int, shape: FaultShape) -> None:
         """On which sides of a fault each triangle has a part."""
@@ -144,7 +146,12 @@ class ReadyMesh:
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         """(N,) heights: those that are known, and where they are NaN what the method makes of them."""
-        same = welded(plan)
+        if self.tiling.nodes is not plan:
+            same = welded(plan)
+        elif self.same_places is None:
+            same = self.same_places = welded(plan)
+        else:
+            same = self.same_places
         order = np.flatnonzero(~np.isnan(known))[::-1]
         of_place = np.full(len(plan), np.nan)
         of_place[same[order]] = known[order]  # the first of several at one position
@@ -153,16 +160,13 @@ class ReadyMesh:
         if len(missing):
             given = np.flatnonzero(~np.isnan(of_place))
             points = np.column_stack([plan[given], of_place[given]])
-            found = heights(
-                self.work,
-                points,
-                np.ascontiguousarray(plan),
-                self.method,
-                self.settings,
-                self.threads,
-                triangles,
-            )
-            of_place[missing] = found.z[missing]
+            if self.method == CONTINUATION:  # it finds each node by itself
+                missed, nodes, tiles = slice(None), plan[missing], None
+            else:
+                missed, nodes, tiles = missing, plan, triangles
+            nodes = np.ascontiguousarray(nodes)
+            found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
+            of_place[missing] = found.z[missed]
             z = np.where(np.isnan(z), of_place[same], z)
         return z
 
