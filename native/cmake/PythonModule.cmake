@@ -43,6 +43,7 @@ configure_file("${CMAKE_CURRENT_LIST_DIR}/bind_parts.hpp.in" "${CMAKE_CURRENT_BI
 # What is the same for all of them.
 function(finish_python_module target)
     target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>) # the zip has them three times; they only pass on
     target_link_libraries(${target} PRIVATE realmodel realmodel_settings realmodel_warnings realmodel_gmp)
     set_target_properties(${target} PROPERTIES
         DEFINE_SYMBOL "" # or the same source would be another one for each of them
