@@ -4,7 +4,10 @@
 # system's packages nor its list of sources change, and root is not needed. A folder that is there
 # is left as it is.
 #
+# With --source it is the original source of a package, without Debian's patches.
+#
 #   scripts/foreign_packages.sh SUITE FOLDER PACKAGE...       e.g. trixie ~/headers libpython3.13-dev
+#   scripts/foreign_packages.sh --source SUITE FOLDER PACKAGE
 #   scripts/foreign_packages.sh --mirror                      the address that Debian's packages come from here
 set -euo pipefail
 
@@ -23,8 +26,13 @@ if [[ ${1-} == --mirror ]]; then
     echo "$mirror"
     exit 0
 fi
+kind=deb
+if [[ ${1-} == --source ]]; then
+    kind=deb-src
+    shift
+fi
 if (($# < 3)); then
-    echo "usage: foreign_packages.sh SUITE FOLDER PACKAGE... | --mirror" >&2
+    echo "usage: foreign_packages.sh [--source] SUITE FOLDER PACKAGE... | --mirror" >&2
     exit 2
 fi
 suite=$1 folder=$2
@@ -39,15 +47,20 @@ mkdir -p "$work"/{lists/partial,archives/partial,unpacked}
 keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 signed_by=
 [[ ! -f $keyring ]] || signed_by="[signed-by=$keyring] "
-echo "deb $signed_by$mirror $suite main" >"$work/sources.list"
+echo "$kind $signed_by$mirror $suite main" >"$work/sources.list"
 apt=(apt-get -qq -o "Dir::Etc::SourceList=$work/sources.list" -o Dir::Etc::SourceParts=-
     -o "Dir::State::Lists=$work/lists" -o "Dir::State::status=$work/status" -o "Dir::Cache=$work"
     -o Acquire::Languages=none -o Acquire::Retries=3
     -o Acquire::Check-Valid-Until=false # a mirror that stands still is as good for headers
     -o APT::Sandbox::User="$(id -un)")
 "${apt[@]}" update || fail "the list of packages of $suite cannot be had from $mirror"
-(cd "$work/archives" && "${apt[@]}" download "$@") || fail "$suite has no such packages: $*"
-for package in "$work"/archives/*.deb; do
-    dpkg-deb --extract "$package" "$work/unpacked"
-done
+if [[ $kind == deb-src ]]; then
+    (cd "$work/archives" && "${apt[@]}" source --download-only --tar-only "$1") || fail "$suite has no source package $1"
+    tar --extract --file "$(echo "$work"/archives/*.orig.tar.*z)" --strip-components=1 --directory "$work/unpacked"
+else
+    (cd "$work/archives" && "${apt[@]}" download "$@") || fail "$suite has no such packages: $*"
+    for package in "$work"/archives/*.deb; do
+        dpkg-deb --extract "$package" "$work/unpacked"
+    done
+fi
 mv "$work/unpacked" "$folder"

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the zip that users install: dist/realmodel-VERSION-linux-x64.zip, for Blender 3.4 to 5.2 on
-# Linux x86-64. It holds one native module for each version of Python that a Blender comes with; the
-# headers that these need are taken from Debian, whichever release has them, and kept in
-# ${XDG_CACHE_HOME:-~/.cache}/realmodel. The same sources give the same bytes.
+# Makes the zips that users install: dist/realmodel-VERSION-PLATFORM.zip, for Blender 3.4 to 5.2 on
+# Linux x86-64 and on Windows x64. Each holds one native module for each version of Python that a Blender
+# comes with. The headers that these need are taken from Debian, whichever release has them, and kept in
+# ${XDG_CACHE_HOME:-~/.cache}/realmodel; those for Windows in build/windows (scripts/windows_tools.sh). The
+# same sources give the same bytes.
 #
-#   scripts/package.sh [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]
+#   scripts/package.sh [--platform NAME]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]
+#     --platform      linux-x64 or windows-x64 (default: both)
 #     --pythons       the versions to compile for
 #     --skip-missing  leave out a version whose headers cannot be had, and say so, instead of failing
 #     --into FOLDER   default: dist
@@ -13,70 +15,109 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
 
-pythons="3.11 3.13 3.14" skip_missing="" into=$root/dist
+platforms=() pythons="3.11 3.13 3.14" skip_missing="" into=$root/dist
 while (($# > 0)); do
     case $1 in
+        --platform)
+            case ${2-} in
+                linux-x64 | windows-x64) platforms+=("$2") && shift ;;
+                *)
+                    echo "package.sh: --platform needs linux-x64 or windows-x64" >&2
+                    exit 2
+                    ;;
+            esac
+            ;;
         --pythons) pythons=${2:?package.sh: --pythons needs versions} && shift ;;
         --skip-missing) skip_missing=yes ;;
         --into) into=${2:?package.sh: --into needs a folder} && shift ;;
         *)
-            echo 'usage: package.sh [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
+            echo 'usage: package.sh [--platform linux-x64|windows-x64]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
             exit 2
             ;;
     esac
     shift
 done
+((${#platforms[@]} > 0)) || platforms=(linux-x64 windows-x64)
 if [[ $(uname -sm) != "Linux x86_64" ]]; then
-    echo "package.sh: the zip is for Linux x86-64; this is $(uname -sm)" >&2
+    echo "package.sh: the zips are made on Linux x86-64; this is $(uname -sm)" >&2
     exit 1
 fi
 
-# Builds the core, which is the same for all, and the module for the interpreter of this machine.
+# The interpreter of this machine.
 python=/usr/bin/python3
 [[ -x $python ]] || python=$(command -v python3)
-"$root/scripts/build.sh" "$python"
 version_here=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 
-# The oldest release of Debian that has a version of Python.
-declare -A suite_of=([3.11]=bookworm [3.13]=trixie [3.14]=sid)
-modules=() configured="" missing=()
-for version in $pythons; do
-    suffix=cpython-${version/./}-x86_64-linux-gnu.so
-    if [[ $version == "$version_here" ]]; then
-        modules+=("$root/addon/realmodel/_native.$suffix")
-        continue
-    fi
-    if [[ -z ${suite_of[$version]-} ]]; then
-        echo "package.sh: it is not known which release of Debian has Python $version" >&2
-        exit 2
-    fi
-    if [[ -f /usr/include/python$version/Python.h && -f /usr/include/x86_64-linux-gnu/python$version/pyconfig.h ]]; then
-        include=/usr/include
-    else
-        headers=$cache/python$version-headers
-        include=$headers/usr/include
-        if ! "$root/scripts/foreign_packages.sh" "${suite_of[$version]}" "$headers" "libpython$version-dev"; then
+# These fill modules, configured (REALMODEL_PACKAGED_PYTHONS) and missing.
+linux_x64() {
+    # Builds the core, which is the same for all, and the module for the interpreter of this machine.
+    "$root/scripts/build.sh" "$python"
+    # The oldest release of Debian that has a version of Python.
+    local -A suite_of=([3.11]=bookworm [3.13]=trixie [3.14]=sid)
+    local version suffix include headers
+    for version in $pythons; do
+        suffix=cpython-${version/./}-x86_64-linux-gnu.so
+        if [[ $version == "$version_here" ]]; then
+            modules+=("$root/addon/realmodel/_native.$suffix")
+            continue
+        fi
+        if [[ -z ${suite_of[$version]-} ]]; then
+            echo "package.sh: it is not known which release of Debian has Python $version" >&2
+            exit 2
+        fi
+        if [[ -f /usr/include/python$version/Python.h && -f /usr/include/x86_64-linux-gnu/python$version/pyconfig.h ]]; then
+            include=/usr/include
+        else
+            headers=$cache/python$version-headers
+            include=$headers/usr/include
+            if ! "$root/scripts/foreign_packages.sh" "${suite_of[$version]}" "$headers" "libpython$version-dev"; then
+                missing+=("$version")
+                continue
+            fi
+        fi
+        configured+="$suffix=$include/python$version:$include;"
+        modules+=("$root/build/release/packaged_modules/_native.$suffix")
+    done
+}
+
+windows_x64() {
+    "$root/scripts/windows_tools.sh"
+    "$root/scripts/python_environment.sh" "$root/build/tools" "$root/scripts/requirements/build.txt" "$python"
+    "$root/scripts/vendor_packages.sh" "$root/build/tools/bin/python"
+    local version suffix
+    for version in $pythons; do
+        if ! "$root/scripts/windows_tools.sh" "$version"; then
             missing+=("$version")
             continue
         fi
+        suffix=cp${version/./}-win_amd64.pyd
+        configured+="$suffix=$root/build/windows/python$version/include:$root/build/windows/python$version/libpython${version/./}.dll.a;"
+        modules+=("$root/build/windows-x64/packaged_modules/_native.$suffix")
+    done
+}
+
+for platform in "${platforms[@]}"; do
+    modules=() configured="" missing=()
+    case $platform in
+        linux-x64) preset=release && linux_x64 ;;
+        windows-x64) preset=windows-x64 && windows_x64 ;;
+    esac
+    if ((${#missing[@]} > 0)); then
+        if [[ -z $skip_missing ]]; then
+            echo "package.sh: the headers of Python ${missing[*]} cannot be had (reason above)" >&2
+            exit 1
+        fi
+        echo "SKIPPED modules for Python ${missing[*]}, whose headers cannot be had (reason above)"
     fi
-    configured+="$suffix=$include/python$version:$include;"
-    modules+=("$root/build/release/packaged_modules/_native.$suffix")
-done
-if ((${#missing[@]} > 0)); then
-    if [[ -z $skip_missing ]]; then
-        echo "package.sh: the headers of Python ${missing[*]} cannot be had (reason above)" >&2
+    if ((${#modules[@]} == 0)); then
+        echo "package.sh: there is no module to put into the zip" >&2
         exit 1
     fi
-    echo "SKIPPED modules for Python ${missing[*]}, whose headers cannot be had (reason above)"
-fi
-if ((${#modules[@]} == 0)); then
-    echo "package.sh: there is no module to put into the zip" >&2
-    exit 1
-fi
-
-if [[ -n $configured ]]; then
-    (cd "$root" && cmake --preset release "-DREALMODEL_PACKAGED_PYTHONS=${configured%;}" --log-level=WARNING)
-    cmake --build "$root/build/release" --target packaged_modules -j "$("$root/scripts/build_jobs.sh")"
-fi
-"$root/build/tools/bin/python" "$root/scripts/packaging/make_zip.py" "$into" "${modules[@]}"
+    if [[ -n $configured ]]; then
+        without_tests=()
+        [[ $preset == release ]] || without_tests=(-DREALMODEL_BUILD_TESTS=OFF) # they need GoogleTest for there
+        (cd "$root" && cmake --preset "$preset" "-DREALMODEL_PACKAGED_PYTHONS=${configured%;}" "${without_tests[@]}" --log-level=WARNING)
+        cmake --build "$root/build/$preset" --target packaged_modules -j "$("$root/scripts/build_jobs.sh")"
+    fi
+    "$root/build/tools/bin/python" "$root/scripts/packaging/make_zip.py" "$platform" "$into" "${modules[@]}"
+done

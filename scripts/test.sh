@@ -163,7 +163,7 @@ test_gui() {
 test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }
 
 test_package() { # the zip with the modules that can be made here, installed as a user does
-    in_time 15m scripts/package.sh --skip-missing &&
+    in_time 15m scripts/package.sh --platform linux-x64 --skip-missing &&
         in_time 10m "$venv/bin/python" -m pytest tests/package --junitxml="$logs/package.xml"
 }
 

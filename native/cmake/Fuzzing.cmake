@@ -2,6 +2,9 @@
 # The fuzzers of the stack builder and of Booleans (native/fuzz): made inputs, judged by oracles of their own.
 
 file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
+if(WIN32) # the fuzzers give every case a process of its own, by fork()
+    list(FILTER fuzzing_sources EXCLUDE REGEX own_process)
+endif()
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
 target_include_directories(realmodel_fuzzing PUBLIC fuzz PRIVATE src)
 # Debian's property_tree includes a header that asks every reader to say so.
@@ -10,7 +13,10 @@ target_link_libraries(realmodel_fuzzing
     PUBLIC realmodel realmodel_settings
     PRIVATE realmodel_dependencies realmodel_warnings)
 
-set(fuzzing_programs stack_fuzzer boolean_fuzzer build_digests)
+set(fuzzing_programs build_digests)
+if(NOT WIN32)
+    list(APPEND fuzzing_programs stack_fuzzer boolean_fuzzer)
+endif()
 if(REALMODEL_SANITIZE MATCHES "fuzzer-no-link") # preset fuzz: clang++'s libFuzzer
     list(APPEND fuzzing_programs coverage_fuzzer)
 endif()
@@ -24,6 +30,10 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
 endif()
 if(TARGET coverage_fuzzer)
     target_link_options(coverage_fuzzer PRIVATE -fsanitize=fuzzer)
+endif()
+
+if(WIN32)
+    return()
 endif()
 
 # Every stack of the corpus, and a bounded number of made ones: the same on every run.

@@ -5,11 +5,16 @@
 #   _native            for the interpreter given by -DPython_EXECUTABLE, written into the add-on's folder
 #                      with the ABI in its name, beside those for other versions
 #   packaged_modules   for versions of which only the headers are there, for scripts/package.sh:
-#                      -DREALMODEL_PACKAGED_PYTHONS=SUFFIX=FOLDER[:FOLDER...];...
-#                      written into packaged_modules/ of the build folder as _native.SUFFIX
+#                      -DREALMODEL_PACKAGED_PYTHONS=SUFFIX=FOLDER[:FOLDER...][:LIBRARY.a];...
+#                      written into packaged_modules/ of the build folder as _native.SUFFIX. LIBRARY.a:
+#                      the names of Python, without which Windows links no module
 
-set(PYBIND11_FINDPYTHON ON)
-find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
+if(CMAKE_CROSSCOMPILING)
+    set(PYBIND11_NOPYTHON ON) # no interpreter here could load it: only packaged_modules
+else()
+    set(PYBIND11_FINDPYTHON ON)
+    find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
+endif()
 
 # scripts/build.sh keeps a newer pybind11 in build/tools than Debian 12 has: one that knows NumPy 2.
 file(GLOB pybind11_from_tools
@@ -38,6 +43,7 @@ configure_file("${CMAKE_CURRENT_LIST_DIR}/bind_parts.hpp.in" "${CMAKE_CURRENT_BI
 # What is the same for all of them.
 function(finish_python_module target)
     target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Os>) # the zip has them three times; they only pass on
     target_link_libraries(${target} PRIVATE realmodel realmodel_settings realmodel_warnings realmodel_gmp)
     set_target_properties(${target} PROPERTIES
         DEFINE_SYMBOL "" # or the same source would be another one for each of them
@@ -46,12 +52,18 @@ function(finish_python_module target)
         set(exports "${PROJECT_SOURCE_DIR}/native/cmake/module_exports.map")
         target_link_options(${target} PRIVATE "-Wl,--version-script=${exports}" $<$<CONFIG:Release>:-s>)
         set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${exports}")
+    elseif(MINGW)
+        # The compiler's libraries go inside, and only the entry is shown. The same objects give the same bytes.
+        target_link_options(${target} PRIVATE
+            -static -Wl,--exclude-all-symbols -Wl,--no-insert-timestamp $<$<CONFIG:Release>:-s>)
     endif()
 endfunction()
 
-pybind11_add_module(_native MODULE NO_EXTRAS ${bindings_sources})
-finish_python_module(_native)
-set_target_properties(_native PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+if(NOT CMAKE_CROSSCOMPILING)
+    pybind11_add_module(_native MODULE NO_EXTRAS ${bindings_sources})
+    finish_python_module(_native)
+    set_target_properties(_native PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+endif()
 
 set(REALMODEL_PACKAGED_PYTHONS "" CACHE STRING "Ends of module names and the folders of the headers, for packaged_modules")
 add_custom_target(packaged_modules)
@@ -61,10 +73,13 @@ foreach(entry IN LISTS REALMODEL_PACKAGED_PYTHONS)
     endif()
     set(suffix "${CMAKE_MATCH_1}")
     string(REPLACE ":" ";" header_folders "${CMAKE_MATCH_2}")
+    set(libraries ${header_folders})
+    list(FILTER libraries INCLUDE REGEX "\\.a$")
+    list(FILTER header_folders EXCLUDE REGEX "\\.a$")
     string(MAKE_C_IDENTIFIER "packaged_${suffix}" target)
     add_library(${target} MODULE EXCLUDE_FROM_ALL ${bindings_sources})
     finish_python_module(${target})
-    target_link_libraries(${target} PRIVATE pybind11::headers)
+    target_link_libraries(${target} PRIVATE pybind11::headers ${libraries})
     target_include_directories(${target} SYSTEM PRIVATE ${header_folders})
     set_target_properties(${target} PROPERTIES
         PREFIX "" OUTPUT_NAME "_native" SUFFIX ".${suffix}"

@@ -53,7 +53,7 @@ public:
     }
     mpz_class integer(double value) const {
         const auto [mantissa, exponent] = parts(value);
-        mpz_class whole(static_cast<long>(mantissa));
+        mpz_class whole(static_cast<double>(static_cast<std::int64_t>(mantissa)));
         const int shift = exponent + power_;
         if (shift >= 0) return whole << static_cast<unsigned long>(shift);
         return whole >> static_cast<unsigned long>(-shift);  // only zeros go

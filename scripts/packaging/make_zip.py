@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Puts the add-on into one zip that Blender installs.
 
-    build/tools/bin/python make_zip.py FOLDER MODULE...
+    build/tools/bin/python make_zip.py PLATFORM FOLDER MODULE...
 
-FOLDER: where realmodel-VERSION-linux-x64.zip goes. MODULE: the native modules, one for each Python.
+PLATFORM: as Blender calls it, e.g. windows-x64. FOLDER: where realmodel-VERSION-PLATFORM.zip goes. MODULE:
+the native modules, one for each Python.
 The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
 for which markdown-it-py is needed.
 """
 
 import os
+import re
 import sys
 import zipfile
 from pathlib import Path
@@ -18,7 +20,7 @@ from web_pages import web_pages
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon" / "realmodel"
 TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
-LARGEST = 12e6  # bytes
+LARGEST = 11e6  # bytes
 INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the time of every file in the zip: the zero of the format
 
@@ -32,7 +34,16 @@ def files_below(folder):
             yield path
 
 
-def contents(modules):
+def manifest(platform):
+    """The manifest of the add-on, as that of a zip for one platform."""
+    text = (ADDON / "blender_manifest.toml").read_text(encoding="utf-8")
+    changed, count = re.subn(r"^platforms = .*$", f'platforms = ["{platform}"]', text, flags=re.MULTILINE)
+    if count != 1:
+        sys.exit("make_zip.py: blender_manifest.toml has no line for its platforms")
+    return changed.encode()
+
+
+def contents(platform, modules):
     """{name in the zip: its bytes}."""
     files = {
         f"{TOP}/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
@@ -41,6 +52,7 @@ def contents(modules):
     }
     for path in files_below(ROOT / "blend_samples"):
         files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path.read_bytes()
+    files[f"{TOP}/blender_manifest.toml"] = manifest(platform)
     files[f"{TOP}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     for module in modules:
         files[f"{TOP}/{module.name}"] = module.read_bytes()
@@ -69,11 +81,11 @@ def write_zip(path, files):
         unfinished.unlink(missing_ok=True)
 
 
-def main(folder, *modules):
+def main(platform, folder, *modules):
     version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
-    path = Path(folder) / f"{TOP}-{version}-linux-x64.zip"
+    path = Path(folder) / f"{TOP}-{version}-{platform}.zip"
     path.parent.mkdir(parents=True, exist_ok=True)
-    files = contents([Path(module) for module in modules])
+    files = contents(platform, [Path(module) for module in modules])
     write_zip(path, files)
     print(
         f"Made {path}: {len(files)} files, {path.stat().st_size / 1e6:.1f} MB, {len(modules)} native modules"
@@ -81,6 +93,6 @@ def main(folder, *modules):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
+    if len(sys.argv) < 4:
         sys.exit(__doc__)
     main(*sys.argv[1:])

@@ -7,19 +7,25 @@ import sys
 import pytest
 from realmodel.core import missing_native
 
-HERE = f"cpython-3{sys.version_info.minor}"
-VERSION = f"3.{sys.version_info.minor}"
+MINOR = sys.version_info.minor
+VERSION = f"3.{MINOR}"
+MODULES = {
+    "linux-x86_64": "_native.cpython-3{}-x86_64-linux-gnu.so",
+    "win-amd64": "_native.cp3{}-win_amd64.pyd",
+}
 
 
 @pytest.fixture
-def copy(tmp_path):
-    """A copy of the add-on with modules of these tags, as one sentence about it."""
+def copy(tmp_path, monkeypatch):
+    """A copy of the add-on with modules of one system for these minor versions of Python, as one sentence
+    about it on another."""
 
-    def explained(*tags, checkout=False):
+    def explained(*minors, of="linux-x86_64", on="linux-x86_64", checkout=False):
+        monkeypatch.setattr(missing_native.sysconfig, "get_platform", lambda: on)
         package = tmp_path / "addon" / "realmodel"
         package.mkdir(parents=True)
-        for tag in tags:
-            (package / f"_native.{tag}-x86_64-linux-gnu.so").touch()
+        for minor in minors:
+            (package / MODULES[of].format(minor)).touch()
         if checkout:
             (tmp_path / "scripts").mkdir()
             (tmp_path / "scripts" / "build.sh").touch()
@@ -35,30 +41,32 @@ def test_a_developer_is_told_to_build(copy):
     assert "GLIBC" not in text, "what Python says of a file that is not there helps nobody"
 
 
-linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the modules are Linux's")
+@pytest.mark.parametrize("system", MODULES)
+def test_an_empty_copy_is_to_be_replaced(copy, system):
+    assert "install the zip" in copy(on=system)
 
 
-@linux
-def test_an_empty_copy_is_to_be_replaced(copy):
-    assert "install the zip" in copy()
+@pytest.mark.parametrize("system", MODULES)
+def test_a_copy_for_other_pythons_names_them(copy, system):
+    assert "for Python 3.9, 3.99:" in copy(99, 9, of=system, on=system)
 
 
-@linux
-def test_a_copy_for_other_pythons_names_them(copy):
-    text = copy("cpython-39", "cpython-399")
-    assert "Python 3.9, 3.99" in text
-
-
-@linux
-def test_a_module_that_cannot_be_loaded_says_why(copy):
-    text = copy(HERE, "cpython-399")
+@pytest.mark.parametrize(("system", "advice"), [("linux-x86_64", "glibc 2.35"), ("win-amd64", "security")])
+def test_a_module_that_cannot_be_loaded_says_why(copy, system, advice):
+    text = copy(MINOR, 99, of=system, on=system)
     assert "GLIBC_9.9 not found" in text
-    assert "glibc 2.35" in text
+    assert advice in text
 
 
-def test_another_system_is_told_so(copy, monkeypatch):
-    monkeypatch.setattr(sys, "platform", "win32")
-    assert "Linux on x86-64 only" in copy(HERE)
+def test_a_copy_for_another_system_names_the_right_zip(copy):
+    text = copy(MINOR, of="linux-x86_64", on="win-amd64")
+    assert "this copy is for Linux on x86-64" in text
+    assert "ends with windows-x64.zip" in text
+
+
+def test_a_system_without_a_zip_is_told_so(copy):
+    text = copy(MINOR, on="macosx-11.0-arm64")
+    assert "Linux on x86-64 and Windows on x64 only" in text
 
 
 def test_core_can_be_imported_without_it(tmp_path):

@@ -5,13 +5,13 @@ import bpy
 import numpy as np
 from realmodel.bl import looks, materials, meshes
 
-CHOSEN = ("FLAT", "SHALE", "GRAVEL")  # all kinds of nodes; each takes seconds where a processor draws
-COLUMNS, TILE = 3, 40  # looks beside one another, and their pixels
+CHOSEN = ("FLAT", "SHALE")  # each with a texture takes seconds where a processor draws
+COLUMNS, TILE = 2, 40  # looks beside one another, and their pixels
 COLOR = "#8090b0"
 
 
 def eevee_renders_looks(walk):
-    """Each in the color of its property, textured; laminae along the layers."""
+    """In the color of its property, textured; laminae along the layers."""
     scene = bpy.data.scenes.new("looks")
     rows = -(-len(CHOSEN) // COLUMNS)
     made = [_tile(scene, n % COLUMNS, n // COLUMNS, key) for n, key in enumerate(CHOSEN)]
@@ -37,7 +37,6 @@ def eevee_renders_looks(walk):
     image = bpy.data.images.load(render.filepath)
     pixels = np.array(image.pixels[:], np.float32).reshape(rows * TILE, COLUMNS * TILE, -1)[:, :, :3]
     bpy.data.images.remove(image)
-    walk.pictures.append(walk.folder / "eevee_looks.png")
     for number, key in enumerate(CHOSEN):
         column, row = number % COLUMNS * TILE, number // COLUMNS * TILE
         tile = pixels[row + 4 : row + TILE - 4, column + 4 : column + TILE - 4]

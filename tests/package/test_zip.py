@@ -35,7 +35,7 @@ def test_one_folder_on_top(package):
 
 
 def test_small(package):
-    assert package.stat().st_size < 12e6
+    assert package.stat().st_size < 11e6
 
 
 def test_both_ways_to_be_found_by_blender(unpacked):
@@ -48,6 +48,7 @@ def test_both_ways_to_be_found_by_blender(unpacked):
         for node in tree.body
         if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info"
     )
+    assert manifest["platforms"] == ["linux-x64"]
     assert manifest["version"] == ".".join(map(str, bl_info["version"])) == VERSION
 
 
@@ -164,5 +165,5 @@ def test_same_files_same_bytes(package, modules, tmp_path, monkeypatch):
     specification = importlib.util.spec_from_file_location("make_zip", path)
     make_zip = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(make_zip)
-    make_zip.main(tmp_path, *map(str, modules))
+    make_zip.main("linux-x64", tmp_path, *map(str, modules))
     assert Path(tmp_path, package.name).read_bytes() == package.read_bytes()

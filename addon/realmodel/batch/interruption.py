@@ -35,7 +35,8 @@ class Interruptible:
     def __enter__(self):
         if IN_BLENDER:
             self._hear, self._told = os.pipe()
-            os.set_blocking(self._told, False)
+            if hasattr(os, "set_blocking"):  # Windows, from Python 3.12 on, and it does not ask for it
+                os.set_blocking(self._told, False)
             signal.set_wakeup_fd(self._told)
             threading.Thread(target=self._watch, daemon=True).start()
         return self

@@ -3,8 +3,14 @@
 
 Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
 the model, so that it goes on from block to block.
+
+What other programs can read of a material, they should find. Blender's exporters take the value of the
+shader's Base Color where what is linked to it says nothing to them; that of glTF one of two colors that are
+multiplied; that of USD would take the first attribute on the way, so these are in a group, into which it does
+not look. Textures themselves have to be baked (scene_export.py).
 """
 
+import bpy
 import numpy as np
 
 from ..core.library import AUTO_LOOK
@@ -14,6 +20,7 @@ from .display import explosion
 from .nodes import Nodes
 
 KEY = "realmodel_look"  # on a material: its look
+GROUP = "realmodel_bedding"  # on the node group that has the attributes of blocks
 TEXTURE = "realmodel_look_texture"  # its scale and seed
 AUTO = AUTO_LOOK.upper()
 
@@ -43,16 +50,39 @@ def apply(material, look, scale, seed, diagonal):
     tree = material.node_tree
     tree.nodes.clear()
     nodes = _Nodes(tree)
-    shader = nodes.new("ShaderNodeBsdfPrincipled")
-    output = nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
+    shader = _new_shader(nodes)
     recipe = LOOKS[look]
     _set_gloss(shader, recipe.roughness)
-    if look == "FLAT":
-        shader.inputs["Base Color"].default_value = color
-    else:
+    shader.inputs["Base Color"].default_value = color
+    if look != "FLAT":
         _fill(nodes, shader, recipe, color, diagonal / UNITS * scale, seed)
     material[KEY] = look
+
+
+def level(material):
+    """Nothing stands out of a material that has a look any more."""
+    for link in list(material.node_tree.links):
+        if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
+            material.node_tree.links.remove(link)
+
+
+def show_picture(material, image):
+    """Gives a material that has a look a picture of it in the place of its nodes."""
+    tree = material.node_tree
+    tree.nodes.clear()
+    nodes = _Nodes(tree)
+    shader = _new_shader(nodes)
+    shader.inputs["Base Color"].default_value = (1.0, 1.0, 1.0, 1.0)  # files multiply both
+    _set_gloss(shader, LOOKS[material[KEY]].roughness)
+    picture = nodes.new("ShaderNodeTexImage")
+    picture.image = image
+    nodes.link(picture.outputs["Color"], shader.inputs["Base Color"])
+
+
+def _new_shader(nodes):
+    shader = nodes.new("ShaderNodeBsdfPrincipled")
+    nodes.link(shader.outputs["BSDF"], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return shader
 
 
 def _set_gloss(shader, roughness):
@@ -115,14 +145,17 @@ def _fill(nodes, shader, look, color, unit, seed):
         hues.append(large)
     tone = nodes.math("MULTIPLY", nodes.total(tones), 1.6)
     tint = nodes.new("ShaderNodeHueSaturation")
-    base = _base(nodes, look, color)
-    nodes.link(base, tint.inputs["Color"])
+    given = nodes.new("ShaderNodeRGB")
+    given.name = given.label = materials.COLOR
+    given = given.outputs[0]
+    given.default_value = color
+    nodes.link(_brown_below(nodes, given) if look.grassy else given, tint.inputs["Color"])
     nodes.link(nodes.math("MAXIMUM", nodes.math("ADD", tone, 1.0), 0.15), tint.inputs["Value"])
     nodes.link(nodes.math("SUBTRACT", 0.95, nodes.math("MULTIPLY", tone, 0.3)), tint.inputs["Saturation"])
     if look.hue and hues:
         hue = nodes.total([nodes.about(hue, 2.0 * look.hue) for hue in hues])
         nodes.link(nodes.math("ADD", hue, 0.5), tint.inputs["Hue"])
-    nodes.link(tint.outputs["Color"], shader.inputs["Base Color"])
+    _multiply(nodes, given, tint.outputs["Color"], shader.inputs["Base Color"])
     if heights:
         bump = nodes.new("ShaderNodeBump")
         nodes.link(size, bump.inputs["Distance"])
@@ -130,12 +163,17 @@ def _fill(nodes, shader, look, color, unit, seed):
         nodes.link(bump.outputs["Normal"], shader.inputs["Normal"])
 
 
-def _base(nodes, look, color):
-    """The color of the property."""
-    given = nodes.new("ShaderNodeRGB")
-    given.name = given.label = materials.COLOR
-    given.outputs[0].default_value = color
-    return _brown_below(nodes, given.outputs[0]) if look.grassy else given.outputs[0]
+def _multiply(nodes, color, seen, socket):
+    """Links a color to a socket as the product of the property's and what is left."""
+    mix = nodes.new("ShaderNodeMix")
+    mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+    factor, first, second = (
+        next(s for s in mix.inputs if s.name == name and s.enabled) for name in ("Factor", "A", "B")
+    )
+    nodes.link(1.0, factor)
+    nodes.link(color, first)
+    nodes.link(nodes.vector("DIVIDE", seen, color), second)
+    nodes.link(next(s for s in mix.outputs if s.enabled), socket)
 
 
 def _above(nodes, place, size):
@@ -231,9 +269,28 @@ class _Nodes(Nodes):
         return node
 
     def attribute(self, name):
-        node = self.new("ShaderNodeAttribute")
+        found = next((node for node in self.tree.nodes if node.type == "GROUP"), None)
+        if found is None:
+            found = self.new("ShaderNodeGroup")
+            found.node_tree = _bedding_group()
+        return found.outputs[name]
+
+
+def _bedding_group():
+    """The node group that has the attributes of the bedding, new where there is none."""
+    found = next((group for group in bpy.data.node_groups if GROUP in group and not group.library), None)
+    if found is not None:
+        return found
+    group = bpy.data.node_groups.new("RealModel Bedding", "ShaderNodeTree")
+    group[GROUP] = True
+    nodes = Nodes(group)
+    output = nodes.new("NodeGroupOutput")
+    for name in meshes.BEDDING:
+        versions.add_group_socket(group, name, "NodeSocketFloat", is_output=True)
+        node = nodes.new("ShaderNodeAttribute")
         node.attribute_name = meshes.PREFIX + name
-        return node.outputs["Fac"]
+        nodes.link(node.outputs["Fac"], output.inputs[name])
+    return group
 
 
 def suiting(row):

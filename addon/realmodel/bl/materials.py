@@ -74,5 +74,5 @@ def set_color(material, color):
         for node in material.node_tree.nodes:
             if node.name == COLOR:
                 node.outputs[0].default_value = rgba
-            elif node.type == "BSDF_PRINCIPLED" and not node.inputs["Base Color"].is_linked:
+            elif node.type == "BSDF_PRINCIPLED":  # exporters read it even where something is linked to it
                 node.inputs["Base Color"].default_value = rgba

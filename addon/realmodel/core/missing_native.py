@@ -1,12 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Why the compiled part is not there, and what to do about it, in the words of who is asking."""
 
-import os
+import re
 import sys
+import sysconfig
 from pathlib import Path
+from typing import NamedTuple
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ZIP = "the zip of RealModel"
+
+
+class System(NamedTuple):
+    """One that there is a zip for: its name, that of the zip's platform, how names of modules end, and what
+    to do where one cannot be loaded."""
+
+    name: str
+    platform: str
+    module: str
+    advice: str
+
+
+# By sysconfig.get_platform(): what the interpreter was built for, whatever machine that runs on.
+SYSTEMS = {
+    "linux-x86_64": System(
+        "Linux on x86-64",
+        "linux-x64",
+        r"cpython-3(\d+)-x86_64-linux-gnu\.so",
+        "it needs glibc 2.35, libstdc++ of GCC 11 and libgomp, or newer: install these",
+    ),
+    "win-amd64": System(
+        "Windows on x64",
+        "windows-x64",
+        r"cp3(\d+)-win_amd64\.pyd",
+        "it needs nothing but Windows 10 or newer and Python: see that no security software keeps it from "
+        f"being loaded, and install {ZIP} again",
+    ),
+}
 
 
 def explanation(error: ImportError, package: Path = PACKAGE) -> str:
@@ -15,10 +45,12 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
     error: what importing `_native` raised. package: the folder of the add-on.
 
     A developer's copy has scripts/build.sh beside it and is told to run it. An installed one is told
-    which Pythons it has modules for, or what keeps the one for this Python from being loaded.
+    which system and which Pythons it has modules for, or what keeps the one for this Python from being
+    loaded.
     """
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
-    built_for = _versions(package)
+    system = SYSTEMS.get(sysconfig.get_platform())
+    built_for = _versions(package, system) if system else []
     if version in built_for:
         missing = f"the native module for Python {version} cannot be loaded ({error})"
     else:
@@ -27,19 +59,26 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
         # Inside Blender sys.executable may be another interpreter than the one that runs.
         python = f"python{version}" if "bpy" in sys.modules else sys.executable
         return f"{missing}; build it with scripts/build.sh {python}"
-    if not (sys.platform.startswith("linux") and os.uname().machine == "x86_64"):
-        return f"{missing}; {ZIP} is for Linux on x86-64 only: build it from source for this system"
+    if system is None:
+        names = " and ".join(each.name for each in SYSTEMS.values())
+        return f"{missing}; there are zips for {names} only: build RealModel from source for this system"
     if version in built_for:
-        return f"{missing}; it needs glibc 2.35, libstdc++ of GCC 11 and libgomp, or newer: install these"
+        return f"{missing}; {system.advice}"
     if built_for:
         return (
             f"{missing}; this copy is for Python {', '.join(built_for)}: use a Blender with one of these, or "
             "install a newer zip of RealModel"
         )
+    for other in SYSTEMS.values():
+        if _versions(package, other):
+            return (
+                f"{missing}; this copy is for {other.name}, and this is {system.name}: remove it, and "
+                f"install the zip whose name ends with {system.platform}.zip instead"
+            )
     return f"{missing}, as are those for others; remove this copy, and install {ZIP} instead"
 
 
-def _versions(package: Path) -> list[str]:
-    """The versions of Python that there are modules for, e.g. ["3.11", "3.13"]."""
-    tags = {path.name.split(".")[1].split("-")[1] for path in package.glob("_native.cpython-*")}
-    return sorted((f"3.{tag[1:]}" for tag in tags), key=lambda version: int(version[2:]))
+def _versions(package: Path, system: System) -> list[str]:
+    """The versions of Python that there are modules for on a system, e.g. ["3.11", "3.13"]."""
+    named = [re.fullmatch(rf"_native\.{system.module}", path.name) for path in package.glob("_native.*")]
+    return [f"3.{minor}" for minor in sorted({int(found[1]) for found in named if found})]

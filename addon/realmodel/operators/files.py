@@ -14,18 +14,18 @@ from bpy.props import (
 )
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import results
+from ..bl import results, scene_export
 from ..bl.display import shown_models
 from ..bl.export_job import ExportJob
 from ..bl.mesh_job import MeshJob
-from ..core import UsageError
+from ..core import InputRefused, UsageError
 from ..core.atomic import Outputs
 from ..core.exporters import FORMATS
 from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import write_report
 from ..core.simulation.mesh_request import MeshRequest
 from .background import InBackground
-from .reporting import Reporting, a_model, chosen_path, not_building
+from .reporting import Reporting, a_model, chosen_path, not_building, object_mode
 
 _MODELS = tuple(
     (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
@@ -234,6 +234,39 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
         self.report({"INFO"}, f"Wrote {self._request.line(mesh)}")
 
 
+class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
+    """Export what is displayed of the model to other 3D programs, with names, materials, looks, and custom
+    properties"""
+
+    bl_idname = "realmodel.export_scene"
+    bl_label = "Export Scene"
+    needs = (a_model, object_mode)
+
+    format: format_menu(scene_export.FORMATS)
+    filter_glob: format_filter(scene_export.FORMATS)
+    only_selected: BoolProperty(name="Selected Only", description="Only what is selected of the model")
+    bake_looks: BoolProperty(
+        name="Bake Looks",
+        description="Write textures of looks to pictures; otherwise materials have the color of the property",
+        default=True,
+    )
+    picture_size: IntProperty(
+        name="Picture Size",
+        description="Width of the pictures in pixels, one for each material with a look",
+        default=1024,
+        min=64,
+        max=16384,
+    )
+
+    def write(self, context, path):
+        items = scene_export.displayed(context)
+        if self.only_selected:
+            items = [item for item in items if item.select_get()]
+        if not items:
+            raise InputRefused("nothing of the model would be exported", advice="display or select blocks")
+        scene_export.write(context, items, path, self.picture_size if self.bake_looks else 0)
+
+
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
     """Write what was built: a full report, or the table of blocks"""
 
@@ -254,4 +287,4 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
                 write_report(model, path, file)
 
 
-CLASSES = (REALMODEL_OT_export, REALMODEL_OT_export_mesh, REALMODEL_OT_report)
+CLASSES = (REALMODEL_OT_export, REALMODEL_OT_export_mesh, REALMODEL_OT_export_scene, REALMODEL_OT_report)

@@ -91,6 +91,10 @@ def an_edit(context):
     return None if context.mode == "EDIT_MESH" else "nothing is being edited"
 
 
+def object_mode(context):
+    return None if context.mode == "OBJECT" else "an object is being edited; leave the mode first"
+
+
 def a_library(context):
     return None if len(context.scene.realmodel.library) else "the library is empty; add a property first"
 

@@ -12,6 +12,7 @@ _EXPORT = (
     ("save_project", "RealModel Project (.toml)", {}),
     ("export", "RealModel Model (cells, shapes, grids, maps)", {}),
     ("export_mesh", "RealModel Simulation Mesh (prisms, tetrahedra)", {}),
+    ("export_scene", "RealModel Scene with Looks (glTF, USD, OBJ)", {}),
     ("report", "RealModel Report (.json/.csv)", {}),
 )
 _IMPORT = (

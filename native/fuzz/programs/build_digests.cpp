@@ -102,7 +102,9 @@ void print_mesh_and_heights() {
 }  // namespace
 
 int main(int count, char** arguments) {
+#if !defined(_WIN32)
     setenv("OMP_WAIT_POLICY", "passive", 0);
+#endif
     if (count > 1) threads = std::atoi(arguments[1]);
     print_stacks();
     print_mesh_and_heights();

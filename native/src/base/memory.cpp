@@ -8,6 +8,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 #endif
+#if defined(_WIN32)
+#include <windows.h>
+#endif
 
 #include <algorithm>
 #include <fstream>
@@ -46,8 +49,16 @@ std::optional<std::uint64_t> only_number(const std::string& path) {
 }
 
 std::uint64_t left_by_machine() {
+#if defined(_WIN32)
+    MEMORYSTATUSEX status{};
+    status.dwLength = sizeof status;
+    if (GlobalMemoryStatusEx(&status) == 0) return unlimited;
+    // What is promised to processes must find room in memory or in the page file.
+    return std::min({status.ullAvailPhys, status.ullAvailPageFile, status.ullAvailVirtual});
+#else
     const auto kibibytes = named_number("/proc/meminfo", "MemAvailable:");
     return kibibytes ? *kibibytes * 1024 : unlimited;
+#endif
 }
 
 /// What one control group leaves; page cache that can be dropped counts as free.
@@ -108,6 +119,8 @@ std::uint64_t available_memory() {
 void give_back_memory() noexcept {
 #ifdef __GLIBC__
     malloc_trim(0);
+#elif defined(_WIN32)
+    _heapmin();
 #endif
 }
 

@@ -192,7 +192,8 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
         return (*nearest_)(middle);
     }
     exact::SpacePoints& points = overlay_.points();
-    const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
+    const std::pair<std::size_t, int> seen =
+        is_region ? overlay_.view_of(item) : std::pair<std::size_t, int>{2, 1};
     const SpacePointId p = is_region
                                ? overlay_.inner_point(item)
                                : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);

@@ -128,7 +128,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
                                Half(cut.above, cut.above_cells, own_nodes + new_positions.size(),
                                     chunks, threads, progress)};
     const auto half_of = [&](std::int32_t part) {
-        return half_cells[index(part)].side == kBelow ? 0UL : 1UL;
+        return half_cells[index(part)].side == kBelow ? std::size_t{0} : std::size_t{1};
     };
     Array<std::int32_t> number(half_cells.size());
     for (std::size_t i = 0; i < half_cells.size(); ++i) {

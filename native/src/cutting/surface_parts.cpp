@@ -153,15 +153,17 @@ void SurfaceParts::make_patches(Progress* progress) {
                 divider.divide(active[i], of_face[index(active[i])], divided_[begin / kChunk]);
         },
         1.0);
+    // active faces come in the order in which they were found to be active
+    auto of_active = active.begin();
     auto chunk = divided_.begin();
     std::size_t next = 0;  // patch in the chunk
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
-        const auto face = static_cast<std::int32_t>(f);
         if (!overlay_.is_active(f)) {
-            add_patch({face, sides_.of_face(f)});
+            add_patch({static_cast<std::int32_t>(f), sides_.of_face(f)});
             continue;
         }
+        const std::int32_t face = *of_active++;
         while (chunk != divided_.end() && next == chunk->face.size()) {
             ++chunk;
             next = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 
 #include "base/counting_sort.hpp"
@@ -103,7 +104,7 @@ double turn_of_steps(const Traces& traces, const Graph& graph, std::int32_t poin
     if (directions.empty()) return 0;
     double sharpest = 0;  // of the edges that have no straight continuation
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        double least = M_PI;
+        double least = std::numbers::pi;
         for (std::size_t j = 0; j < directions.size(); ++j) {
             if (i == j) continue;
             const double dot =
@@ -199,8 +200,9 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
             add(traces.points[index(chain.back())], number, share);
             // evenly, then as densely as it takes that none is far from an anchor
             const double apart = spacing(traces.points[index(chain[chain.size() / 2])]);
-            const double pieces = steps ? std::ceil(length / (M_SQRT2 * apart))
-                                        : std::max(1.0, std::round(length / (M_SQRT2 * apart)));
+            const double pieces =
+                steps ? std::ceil(length / (std::numbers::sqrt2 * apart))
+                      : std::max(1.0, std::round(length / (std::numbers::sqrt2 * apart)));
             for (const double step : {length / pieces, apart / 4}) {
                 double next = step, before = 0;
                 for (std::size_t i = 0; i + 1 < chain.size(); ++i) {

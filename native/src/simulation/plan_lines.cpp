@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
@@ -220,7 +221,7 @@ std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
                 for (std::size_t i = 0; i < choices.size(); ++i) {
                     double turn = direction(here, before) - direction(here, choices[i]);
                     while (turn <= 0)
-                        turn += 2 * M_PI;
+                        turn += 2 * std::numbers::pi;
                     if (turn < sharpest) {
                         sharpest = turn;
                         best = i;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <unordered_map>
 
 #include "base/counting_sort.hpp"
@@ -16,14 +17,14 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kLeastAngle = 20.0 * M_PI / 180;
-constexpr double kSharpAngle = 25.0 * M_PI / 180;  ///< made better, if it can be
+constexpr double kLeastAngle = 20.0 * std::numbers::pi / 180;
+constexpr double kSharpAngle = 25.0 * std::numbers::pi / 180;  ///< made better, if it can be
 constexpr int kImprovements = 12;
 constexpr double kStep =
     0.05;  ///< of an edge: how far nodes are moved where their middle is no better
 
 double least_angle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
-    double least = M_PI;
+    double least = std::numbers::pi;
     const std::array<const PlanPoint*, 3> p{&a, &b, &c};
     for (std::size_t i = 0; i < 3; ++i) {
         const PlanPoint &o = *p[i], &u = *p[(i + 1) % 3], &v = *p[(i + 2) % 3];
@@ -302,7 +303,7 @@ bool PlanTopology::move_nodes() {
             }
         }
         const auto least_around = [&] {
-            double least = M_PI;
+            double least = std::numbers::pi;
             for (const std::int32_t t : around[n]) {
                 const auto& own = mesh_.triangles[index(t)];
                 if (exact::orient2d(at(own[0]), at(own[1]), at(own[2])) <= 0) return 0.0;

@@ -290,7 +290,8 @@ bool StructureSides::is_inside(std::int32_t s, std::size_t part) {
     const bool is_region = item < overlay_.size() || item >= items_;
     const std::size_t own = item >= items_ ? item - items_ : item;
     exact::SpacePoints& points = overlay_.points();
-    const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(own) : std::pair{2UL, 1};
+    const std::pair<std::size_t, int> seen =
+        is_region ? overlay_.view_of(own) : std::pair<std::size_t, int>{2, 1};
     const auto p = is_region ? overlay_.inner_point(own)
                              : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
     // the ray goes down: a part on the upper side of a region crosses that region too

@@ -88,10 +88,10 @@ TEST(NearestDouble, RoundsToNearestTiesToEven) {
 
 TEST(NearestDouble, AgreesWithDivisionOfDoubles) {
     std::mt19937_64 random(3);
-    std::uniform_int_distribution<long> number(1, 1L << 52);
+    std::uniform_int_distribution<std::int64_t> number(1, std::int64_t{1} << 52);
     for (int i = 0; i < 10000; ++i) {
-        const long a = number(random), b = number(random);
-        EXPECT_EQ(nearest_double(a, b, 0), static_cast<double>(a) / static_cast<double>(b));
+        const auto a = static_cast<double>(number(random)), b = static_cast<double>(number(random));
+        EXPECT_EQ(nearest_double(mpz_class(a), mpz_class(b), 0), a / b);
     }
 }
 

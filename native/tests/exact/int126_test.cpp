@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 #include <vector>
 
 #include "exact/arithmetic.hpp"
@@ -20,7 +21,7 @@ TEST(Int126, AgreesWithGmpOrIsNotKnown) {
         for (int i = 0; i < 4; ++i) {
             const auto value = static_cast<std::int64_t>(random()) >> (2 + random() % 61);
             shorts.emplace_back(value);
-            longs.emplace_back(static_cast<long>(value));
+            longs.push_back(mpz_class(std::to_string(value)));
         }
         for (int step = 0; step < 12; ++step) {
             const std::size_t i = random() % shorts.size(), j = random() % shorts.size();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Making, writing, repairing and minimizing stacks.
 #include <gtest/gtest.h>
+#if !defined(_WIN32)
 #include <unistd.h>
+#endif
 
 #include <cmath>
 #include <csignal>
@@ -140,6 +142,7 @@ TEST(Judge, CallsARefusalOfWhatShouldBeValidADefect) {
     EXPECT_EQ(defects[0].kind, "refused");
 }
 
+#if !defined(_WIN32)  // where there is no fork()
 TEST(Examination, TellsWhatAProcessFound) {
     const auto found = in_a_process(
         [] {
@@ -172,6 +175,7 @@ TEST(Examination, ACrashAndAHangAreDefects) {
     ASSERT_EQ(hung.size(), 1u);
     EXPECT_EQ(hung[0].kind, "hang");
 }
+#endif
 
 }  // namespace
 }  // namespace realmodel::fuzz

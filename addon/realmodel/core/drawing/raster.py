@@ -112,14 +112,14 @@ def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> Non
     begin = np.concatenate(rings)
     end = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     height, width = pixels.shape[:2]
-    low = np.maximum(np.floor(begin.min(axis=0)).astype(int), 0)
-    high = np.minimum(np.ceil(begin.max(axis=0)).astype(int) + 1, (width, height))
+    low = np.maximum(np.floor(begin.min(axis=0)).astype(np.int64), 0)
+    high = np.minimum(np.ceil(begin.max(axis=0)).astype(np.int64) + 1, (width, height))
     if (high <= low).any():
         return
     columns, rows = (high - low).tolist()
     begin, end = ((at - low) * (1.0, _SUBROWS) for at in (begin, end))
-    first = np.clip(np.ceil(np.minimum(begin[:, 1], end[:, 1]) - 0.5), 0, rows * _SUBROWS).astype(int)
-    last = np.clip(np.ceil(np.maximum(begin[:, 1], end[:, 1]) - 0.5), 0, rows * _SUBROWS).astype(int)
+    first = np.clip(np.ceil(np.minimum(begin[:, 1], end[:, 1]) - 0.5), 0, rows * _SUBROWS).astype(np.int64)
+    last = np.clip(np.ceil(np.maximum(begin[:, 1], end[:, 1]) - 0.5), 0, rows * _SUBROWS).astype(np.int64)
     count = last - first
     edge = np.repeat(np.arange(len(count)), count)
     row = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count) + first[edge]
@@ -127,7 +127,7 @@ def _fill(pixels: np.ndarray, rings: list[np.ndarray], color: np.ndarray) -> Non
     share = (row + 0.5 - begin[edge, 1]) / step[edge, 1]
     x = np.clip(begin[edge, 0] + share * step[edge, 0], 0.0, columns)
     direction = np.sign(step[edge, 1])
-    column = np.floor(x).astype(int)
+    column = np.floor(x).astype(np.int64)
     own = 1.0 - (x - column)
     at = row * (columns + 2) + column
     size = rows * _SUBROWS * (columns + 2)

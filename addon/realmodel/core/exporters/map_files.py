@@ -85,7 +85,7 @@ def _layers(model, step: Callable[[float], None], interval) -> list[_Layer]:
     library = model.project.library
     columns = {"block": "TEXT", "property": "INTEGER", "rock": "TEXT", "compartment": "TEXT"}
     columns |= {"color": "TEXT", "area": "REAL"}
-    colors = np.rint(model.block_colors * 255).astype(int).tolist()
+    colors = np.rint(model.block_colors * 255).astype(np.int64).tolist()
     names = model.compartment_names
     areas = _Layer(AREAS, columns, [])
     for area in geological_map(model, ground):

@@ -107,7 +107,7 @@ def find_grid(points: np.ndarray) -> RegularGrid:
 def _axes(plan: np.ndarray) -> np.ndarray:
     """The shortest steps between points, and the shortest across them: [[x, y], [x, y]]."""
     steps = []
-    for k in np.linspace(0, len(plan) - 1, min(len(plan), _SAMPLE)).astype(int):
+    for k in np.linspace(0, len(plan) - 1, min(len(plan), _SAMPLE)).astype(np.int64):
         d = plan - plan[k]
         squared = np.einsum("ij,ij->i", d, d)
         squared[squared == 0] = np.inf

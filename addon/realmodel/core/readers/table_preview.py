@@ -71,7 +71,7 @@ def _sampled_rows(table: Table) -> list[list[str]]:
     """All rows of a table, or of a long one those of pieces of it."""
     body = np.arange(table.layout.body, len(table.raw), _PIECE)
     if len(body) > _PIECES:
-        body = body[np.linspace(0, len(body) - 1, _PIECES).astype(int)]
+        body = body[np.linspace(0, len(body) - 1, _PIECES).astype(np.int64)]
     rows = []
     for begin in body.tolist():
         piece = table.raw[begin : begin + _PIECE].decode(table.encoding, "replace").split("\n")

@@ -213,7 +213,7 @@ class PlanGrid:
         self.begin = np.searchsorted(cell[order], np.arange(self.count**2 + 1))
 
     def _cells(self, plan: np.ndarray) -> np.ndarray:
-        return np.clip((plan - self.origin) / self.step, 0, self.count - 1).astype(int)
+        return np.clip((plan - self.origin) / self.step, 0, self.count - 1).astype(np.int64)
 
     def over(self, plan: np.ndarray):
         """Pairs of plan points (N, 2) and polygons whose boxes they are in, some at a time: rows of the

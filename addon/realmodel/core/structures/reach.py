@@ -28,7 +28,7 @@ class Reach:
         self.structures = structures
         self.low, self.size = structures.box[0], structures.box[1] - structures.box[0]
         step = self.size[:2].max() / _CELLS[0]
-        self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(int)
+        self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
         self.step = self.size / self.cells
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
@@ -73,7 +73,7 @@ class Reach:
         first = np.floor((low - near - self.low[:n]) / self.step[:n])
         last = np.floor((high + near - self.low[:n]) / self.step[:n])
         limit = self.cells[:n] - 1
-        return np.clip(first, 0, limit).astype(int), np.clip(last, 0, limit).astype(int)
+        return np.clip(first, 0, limit).astype(np.int64), np.clip(last, 0, limit).astype(np.int64)
 
     def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
         beyond = native_module().structure_continuation(fault.native(), self.structures.box)

