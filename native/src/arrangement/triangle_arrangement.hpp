@@ -44,9 +44,6 @@ public:
     /// The same for many, numbered in their order.
     void add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
                  const Progress* progress);
-    /// Puts nodes on the edges of a triangle. All triangles must be there by then.
-    /// @param outline  its corners and these nodes, in order
-    void set_outline(std::int32_t triangle, std::span<const SpacePointId> outline);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
@@ -90,28 +87,14 @@ private:
     struct Triangle {
         std::array<SpacePointId, 3> corners;
         std::size_t axis = 0;
-        int facing = 0;                     ///< which way it turns seen along its axis, 0: no area
-        std::vector<SpacePointId> points;   ///< in order, once all are there
-        std::vector<Segment> segments;      ///< likewise
-        std::vector<SpacePointId> outline;  ///< empty where it has no nodes but its corners
-        std::span<const SpacePointId> nodes_around() const {
-            if (outline.empty()) return corners;
-            return outline;
-        }
-        /// What its edges are divided into from the first.
-        std::size_t edge_count() const { return nodes_around().size(); }
-        std::array<SpacePointId, 2> edge(std::size_t i) const {
-            const auto nodes = nodes_around();
-            return {nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]};
-        }
+        int facing = 0;                    ///< which way it turns seen along its axis, 0: no area
+        std::vector<SpacePointId> points;  ///< in order, once all are there
+        std::vector<Segment> segments;     ///< likewise
         /// Its segments, then its edges.
-        std::size_t line_count() const { return segments.size() + edge_count(); }
+        std::size_t line_count() const { return segments.size() + 3; }
         std::array<SpacePointId, 2> line(std::size_t i) const {
-            return i < segments.size() ? segments[i].ends : edge(i - segments.size());
-        }
-        /// Whether nothing meets it.
-        bool is_whole() const {
-            return segments.empty() && points.size() + corners.size() == edge_count();
+            if (i < segments.size()) return segments[i].ends;
+            return {corners[i - segments.size()], corners[(i - segments.size() + 1) % 3]};
         }
     };
     /// On which sides of the plane of another triangle corners lie.
@@ -143,7 +126,6 @@ private:
     static Interval interval_of(const Triangle& own, const Sides& sides, std::int32_t plane);
     int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
               const End& on_b) const;
-    End on_sub_edge(const Triangle& own, const End& end) const;
     void add_segment(std::int32_t one, std::int32_t other, SpacePointId p, SpacePointId q);
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);

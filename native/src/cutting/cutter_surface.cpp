@@ -29,37 +29,6 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         triangles.push_back({t[0].node, t[1].node, t[2].node});
 }
 
-std::optional<std::size_t> upright_sides(std::span<const NodeId> face, const ComplexView& model,
-                                         std::vector<NodeId>& corners) {
-    const std::size_t n = face.size();
-    const auto at = [&](std::size_t i) { return model.vertex(face[i % n]); };
-    const auto turns_at = [&](std::size_t i) {  // whether another line begins at a corner
-        const Position p = at(i), before = at(i + n - 1);
-        return p[0] != before[0] || p[1] != before[1];
-    };
-    std::size_t first = n, second = n, lines = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!turns_at(i)) continue;
-        ++lines;
-        (first == n ? first : second) = i;
-    }
-    if (lines != 2) return std::nullopt;
-    // one side goes up and the other down
-    int direction = 0;
-    for (const auto& [begin, end] : {std::pair(first, second), std::pair(second, first + n)}) {
-        for (std::size_t i = begin + 1; i < end; ++i) {
-            const double step = at(i)[2] - at(i - 1)[2];
-            if (step == 0 || (direction != 0 && (step > 0) != (direction > 0))) return std::nullopt;
-            direction = step > 0 ? 1 : -1;
-        }
-        direction = -direction;
-    }
-    corners.clear();
-    for (std::size_t i = first; i < first + n; ++i)
-        corners.push_back(face[i % n]);
-    return second - first;
-}
-
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
     CutterSurface surface;
     std::vector<NodeId> number(model.vertex_count(), -1);

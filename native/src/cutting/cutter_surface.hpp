@@ -31,12 +31,6 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
 void triangulate_face(const ComplexView& model, std::size_t face,
                       std::vector<std::array<std::int32_t, 3>>& triangles);
 
-/// The corners of a face between two upright lines, those on one line after those on the other,
-/// each from end to end; any number of them lie on either. All lie in one plane exactly.
-/// @return how many are on the first line; nothing of other faces
-std::optional<std::size_t> upright_sides(std::span<const NodeId> face, const ComplexView& model,
-                                         std::vector<NodeId>& corners);
-
 /// A face in convex polygons, which are added.
 void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons);
 

@@ -199,7 +199,6 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) 
 /// for their rounding. No two share one.
 void SurfaceOverlay::name_vertices() {
     vertex_point_.assign(model_.vertex_count(), kNone);
-    is_moved_.assign(model_.vertex_count(), 0);
     name_vertices_of(active_faces_);
     activate_beside_flat_triangles();
 }
@@ -240,7 +239,6 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         is_taken(point) = 0;
         is_taken(*found) = 1;
         point = *found;
-        is_moved_[index(vertices[i])] = 1;
     }
 }
 
@@ -359,64 +357,20 @@ void SurfaceOverlay::overlay_all() {
     arrangement_.divide(threads_, progress_);
 }
 
-/// As upright_sides, for a face with all vertices where the model has them; 0 of other faces.
-std::size_t SurfaceOverlay::upright_turn(std::size_t face, std::vector<NodeId>& corners) const {
-    const auto nodes = model_.face(face);
-    if (nodes.size() <= 3 ||
-        std::ranges::any_of(nodes, [this](NodeId v) { return is_moved_[index(v)] != 0; }))
-        return 0;
-    return upright_sides(nodes, model_, corners).value_or(0);
-}
-
-/// The triangles of active faces, then those of the surface. A wall between two upright lines has
-/// two, whatever ends on its sides: that is exactly in their planes, unless it is taken to be on
-/// the surface.
+/// The triangles of active faces, then those of the surface.
 void SurfaceOverlay::add_triangles() {
     struct Triangles {
         std::vector<std::array<SpacePointId, 3>> corners;
         std::vector<std::int32_t> faces;
-        std::vector<SpacePointId> nodes;  ///< of the outlines that are more than corners
-        std::vector<std::array<std::size_t, 2>> outlines;  ///< whose, and where the nodes end
     };
     std::vector<Triangles> found(chunks_of(active_faces_));
-    parallel_ranges(
-        active_faces_.size(), kFaces, threads_, progress_,
-        [&](std::size_t begin, std::size_t end) {
-            Triangles& own = found[begin / kFaces];
-            const auto add = [&](std::int32_t face, const std::array<NodeId, 3>& t) {
-                auto& corners = own.corners.emplace_back();
-                for (std::size_t i = 0; i < 3; ++i)
-                    corners[i] = vertex_point_[index(t[i])];
-                own.faces.push_back(face);
-            };
-            const auto add_outlined = [&](std::int32_t face, const std::array<NodeId, 3>& t,
-                                          auto&& outline) {
-                add(face, t);
-                if (std::ranges::distance(outline) == 3) return;
-                for (const NodeId v : outline)
-                    own.nodes.push_back(vertex_point_[index(v)]);
-                own.outlines.push_back({own.corners.size() - 1, own.nodes.size()});
-            };
-            std::vector<std::array<std::int32_t, 3>> triangles;
-            std::vector<NodeId> c;
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::int32_t f = active_faces_[i];
-                if (const std::size_t turn = upright_turn(index(f), c); turn > 0) {
-                    if (turn > 1)
-                        add_outlined(f, {c[0], c[turn - 1], c[turn]}, std::span(c).first(turn + 1));
-                    if (turn + 1 < c.size()) {
-                        const NodeId start = c[0], end_of_side = c.back();
-                        c.erase(c.begin() + 1, c.begin() + static_cast<std::ptrdiff_t>(turn));
-                        add_outlined(f, {start, c[1], end_of_side}, c);
-                    }
-                    continue;
-                }
-                triangulate_face(model_, index(f), triangles);
-                for (const auto& t : triangles)
-                    add(f, t);
-            }
-        },
-        0.02);
+    each_triangle_of(
+        model_, active_faces_, threads_, progress_,
+        [&](std::size_t chunk, std::int32_t face, const auto& t) {
+            found[chunk].corners.push_back({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
+                                            vertex_point_[index(t[2])]});
+            found[chunk].faces.push_back(face);
+        });
     std::vector<std::array<SpacePointId, 3>> corners;
     for (const Triangles& own : found) {
         corners.insert(corners.end(), own.corners.begin(), own.corners.end());
@@ -433,16 +387,6 @@ void SurfaceOverlay::add_triangles() {
         }
     }
     arrangement_.add_all(corners, threads_, progress_);
-    std::size_t first = 0;
-    for (const Triangles& own : found) {
-        std::size_t begin = 0;
-        for (const auto& [triangle, end] : own.outlines) {
-            arrangement_.set_outline(static_cast<std::int32_t>(first + triangle),
-                                     std::span(own.nodes).subspan(begin, end - begin));
-            begin = end;
-        }
-        first += own.corners.size();
-    }
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.

@@ -124,7 +124,6 @@ private:
     std::vector<std::int32_t> active_faces_;
     std::vector<SpacePointId>
         vertex_point_;                    ///< of the model's vertices, none away from the surface
-    std::vector<std::uint8_t> is_moved_;  ///< of the model's vertices: to a point of the surface
     std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface

@@ -51,24 +51,6 @@ public:
 
 const std::array<Position, 3> kFloor{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 
-TEST(TriangleArrangement, PointsOnEdgesAreNodesOfWhatIsThere) {
-    Arrangement a;
-    const std::array outline{a.points.add(kFloor[0]), a.points.add(Position{1, 0, 0}),
-                             a.points.add(Position{3, 0, 0}), a.points.add(kFloor[1]),
-                             a.points.add(kFloor[2])};
-    const auto level = a.triangles.add({outline[0], outline[3], outline[4]});
-    const auto upright = a.add({{{2, -1, -1}, {2, -1, 1}, {2, 9, 0}}});  // x = 2
-    a.triangles.set_outline(level, outline);
-    a.divide(2);
-    const auto regions = a.regions_of(level);
-    ASSERT_EQ(regions.size(), 2U);
-    // x < 2 has two more corners, those at x = 2 among them; x > 2 has one more
-    EXPECT_EQ(regions[0].loops[0].size() + regions[1].loops[0].size(), 5U + 4U);
-    for (const double x : {0, 1, 2, 3, 4})
-        EXPECT_TRUE(a.nodes_of(level).contains({x, 0, 0}));
-    EXPECT_FALSE(a.nodes_of(upright).contains({1, 0, 0}));
-}
-
 TEST(TriangleArrangement, TrianglesThatCrossShareASegment) {
     Arrangement a;
     const auto level = a.add(kFloor);

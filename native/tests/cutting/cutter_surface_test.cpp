@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "../validation/small_complex.hpp"
 #include "prism.hpp"
 #include "realmodel/base/errors.hpp"
@@ -56,29 +54,6 @@ TEST(CutterSurface, AFaceThatIsNotConvexIsDividedWithinItself) {
     Polygons polygons;
     divide_face(u.view(), 0, polygons);
     EXPECT_EQ(polygons.size(), 3U);  // the foot and the towers
-}
-
-TEST(CutterSurface, AWallBetweenTwoUprightLinesHasASideOnEach) {
-    // on x = 1 corners at heights 0, 2, 3, and on x = 4 at 1, 5
-    std::vector<double> vertices{1, 7, 2, 1, 7, 0, 4, 7, 1, 4, 7, 5, 1, 7, 3, 4, 7, 9};
-    ComplexView model;
-    model.vertices = vertices;
-    std::vector<NodeId> corners;
-    std::vector<NodeId> face{0, 1, 2, 3, 4};
-    for (std::size_t turn = 0; turn < face.size(); ++turn) {
-        const auto second = upright_sides(face, model, corners);
-        ASSERT_TRUE(second);
-        const bool west_first = corners[0] == 4;
-        EXPECT_EQ(*second, west_first ? 3U : 2U);
-        EXPECT_EQ(corners, west_first ? (std::vector<NodeId>{4, 0, 1, 2, 3})
-                                      : (std::vector<NodeId>{2, 3, 4, 0, 1}));
-        std::ranges::rotate(face, face.begin() + 1);
-    }
-    // a side that turns back, two that go up, and a corner elsewhere
-    EXPECT_FALSE(upright_sides(std::array{4, 1, 0, 2, 3}, model, corners));
-    EXPECT_FALSE(upright_sides(std::array{0, 4, 2, 3}, model, corners));
-    vertices[0] = 1.5;
-    EXPECT_FALSE(upright_sides(std::array{0, 1, 2, 3, 4}, model, corners));
 }
 
 }  // namespace

@@ -1,0 +1,520 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles divided along what they intersect.
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include "arrangement/triangle_arrangement.hpp"
+#include "arrangement/triangle_regions.hpp"
+#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
+#include "base/parallel_sort.hpp"
+#include "spatial/box_tree.hpp"
+
+namespace realmodel::arrangement {
+
+using exact::compare;
+using spatial::Box;
+
+namespace {
+
+/// So many triangles, or lines of a large one, are one piece of work.
+constexpr std::size_t kChunk = 1 << 8;
+/// So many points or segments make a triangle a large one: its lines are shared among threads, and
+/// found by a tree.
+constexpr std::size_t kLarge = 1 << 9;
+
+Box box_of(const exact::SpacePoints& points, const std::array<SpacePointId, 2>& line) {
+    Box box;
+    for (const SpacePointId end : line)
+        box.include(points.rounded(end));
+    return box;
+}
+
+/// The results of all ranges, one after another.
+template <class Item>
+std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
+    std::vector<Item> all;
+    for (auto& range : ranges)
+        all.insert(all.end(), std::make_move_iterator(range.begin()),
+                   std::make_move_iterator(range.end()));
+    return all;
+}
+
+}  // namespace
+
+/// Calls visit(number) for all triangles, those of a chunk one after another on one thread.
+template <class Visit>
+void TriangleArrangement::each_triangle(int threads, const Progress* progress,
+                                        const Visit& visit) const {
+    parallel_ranges(triangles_.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i)
+                            visit(i);
+                    });
+}
+
+/// Finds the nodes of one triangle on lines in it.
+class TriangleArrangement::NodesOnLines {
+public:
+    explicit NodesOnLines(const TriangleArrangement& arrangement)
+        : arrangement_(arrangement), points_(arrangement.points_) {}
+    NodesOnLines(const TriangleArrangement& arrangement, const Triangle& t)
+        : NodesOnLines(arrangement) {
+        take(t);
+    }
+
+    /// Goes on to another triangle.
+    void take(const Triangle& t) {
+        t_ = &t;
+        axis_ = (t.axis + 1) % 3;
+        tree_.reset();
+        in_order_.assign(t.points.begin(), t.points.end());
+        if (in_order_.size() > kLarge) {
+            std::vector<Box> boxes(in_order_.size());
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                boxes[i].include(points_.rounded(in_order_[i]));
+            tree_.emplace(std::move(boxes));
+            return;
+        }
+        std::sort(in_order_.begin(), in_order_.end(), [this](SpacePointId p, SpacePointId q) {
+            return std::pair(coordinate(p), p) < std::pair(coordinate(q), q);
+        });
+    }
+
+    /// The nodes between two others, in order from the first to the second.
+    void find(const std::array<SpacePointId, 2>& line, std::vector<SpacePointId>& found) const {
+        const SpacePointId a = line[0], b = line[1];
+        found.clear();
+        const auto visit = [&](SpacePointId p) {
+            if (is_between(p, a, b)) found.push_back(p);
+        };
+        std::ranges::for_each(t_->corners, visit);
+        const auto visit_point = [&](SpacePointId p) {
+            if (std::ranges::find(t_->corners, p) == t_->corners.end()) visit(p);
+        };
+        if (tree_) {
+            tree_->find(box_of(points_, line),
+                        [&](std::int32_t i) { visit_point(in_order_[index(i)]); });
+        } else {
+            const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
+            auto next =
+                std::lower_bound(in_order_.begin(), in_order_.end(), low,
+                                 [this](SpacePointId p, double x) { return coordinate(p) < x; });
+            for (; next != in_order_.end() && coordinate(*next) <= high; ++next)
+                visit_point(*next);
+        }
+        if (found.size() < 2) return;
+        const int direction = compare(points_, a, b);
+        std::sort(found.begin(), found.end(), [this, direction](SpacePointId p, SpacePointId q) {
+            return compare(points_, p, q) * direction > 0;
+        });
+    }
+
+private:
+    double coordinate(SpacePointId p) const { return points_.rounded(p)[axis_]; }
+    /// In the view in which the triangle has an area, nothing in its plane falls together.
+    bool is_between(SpacePointId p, SpacePointId a, SpacePointId b) const {
+        if (p == a || p == b) return false;
+        const Position &r = points_.rounded(p), &s = points_.rounded(a), &e = points_.rounded(b);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (r[k] < std::min(s[k], e[k]) || r[k] > std::max(s[k], e[k])) return false;
+        }
+        if (!points_.was_constructed_on(p, a, b) && arrangement_.orientation(*t_, a, b, p) != 0)
+            return false;
+        return compare(points_, a, p) * compare(points_, p, b) > 0;
+    }
+
+    const TriangleArrangement& arrangement_;
+    const exact::SpacePoints& points_;
+    const Triangle* t_ = nullptr;
+    std::size_t axis_ = 0;
+    /// The triangle's points: in the order of one coordinate, unless there is a tree of them.
+    std::vector<SpacePointId> in_order_;
+    std::optional<spatial::BoxTree> tree_;
+};
+
+/// Those of some triangles that have many points or segments.
+std::vector<std::int32_t> TriangleArrangement::large_triangles(
+    std::span<const std::int32_t> among) const {
+    std::vector<std::int32_t> found;
+    for (const std::int32_t triangle : among) {
+        const Triangle& t = triangles_[index(triangle)];
+        if (t.facing != 0 && std::max(t.points.size(), t.segments.size()) > kLarge)
+            found.push_back(triangle);
+    }
+    return found;
+}
+
+/// Puts the points and segments of all triangles in order, each once.
+void TriangleArrangement::sort_all(int threads, const Progress* progress) {
+    each_triangle(threads, progress, [this](std::size_t i) {
+        const auto order = [](auto& of) {
+            std::sort(of.begin(), of.end());
+            of.erase(std::unique(of.begin(), of.end()), of.end());
+        };
+        order(triangles_[i].points);
+        order(triangles_[i].segments);
+    });
+}
+
+/// Whether segments of a triangle whose boxes meet cross each other.
+bool TriangleArrangement::do_cross(const Triangle& t, const SegmentPair& pair) const {
+    const auto& [a, b, c, d] = pair;
+    if (a == c || a == d || b == c || b == d) return false;
+    return orientation(t, a, b, c) * orientation(t, a, b, d) < 0 &&
+           orientation(t, c, d, a) * orientation(t, c, d, b) < 0;
+}
+
+namespace {
+
+/// Segments of a triangle with the boxes around them, in the order of one coordinate of these.
+template <class Segment>
+struct BoxedSegment {
+    const Segment* segment;
+    Box box;
+};
+
+template <class Segment>
+std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& points,
+                                                  const std::vector<Segment>& segments,
+                                                  std::size_t axis) {
+    std::vector<BoxedSegment<Segment>> boxed;
+    boxed.reserve(segments.size());
+    for (const Segment& s : segments)
+        boxed.push_back({&s, box_of(points, s.ends)});
+    std::sort(boxed.begin(), boxed.end(), [axis](const auto& s, const auto& r) {
+        const double x = s.box.low[axis], y = r.box.low[axis];
+        return x != y ? x < y : *s.segment < *r.segment;
+    });
+    return boxed;
+}
+
+}  // namespace
+
+/// Pairs of segments of one triangle that cross each other.
+std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
+    const Triangle& t) const {
+    std::vector<SegmentPair> found;
+    if (t.facing == 0 || t.segments.size() < 2) return found;
+    const std::size_t axis = (t.axis + 1) % 3;
+    const auto boxed = boxed_segments(points_, t.segments, axis);
+    for (std::size_t i = 0; i < boxed.size(); ++i) {
+        const auto [a, b] = boxed[i].segment->ends;
+        for (std::size_t j = i + 1; j < boxed.size(); ++j) {
+            if (boxed[j].box.low[axis] > boxed[i].box.high[axis]) break;
+            if (!boxed[i].box.meets(boxed[j].box)) continue;
+            const auto [c, d] = boxed[j].segment->ends;
+            if (do_cross(t, {a, b, c, d})) found.push_back({a, b, c, d});
+        }
+    }
+    return found;
+}
+
+/// The same, in the same order, of a large triangle.
+std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
+    const Triangle& t, int threads, const Progress* progress) const {
+    const auto boxed = boxed_segments(points_, t.segments, (t.axis + 1) % 3);
+    std::vector<Box> boxes;
+    boxes.reserve(boxed.size());
+    for (const auto& own : boxed)
+        boxes.push_back(own.box);
+    const spatial::BoxTree tree(std::move(boxes));
+    std::vector<std::vector<SegmentPair>> found((boxed.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        boxed.size(), kChunk, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            std::vector<std::size_t> near;
+            for (std::size_t i = begin; i < end; ++i) {
+                near.clear();
+                tree.find(boxed[i].box, [&](std::int32_t j) {
+                    if (index(j) > i) near.push_back(index(j));
+                });
+                std::sort(near.begin(), near.end());
+                const auto [a, b] = boxed[i].segment->ends;
+                for (const std::size_t j : near) {
+                    const auto [c, d] = boxed[j].segment->ends;
+                    if (do_cross(t, {a, b, c, d})) found[begin / kChunk].push_back({a, b, c, d});
+                }
+            }
+        },
+        0.02);
+    return joined(found);
+}
+
+/// Notes where segments of one triangle cross each other: only where the triangles of a group do
+/// cross.
+void TriangleArrangement::intersect_segments(int threads, const Progress* progress) {
+    std::vector<std::vector<SegmentPair>> found(triangles_.size());
+    each_triangle(threads, progress, [&](std::size_t i) {
+        if (triangles_[i].segments.size() <= kLarge) found[i] = crossing_segments(triangles_[i]);
+    });
+    std::vector<std::pair<std::size_t, SegmentPair>> pairs;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (triangles_[i].facing != 0 && triangles_[i].segments.size() > kLarge)
+            found[i] = crossing_segments(triangles_[i], threads, progress);
+        for (const SegmentPair& pair : found[i])
+            pairs.push_back({i, pair});
+        found[i] = {};
+    }
+    // where they do is found on all threads and numbered in order
+    constexpr std::size_t kAtOnce = 1 << 14;
+    std::vector<exact::SpacePoints::Reduced> at;
+    for (std::size_t first = 0; first < pairs.size(); first += kAtOnce) {
+        at.resize(std::min(kAtOnce, pairs.size() - first));
+        parallel_ranges(
+            at.size(), kChunk, threads, progress,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    const auto& [i, pair] = pairs[first + k];
+                    const auto& [a, b, c, d] = pair;
+                    at[k] = points_.crossing(triangles_[i].axis, a, b, c, d);
+                }
+            },
+            0.02);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            triangles_[pairs[first + k].first].points.push_back(points_.add(std::move(at[k])));
+    }
+}
+
+/// The points on the edges and segments of a triangle, for the others that share these.
+void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
+                                      std::vector<Message>& messages) const {
+    const Triangle& t = triangles_[index(triangle)];
+    // of a triangle without area one corner may lie on the edge between the others
+    if (t.points.empty() && t.facing != 0) return;
+    nodes_on.take(t);
+    messages_of(triangle, nodes_on, 0, t.line_count(), messages);
+}
+
+/// The points on some lines of a triangle.
+void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
+                                      std::size_t begin, std::size_t end,
+                                      std::vector<Message>& messages) const {
+    const Triangle& t = triangles_[index(triangle)];
+    const auto send = [&](std::int32_t to, SpacePointId p) {
+        const Triangle& other = triangles_[index(to)];
+        if (to == triangle ||
+            std::find(other.corners.begin(), other.corners.end(), p) != other.corners.end() ||
+            std::binary_search(other.points.begin(), other.points.end(), p))
+            return;
+        messages.push_back({to, p});
+    };
+    std::vector<SpacePointId> on;
+    for (std::size_t i = begin; i < end; ++i) {
+        nodes_on.find(t.line(i), on);
+        if (i < t.segments.size()) {
+            for (const SpacePointId p : on)
+                send(t.segments[i].other, p);
+            continue;
+        }
+        if (on.empty()) continue;
+        const auto [a, b] = t.line(i);
+        const auto edge = unordered(a, b);
+        for (auto other = std::lower_bound(of_edge_.begin(), of_edge_.end(), std::pair(edge, 0));
+             other != of_edge_.end() && other->first == edge; ++other) {
+            for (const SpacePointId p : on)
+                send(other->second, p);
+        }
+    }
+}
+
+/// Sends the points on edges and segments to the other triangles that share these, until all of
+/// them know them.
+void TriangleArrangement::exchange_points(int threads, const Progress* progress) {
+    std::vector<std::int32_t> changed(triangles_.size());
+    std::iota(changed.begin(), changed.end(), 0);
+    while (!changed.empty()) {
+        std::vector<std::vector<Message>> messages((changed.size() + kChunk - 1) / kChunk);
+        const std::vector<std::int32_t> large = large_triangles(changed);
+        parallel_ranges(changed.size(), kChunk, threads, progress,
+                        [&](std::size_t begin, std::size_t end) {
+                            NodesOnLines nodes_on(*this);
+                            for (std::size_t i = begin; i < end; ++i) {
+                                if (!std::ranges::binary_search(large, changed[i]))
+                                    messages_of(changed[i], nodes_on, messages[begin / kChunk]);
+                            }
+                        });
+        for (const std::int32_t triangle : large) {
+            const Triangle& t = triangles_[index(triangle)];
+            const NodesOnLines nodes_on(*this, t);
+            const std::size_t first = messages.size();
+            messages.resize(first + (t.line_count() + kChunk - 1) / kChunk);
+            parallel_ranges(
+                t.line_count(), kChunk, threads, progress,
+                [&](std::size_t begin, std::size_t end) {
+                    messages_of(triangle, nodes_on, begin, end, messages[first + begin / kChunk]);
+                },
+                0.02);
+        }
+        changed.clear();
+        for (const auto& chunk : messages) {
+            for (const Message& message : chunk) {
+                auto& points = triangles_[index(message.to)].points;
+                const auto at = std::lower_bound(points.begin(), points.end(), message.point);
+                if (at != points.end() && *at == message.point) continue;
+                points.insert(at, message.point);
+                changed.push_back(message.to);
+            }
+        }
+        std::sort(changed.begin(), changed.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    }
+}
+
+/// What some lines of a triangle are divided into.
+void TriangleArrangement::find_edges(const Triangle& t, const NodesOnLines& nodes_on,
+                                     std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
+    std::vector<SpacePointId> on;
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto [a, b] = t.line(i);
+        nodes_on.find({a, b}, on);
+        SpacePointId last = a;
+        for (const SpacePointId p : on) {
+            edges.push_back(unordered(last, p));
+            last = p;
+        }
+        edges.push_back(unordered(last, b));
+    }
+}
+
+/// Finds the regions of one triangle after another in the same memory.
+class TriangleArrangement::RegionFinder {
+public:
+    explicit RegionFinder(const TriangleArrangement& arrangement)
+        : arrangement_(arrangement), nodes_on_(arrangement), graph_(arrangement.points_) {}
+
+    void add_regions(std::int32_t triangle, Regions& regions) {
+        const Triangle& t = arrangement_.triangles_[index(triangle)];
+        if (t.facing == 0) return;
+        if (t.points.empty() && t.segments.empty()) {
+            regions.loops.add_loop(t.corners);
+            regions.loops.end_region();
+            regions.triangles.push_back(triangle);
+            return;
+        }
+        edges_.clear();
+        nodes_on_.take(t);
+        find_edges(t, nodes_on_, 0, t.line_count(), edges_);
+        add_regions(triangle, edges_, regions);
+    }
+    /// @param edges  all that its lines are divided into; put in order
+    void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
+        const Triangle& t = arrangement_.triangles_[index(triangle)];
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        graph_.add_regions({t.axis, t.facing}, edges, regions.loops);
+        regions.triangles.resize(regions.loops.size(), triangle);
+    }
+
+private:
+    const TriangleArrangement& arrangement_;
+    NodesOnLines nodes_on_;
+    PlaneGraph graph_;
+    std::vector<Edge> edges_;
+};
+
+/// The regions of each large triangle.
+std::vector<Regions> TriangleArrangement::regions_of_large(std::span<const std::int32_t> large,
+                                                           int threads,
+                                                           const Progress* progress) const {
+    std::vector<std::vector<Edge>> edges(large.size());
+    for (std::size_t n = 0; n < large.size(); ++n) {
+        const Triangle& t = triangles_[index(large[n])];
+        const NodesOnLines nodes_on(*this, t);
+        std::vector<std::vector<Edge>> found((t.line_count() + kChunk - 1) / kChunk);
+        parallel_ranges(
+            t.line_count(), kChunk, threads, progress,
+            [&](std::size_t begin, std::size_t end) {
+                find_edges(t, nodes_on, begin, end, found[begin / kChunk]);
+            },
+            0.02);
+        edges[n] = joined(found);
+    }
+    std::vector<Regions> regions(large.size());
+    parallel_chunks(
+        large.size(), threads, progress,
+        [&](std::size_t n) { RegionFinder(*this).add_regions(large[n], edges[n], regions[n]); },
+        0.02);
+    return regions;
+}
+
+namespace {
+
+/// The regions of several ranges of triangles, one after another.
+Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progress) {
+    std::vector<std::size_t> regions, loops, nodes;  // before each range
+    for (const Regions& range : ranges) {
+        regions.push_back(range.size());
+        loops.push_back(range.loops.loop_begins.size() - 1);
+        nodes.push_back(range.loops.nodes.size());
+    }
+    Regions all;
+    const std::size_t count = count_before(regions);
+    checked_number(count, "regions of triangles");
+    all.triangles.resize(count);
+    all.loops.region_begins.resize(count + 1);
+    all.loops.loop_begins.resize(count_before(loops) + 1);
+    all.loops.nodes.resize(count_before(nodes));
+    parallel_chunks(ranges.size(), threads, progress, [&](std::size_t i) {
+        const Regions range = std::move(ranges[i]);
+        std::ranges::copy(range.triangles, all.triangles.begin() + regions[i]);
+        std::ranges::copy(range.loops.nodes, all.loops.nodes.begin() + nodes[i]);
+        const auto moved = [](const Array<std::size_t>& begins, std::size_t by, std::size_t* to) {
+            for (std::size_t k = 1; k < begins.size(); ++k)
+                to[k] = begins[k] + by;
+        };
+        moved(range.loops.region_begins, loops[i], all.loops.region_begins.data() + regions[i]);
+        moved(range.loops.loop_begins, nodes[i], all.loops.loop_begins.data() + loops[i]);
+    });
+    return all;
+}
+
+}  // namespace
+
+void TriangleArrangement::find_all_regions(int threads, const Progress* progress) {
+    std::vector<std::int32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<std::int32_t> large = large_triangles(all);
+    auto of_large = regions_of_large(large, threads, progress);
+    // large triangles are ranges of their own
+    struct Range {
+        std::size_t begin, end, large;
+    };
+    constexpr std::size_t kSmall = SIZE_MAX;
+    std::vector<Range> ranges;
+    for (std::size_t begin = 0, next = 0; begin < triangles_.size();) {
+        if (next < large.size() && index(large[next]) == begin) {
+            ranges.push_back({begin, begin + 1, next++});
+        } else {
+            const std::size_t end = next < large.size() ? index(large[next]) : triangles_.size();
+            ranges.push_back({begin, std::min(end, begin + kChunk), kSmall});
+        }
+        begin = ranges.back().end;
+    }
+    std::vector<Regions> found(ranges.size());
+    parallel_workers(ranges.size(), threads, progress, [&] {
+        return [&, finder = RegionFinder(*this)](std::size_t r) mutable {
+            if (ranges[r].large != kSmall) {
+                found[r] = std::move(of_large[ranges[r].large]);
+                return;
+            }
+            for (std::size_t i = ranges[r].begin; i < ranges[r].end; ++i)
+                finder.add_regions(static_cast<std::int32_t>(i), found[r]);
+        };
+    });
+    regions_ = joined(found, threads, progress);
+}
+
+void TriangleArrangement::divide(int threads, const Progress* progress) {
+    parallel_sort(of_edge_, std::less<>(), threads, progress);
+    sort_all(threads, progress);
+    exchange_segments();
+    sort_all(threads, progress);
+    intersect_segments(threads, progress);
+    sort_all(threads, progress);
+    exchange_points(threads, progress);
+    find_all_regions(threads, progress);
+}
+
+}  // namespace realmodel::arrangement
