@@ -70,25 +70,31 @@ private:
     }
     /// What a part, which is sound, would be like.
     std::optional<Around> contracted(std::int32_t part, NodeId to, NodeId from) {
-        Around known = *now(part);
-        bool is_large = of_.pieces_of_[index(part)].size() > kMany;
-        for (std::size_t k = 0; k < 3; ++k)
-            is_large = is_large && known.box.high[k] - known.box.low[k] > 1000 * allowed_;
-        if (!is_large) {
+        if (of_.pieces_of_[index(part)].size() > kMany) {
+            const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
+            const auto before = of_.around(pieces, part);
             become(from, to);
-            auto found = of_.around(part);
+            const auto found = of_.around(pieces, part);
             become(from, from);
-            return found;
+            if (!before || !found) return std::nullopt;
+            Around known = *now(part);
+            known.touches += found->touches - before->touches;
+            known.count += found->count - before->count;
+            if (keeps_extent(known.box, found->box))
+                return known.count < 4 ? std::nullopt : std::optional(known);
         }
-        const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
-        const auto before = of_.around(pieces, part);
         become(from, to);
-        const auto found = of_.around(pieces, part);
+        auto found = of_.around(part);
         become(from, from);
-        if (!before || !found) return std::nullopt;
-        known.touches += found->touches - before->touches;
-        known.count += found->count - before->count;
-        return known.count < 4 ? std::nullopt : std::optional(known);
+        return found;
+    }
+    /// Whether a part surely has an extent in all directions: it is large, or what is near has one.
+    bool keeps_extent(const spatial::Box& part, const spatial::Box& near) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (part.high[k] - part.low[k] <= 1000 * allowed_ && near.high[k] <= near.low[k])
+                return false;
+        }
+        return true;
     }
     /// The polygons of a part that share nodes with those at one of two nodes.
     std::vector<std::int32_t> pieces_near(std::int32_t part, NodeId to, NodeId from) const {
