@@ -28,7 +28,14 @@ SIZE = (round(1600 / DRAFT), round(980 / DRAFT))
 RAYS, SECONDS = 16, 200.0  # of a pixel, and of a picture at most
 FRAME = (600, 300)  # of a film strip
 EXPOSURE = 0.2
-PHOTOS = ("rocks", "canyon", "quarry", "island", "diagram")  # JPEG; in the others few colors are enough
+PHOTOS = (
+    "rocks",
+    "canyon",
+    "quarry",
+    "island",
+    "diagram",
+    "basin",
+)  # JPEG; in the others few colors are enough
 POINTS = 900.0  # the width of a picture, as labels are measured
 LABEL, TITLE = 12.0, 17.0
 HORIZON, ZENITH = (0.66, 0.76, 0.86), (0.09, 0.25, 0.62)  # of a landscape's sky, linear
@@ -556,6 +563,37 @@ def faults(folder):
     )
 
 
+def basin(folder):
+    """A section through a rift basin: half of the model, its faults named."""
+    import numpy as np
+    from realmodel.core import polygon_mesh
+
+    model, picture = sample("rift_basin", folder)
+    section = 1500.0
+    half = model.cut_by_plane((0.0, section, 0.0), (0.0, 1.0, 0.0)).above
+    picture.show(half, polygon_mesh.of_blocks(half, picture.origin))
+    apply_looks(model, 0.8)
+    made = generator("rift_basin")
+    labels = [
+        (f"{name} fault", (x_of(section, z), section, z) - np.array(picture.origin), offset)
+        for name, x_of, z, offset in (
+            ("Western", made.western_fault, -1250.0, (-60.0, -60.0)),
+            ("Middle", made.middle_fault, -1500.0, (-10.0, -62.0)),
+            ("Antithetic", made.antithetic_fault, -1550.0, (56.0, -62.0)),
+            ("Eastern", made.eastern_fault, -1150.0, (66.0, -62.0)),
+        )
+    ]
+    picture.draw(
+        "basin",
+        169.0,
+        15.0,
+        "Rift Basin",
+        "A section through tilted fault blocks; what filled the basin as it opened was eroded and covered.",
+        labels,
+        room=(0.1, 0.0),
+    )
+
+
 def intrusion(folder):
     """A granite with a dike, a quarter of the model taken away."""
     import numpy as np
@@ -797,7 +835,7 @@ def stages(folder):
         write_pixels(np.concatenate(rows), out, 144)
 
 
-SCENES = (rocks, canyon, quarry, island, diagram, faults, intrusion, tunnel, stages)
+SCENES = (rocks, canyon, quarry, island, diagram, basin, faults, intrusion, tunnel, stages)
 
 
 def in_blender(folder, *names):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import build, load_project
+from realmodel.core.ensembles import blocks_at
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 
@@ -28,7 +29,8 @@ def built(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "count"), [("canyon", 3), ("quarry", 7), ("sculpted_island", 3), ("block_diagram", 3)]
+    ("name", "count"),
+    [("canyon", 3), ("quarry", 7), ("sculpted_island", 3), ("block_diagram", 3), ("rift_basin", 13)],
 )
 def test_their_files_are_those_of_their_scripts(name, count, tmp_path):
     subprocess.run([sys.executable, SAMPLES / name / "generate.py", tmp_path], check=True, timeout=120)
@@ -108,3 +110,33 @@ def test_folds_below_an_unconformity():
     }
     for name, thickness in expected.items():
         assert blocks[name].volume == pytest.approx(2500.0 * thickness.sum(), rel=0.05), name
+
+
+def test_tilted_blocks_of_a_rift():
+    """Points away from faults and horizons are in the block that the formulas say."""
+    made, (model, blocks) = generator("rift_basin"), built("rift_basin")
+    assert len(model.compartment_names) == 6  # five blocks, and the cover
+    assert blocks["Limestone"].components == 5
+    random = np.random.default_rng(4)
+    points = random.uniform([0, 0, -2400], [made.WIDTH, made.LENGTH, 100], (3000, 3))
+    names = ["Basement", "Red beds", "Evaporite", "Limestone", "Shale", "Basin fill"]
+    cover = ["Mudstone", "Chalk", "Sand"]
+    expected, kept = [], []
+    for x, y, z in points.tolist():
+        for lower, west, east in made.blocks():
+            if (west is None or x > west(y, z)) and (east is None or x < east(y, z)):
+                tops = [made.undisturbed(x, y, mean) - lower(x) for mean in made.DISPLACED.values()]
+        beside = [abs(x - of(y, z)) for _, of, _ in made.blocks() if of is not None]
+        young = [made.undisturbed(x, y, mean) for mean in made.COVER.values()]
+        heights = [*tops, made.unconformity(x, y), *young, made.ground(x, y)]
+        kept.append(min(beside) > 60 and min(abs(z - height) for height in heights) > 20)
+        above = heights[5:]
+        if z > above[0]:
+            expected.append(next((n for n, top in zip(cover, above[1:], strict=True) if z < top), None))
+        else:
+            expected.append(next((n for n, top in zip(names, tops, strict=False) if z < top), names[-1]))
+    found = blocks_at(model, points)
+    found = [model.blocks[number].name if number >= 0 else None for number in found]
+    wrong = [n for n in np.flatnonzero(kept) if found[n] != expected[n]]
+    assert sum(kept) > 2000
+    assert len(wrong) < 10, [(points[n].round(), found[n], expected[n]) for n in wrong[:5]]

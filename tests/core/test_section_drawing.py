@@ -167,3 +167,13 @@ def test_faults_are_lines_with_their_names(tmp_path):
         with np.load(tmp_path / "s.npz") as read:
             assert len(read["compartment"]) == len(section)
             assert read["compartment_names"].tolist() == model.compartment_names
+
+
+def test_names_of_faults_are_not_over_one_another():
+    levels = [Surface(f"S{k}", *grid_surface(3, lambda x, y, k=k: 2.0 * k + 0 * x, 10.0)) for k in range(3)]
+    faults = [Fault(f"A long name {x}", *plane_fault(x=x)) for x in (4.0, 4.3)]
+    model = build(Project("p", [Rock("r", levels)], faults=faults))
+    drawing = draw_section(model.section((0.0, 3.0, 0.0), (0.0, -1.0, 0.0)))
+    first, second = (item for item in drawing.items if isinstance(item, Text) and "A long" in item.text)
+    assert abs(first.x - second.x) < 0.1 * drawing.width
+    assert abs(first.y - second.y) > first.size

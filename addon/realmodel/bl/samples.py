@@ -23,6 +23,7 @@ _LABELS = {
     "canyon": ("Canyon", "Forty beds in the walls of a canyon, and the river in it"),
     "quarry": ("Quarry", "Benches and ramps cut exactly; the volume of each layer that they take"),
     "block_diagram": ("Block Diagram", "Plunging folds below an unconformity, and a valley through both"),
+    "rift_basin": ("Rift Basin", "Tilted fault blocks, eroded and covered; a fault that ends at another"),
     "sculpted_island": ("Sculpted Island", "A sculpted mesh as the ground of folded strata"),
 }
 _items = []  # Blender does not keep the texts of dynamic enums itself

@@ -107,8 +107,9 @@ def _flat(section: Section, points: np.ndarray) -> np.ndarray:
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
-    """Faults as thick lines, and the name of each at its lower end."""
+    """Faults as thick lines, and the name of each at its lower end, or as low as other names allow."""
     right = axes.box[0] + axes.box[2]
+    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
     for trace in section.faults:
         points = trace.ends.reshape(-1, 3)
         if _is_fence(section):
@@ -118,10 +119,22 @@ def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
         lines = axes.at(flat).reshape(-1, 2, 2)
         for line in lines:
             drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
-        left, low = lines.reshape(-1, 2)[lines.reshape(-1, 2)[:, 1].argmin()].tolist()
-        fits = left + text_width(trace.name, _SIZE) + 8 < right
-        at = left + 4 if fits else left - 4
-        drawing.text(at, low + 4, trace.name, _SIZE, anchor="start" if fits else "end", layer=trace.name)
+        width = text_width(trace.name, _SIZE)
+        ends = lines.reshape(-1, 2)
+        places = []
+        for x, y in ends[np.argsort(ends[:, 1], kind="stable")].tolist():
+            fits = x + width + 8 < right
+            begin = x + 4 if fits else x - 4 - width
+            places.append((begin, begin + width, y + 4))
+        free = (each for each in places if not any(_overlap(each, other) for other in taken))
+        begin, end, height = next(free, places[0])
+        taken.append((begin, end, height))
+        drawing.text(begin, height, trace.name, _SIZE, layer=trace.name)
+
+
+def _overlap(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    """Whether two names, each from left to right at a height, are in each other's way."""
+    return one[0] < other[1] and other[0] < one[1] and abs(one[2] - other[2]) < 1.2 * _SIZE
 
 
 def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.ndarray]:
