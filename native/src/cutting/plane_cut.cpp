@@ -76,7 +76,8 @@ public:
         report(0.7, "putting the halves together");
         std::vector<HalfCell> half_cells;
         number_cells(half_cells);
-        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, threads_, progress_)
+        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, threads_,
+                     progress_)
             .run();
         return assemble_halves(model_, new_positions_, pieces_, half_cells, threads_, progress_);
     }

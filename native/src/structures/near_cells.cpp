@@ -20,7 +20,8 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
             }
         }
         if (sides[s] == 0) continue;  // either side will do
-        const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, threads, progress);
+        const auto own =
+            cutting::sides_of_far_cells(model, structures[s], is_near, threads, progress);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = Place::kElsewhere;
         }
