@@ -11,6 +11,7 @@ from .triangles import crossing_pairs
 from .within import Within, box_of, middles_of_parts
 
 _WIDTH = 1e-9  # of the extent of a sheet: what is narrower lies between them by rounding
+_INSET = 1e-3  # of a part: its border may lie on another fault, which has no side there
 
 
 def torn_triangles(
@@ -47,7 +48,8 @@ def torn_triangles(
         if found[t]:
             continue
         middle = np.broadcast_to(polygon.mean(axis=0), polygon.shape)
-        begin, end = np.tile(polygon, (2, 1)), np.concatenate([np.roll(polygon, -1, axis=0), middle])
+        inset = polygon + _INSET * (middle - polygon)
+        begin, end = np.tile(inset, (2, 1)), np.concatenate([np.roll(inset, -1, axis=0), middle])
         _, inner = middles_of_parts(begin, end, walls)
         found[t] = (within(inner) & also(inner)).any()
     return found
