@@ -47,13 +47,13 @@ class LibraryColors(unittest.TestCase):
         self.assertEqual(materials.name_and_color(None, 0), ("no property", materials.NEUTRAL_GRAY))
         self.assertEqual(materials.name_and_color(None, 7)[0], "property 7")
 
-    def test_a_color_that_a_texture_gives_is_left_alone(self):
+    def test_a_texture_stays_linked_and_exporters_find_the_color(self):
         empty_file()
         material = materials.new_material("rock", 3, "#808080")
         principled = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
         noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
         material.node_tree.links.new(noise.outputs[0], principled.inputs["Base Color"])
-        before = tuple(principled.inputs["Base Color"].default_value)
         materials.set_color(material, "#ff0000")
-        self.assertEqual(tuple(principled.inputs["Base Color"].default_value), before)
+        self.assertEqual(principled.inputs["Base Color"].links[0].from_node, noise)
+        self.assertEqual(tuple(principled.inputs["Base Color"].default_value), (1.0, 0.0, 0.0, 1.0))
         self.assertEqual(tuple(material.diffuse_color), (1.0, 0.0, 0.0, 1.0))
