@@ -140,7 +140,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
     // calls visit(half, nodes, piece, cells in the half) for what the halves have of a chunk
     const auto each_of_half = [&](std::size_t chunk, const auto& visit) {
         pieces.each_of(chunk, [&](std::span<const NodeId> nodes, const Piece& piece) {
-            std::array<std::array<std::int32_t, 2>, 2> own{-1, -1, -1, -1};
+            std::array<std::array<std::int32_t, 2>, 2> own{{{-1, -1}, {-1, -1}}};
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::int32_t part = piece.parts[k];
                 if (part >= 0) own[half_of(part)][k] = number[index(part)];
