@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from damages import damaged_bytes
 from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.geotiff import read_geotiff
@@ -228,11 +229,7 @@ def test_tiff_refused(tmp_path):
         with pytest.raises(InputRefused, match=words):
             read_geotiff(path)
     whole = write_tiff(path, np.ones((40, 50), np.float32), compression="zlib").read_bytes()
-    draw = np.random.default_rng(1)
-    for _ in range(300):
-        raw = bytearray(whole[: draw.integers(8, len(whole))] if draw.random() < 0.3 else whole)
-        for at in draw.integers(0, len(raw), 3):
-            raw[at] = draw.integers(0, 256)
+    for raw in damaged_bytes(whole, 8):
         path.write_bytes(raw)
         try:
             read_geotiff(path)

@@ -70,20 +70,22 @@ def run(options: argparse.Namespace) -> None:
             ignore_interruption()
         finally:
             progress.close()
+    proof = [f"{validation}\n"] if options.check_model else []
+    lines = [*proof, volume_table(model, erosion), *lines]
+    if mesh is not None:
+        lines.append(mesh_request.line(mesh))
+    if cells is not None:
+        lines.append(cleaned_line(cells))
+    made = [each for each in (model, mesh, cells) if each is not None]
+    _print(options, [warning for each in made for warning in each.warnings], lines)
+
+
+def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> None:
+    """Warnings and lines, unless --quiet. The outputs are there, though nobody may read this any more."""
     if not options.quiet:
-        with contextlib.suppress(BrokenPipeError):  # the outputs are there
-            for made in (model, mesh, cells):
-                for warning in made.warnings if made is not None else ():
-                    print(f"warning: {warning}")
-            if options.check_model:
-                print(f"{validation}\n")
-            print(volume_table(model, erosion))
-            for line in lines:
+        with contextlib.suppress(BrokenPipeError):
+            for line in (*(f"warning: {warning}" for warning in warnings), *lines):
                 print(line)
-            if mesh is not None:
-                print(mesh_request.line(mesh))
-            if cells is not None:
-                print(cleaned_line(cells))
             sys.stdout.flush()
 
 
@@ -101,11 +103,7 @@ def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
             ignore_interruption()
         finally:
             progress.close()
-    if not options.quiet:
-        with contextlib.suppress(BrokenPipeError):
-            for warning in surfaces.warnings:
-                print(f"warning: {warning}")
-            print(surface_table(surfaces), flush=True)
+    _print(options, surfaces.warnings, [surface_table(surfaces)])
 
 
 def _estimate(options: argparse.Namespace, project, progress) -> None:
@@ -140,10 +138,7 @@ def _ensemble(options: argparse.Namespace, project, progress) -> None:
         progress.close()
         if client is not None:
             client.close()
-    if not options.quiet:
-        for warning in found.model.warnings:
-            print(f"warning: {warning}")
-        print(ensemble_table(found), flush=True)
+    _print(options, found.model.warnings, [ensemble_table(found)])
 
 
 def _erosion(options: argparse.Namespace, model, progress):
@@ -155,7 +150,6 @@ def _erosion(options: argparse.Namespace, model, progress):
 def _validation(options: argparse.Namespace, model, progress):
     """The proof of the model, where it is asked for or goes into the report. One that was asked for and
     failed keeps anything from being written."""
-
     if not options.check_model and options.report is None:
         return None
     report = model.validate(
@@ -180,7 +174,6 @@ def _validation(options: argparse.Namespace, model, progress):
 
 def _requests(options: argparse.Namespace) -> list:
     """Sections, fences and cuts, in this order. Raises UsageError."""
-
     return [
         *(section_request(text, options.exaggeration) for text in options.section),
         *(fence_request(text, options.exaggeration) for text in options.fence),
@@ -201,7 +194,6 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
 
 def _mesh_request(options: argparse.Namespace):
     """What --mesh asks for, or None."""
-
     if options.mesh is None:
         return None
     return MeshRequest(
@@ -216,7 +208,6 @@ def _mesh_request(options: argparse.Namespace):
 
 def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
-
     for path in options.export:
         surface_writer_for(path) if options.surfaces_only else format_for(path)
     if options.cell_tolerance is not None:
@@ -283,7 +274,6 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 @contextlib.contextmanager
 def _named(path, target: Path):
     """What could not be written is named as the user did, not by the place where it is kept meanwhile."""
-
     try:
         yield
     except OutputFailed as error:

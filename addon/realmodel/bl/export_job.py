@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The built model written to a file in a thread; the scene stays as it is."""
 
-from ..core import work
 from ..core.exporters import check_tolerance, output_target, save_model
 from .thread_job import ThreadJob
 
 
 class ExportJob(ThreadJob):
-    """Writes a model, whole or not at all.
+    """Writes a model, whole or not at all, and returns the path.
 
     model: core.Model. options: cell_size, contour_interval, tolerance, as of core.exporters.save_model.
     """
@@ -17,16 +16,6 @@ class ExportJob(ThreadJob):
         check_tolerance(path, options.get("tolerance"))
         output_target(path)
         self._model, self._path, self._options = model, path, options
-
-    def run(self):
-        """Writes it in this thread; returns its path. Raises RealModelError."""
-        return work.run(self._work)
-
-    def finish(self):
-        """The path; raises Cancelled, and what went wrong."""
-        return self._job.result()
-
-    # -- in the thread
 
     def _work(self, job):
         with job.phase(0.0, 1.0, f"writing {self._path.name}"):

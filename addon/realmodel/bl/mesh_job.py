@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh for simulation of the built model, made and written in a thread; the scene stays as it is."""
 
-from ..core import work
 from ..core.atomic import Outputs
 from .thread_job import ThreadJob
-from .threads import threads
 
 _SHARE = 0.9  # of the progress that making it takes
 
 
 class MeshJob(ThreadJob):
-    """Makes a simulation mesh and writes it.
+    """Makes a simulation mesh, writes it, and returns it.
 
     model: core.Model. request: core.simulation.mesh_request.MeshRequest. unit: of the model's lengths.
     """
@@ -19,17 +17,6 @@ class MeshJob(ThreadJob):
         """Raises UsageError, OutputFailed where the file cannot be written."""
         request.target()
         self._model, self._request, self._unit = model, request, unit
-
-    def run(self):
-        """Makes and writes it in this thread; returns the SimulationMesh. Raises RealModelError."""
-        self._threads = threads()
-        return work.run(self._work)
-
-    def finish(self):
-        """The SimulationMesh; raises Cancelled, and what went wrong."""
-        return self._job.result()
-
-    # -- in the thread
 
     def _work(self, job):
         mesh = self._request.make(self._model, self._threads)

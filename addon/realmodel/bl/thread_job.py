@@ -10,11 +10,16 @@ class ThreadJob:
 
     `start()` runs `_work(job)` of the subclass in a thread; native work there gets `_threads` threads. `done`
     says whether it has ended, `state()` how far it is; `cancel()` stops it. Once it is done, the main thread
-    calls `hand_over(seconds)` until that returns True, then `finish()` of the subclass.
+    calls `hand_over(seconds)` until that returns True, then `finish()`.
     """
 
     _threads = 0
     _job = None
+
+    def run(self):
+        """`_work(job)` in this thread; returns what it returns, and raises what it raises."""
+        self._threads = threads()
+        return work.run(self._work)
 
     def start(self, is_short=False):
         """is_short: it is expected to take less than half a second."""
@@ -43,3 +48,7 @@ class ThreadJob:
 
     def leave(self):
         """Removes the data-blocks that `hand_over` prepared."""
+
+    def finish(self):
+        """What `_work(job)` has returned; raises Cancelled, and what went wrong."""
+        return self._job.result()

@@ -26,7 +26,7 @@ from ..work import Work
 from .turning_bands import Frame, Noise, gaussian_field
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
-_NUGGET = -1  # the part of a noise that is no line
+_NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
 
 
 @dataclass(frozen=True)
