@@ -62,7 +62,9 @@ protected:
     }
     void TearDown() override { std::filesystem::remove(path_); }
 
-    std::string path_ = testing::TempDir() + "dump_test.obj";
+    // One for each test: CTest runs them side by side.
+    std::string path_ = testing::TempDir() +
+                        testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
     exact::PlanArrangement geometry_;
     Polygon outline_;
     Envelope envelope_;
