@@ -12,7 +12,7 @@ from ..errors import InputRefused
 from ..meshers import DEFAULT_MESHER
 from ..planar_mesh import mesh_rings, triangulate_rings
 from ..work import Work, native_module
-from .triangles import border_loops, edges_of, open_edges, welded
+from .triangles import border_loops, edge_numbers, edges_of, open_edges, welded
 
 LEFT, RIGHT, _BOTH = 1, 2, 3  # on which sides of a fault a triangle has a part
 _AREA = 1e-9  # relative: parts that overlap by less do not
@@ -88,9 +88,9 @@ def _around(plan: np.ndarray) -> np.ndarray:
 
 
 def _areas(plan: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    a, b, c = plan[triangles].transpose(1, 0, 2)
-    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-    return (ux * vy - uy * vx) / 2
+    x, y = plan.T
+    a, b, c = triangles.T
+    return ((x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])) / 2
 
 
 def _area(plan: np.ndarray, triangles: np.ndarray) -> float:
@@ -109,12 +109,11 @@ def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) ->
     the fault, the mesh is not open: what hangs together with it only fills a bay of the outline.
     """
     places, outer = around
-    of_mesh = dict(zip(map(tuple, plan[::-1].tolist()), range(len(plan) - 1, -1, -1), strict=True))
-    vertex = np.array([of_mesh.get(tuple(place), -1) for place in places.tolist()])
-    outer = vertex[outer]
+    vertex = welded(np.concatenate([plan, places]))[len(plan) :]
+    outer = np.where(vertex < len(plan), vertex, -1)[outer]
     outer = outer[(outer >= 0).all(axis=1)]
-    outer_edges = list(map(tuple, np.sort(edges_of(outer), axis=1).tolist()))
-    touched, edges = touched_masks(len(plan), triangles, masks), np.sort(edges_of(triangles), axis=1)
+    touched = touched_masks(len(plan), triangles, masks)
+    outer_edges, edges = (edge_numbers(edges_of(each), len(plan)) for each in (outer, triangles))
     gaps = np.zeros(len(outer), bool)
     for fault in range(masks.shape[1]):
         corners = touched[outer, fault]
@@ -122,8 +121,8 @@ def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) ->
         bridges = (corners == LEFT).any(axis=1) & (corners == RIGHT).any(axis=1)
         if not bridges.any():
             continue
-        closed = set(map(tuple, edges[np.tile(masks[:, fault] == _BOTH, 3)].tolist()))
-        at_closed = np.array([edge in closed for edge in outer_edges], bool).reshape(3, -1).any(axis=0)
+        closed = edges[np.tile(masks[:, fault] == _BOTH, 3)]
+        at_closed = np.isin(outer_edges, closed).reshape(3, -1).any(axis=0)
         bays = _spread(outer[near], at_closed[near])
         gaps[np.flatnonzero(near)[~bays]] |= bridges[near][~bays]
     return np.ascontiguousarray(outer[gaps], np.int32)

@@ -41,12 +41,12 @@ class ReadyMesh:
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
         side = np.where(on, 0, side)
-        corners = side[self.triangles]
-        mask = np.where((corners < 0).any(axis=1), LEFT, 0) | np.where((corners > 0).any(axis=1), RIGHT, 0)
-        middles = self.vertices[self.triangles].mean(axis=1)
+        corners = side[self.triangles.T]
+        mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
         along = mask == 0  # all its corners lie on the fault
-        mask[along] = np.where(fault_sides(self.work, middles[along], shape, self.threads) > 0, RIGHT, LEFT)
-        clear = np.flatnonzero((corners != 0).all(axis=1) & (mask != (LEFT | RIGHT)))
+        middles = self.vertices[self.triangles[along]].mean(axis=1)
+        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
+        clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)))
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
         mask[clear[crossed]] = LEFT | RIGHT
         self.masks[:, fault] = mask

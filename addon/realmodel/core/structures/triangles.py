@@ -9,6 +9,7 @@ import numpy as np
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
 _ROUNDING = 1e-9  # relative: what is so near to a plane may be on it
+_FEW = 16  # triangles: with so many, all others are compared with each
 
 
 def welded(vertices: np.ndarray) -> np.ndarray:
@@ -34,9 +35,21 @@ def without_flat(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(triangles[~flat])
 
 
+def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(K, 3) as np.cross, which takes longer for the few pairs that there are at a fault."""
+    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
+    return np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], axis=1)
+
+
 def edges_of(triangles: np.ndarray) -> np.ndarray:
     """(3 T, 2) the directed edges: those from corner 0 to 1 of all triangles, then 1 to 2, then 2 to 0."""
     return np.concatenate([triangles[:, pair] for pair in _EDGES])
+
+
+def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:
+    """(E,) int64: of edges (E, 2) between so many vertices, the same for both directions."""
+    a, b = edges.T.astype(np.int64)
+    return np.minimum(a, b) * count + np.maximum(a, b)
 
 
 def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -49,7 +62,7 @@ def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
     edges = edges_of(triangles)
-    keys = edges.min(axis=1) * (int(triangles.max(initial=0)) + 1) + edges.max(axis=1)
+    keys = edge_numbers(edges, int(triangles.max(initial=0)) + 1)
     order = np.argsort(keys, kind="stable")
     differs = np.ones(len(order) + 1, bool)
     differs[1:-1] = keys[order[1:]] != keys[order[:-1]]
@@ -83,7 +96,7 @@ def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     rows = np.arange(len(points))
     edges = np.roll(corners, -1, axis=1) - corners
     longest = (edges * edges).sum(axis=2).argmax(axis=1)
-    normal = np.cross(edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3])
+    normal = cross(edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3])
     normal = normal / np.linalg.norm(normal, axis=1)[:, None]
     apart = points[:, None] - corners
     nearest = (apart * apart).sum(axis=2).argmin(axis=1)
@@ -92,7 +105,7 @@ def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     found = np.full(len(points), np.inf)
     for first, second in _EDGES:
         begin, along = corners[:, first], corners[:, second] - corners[:, first]
-        inside &= (np.cross(along, points - begin) * normal).sum(axis=1) >= 0
+        inside &= (cross(along, points - begin) * normal).sum(axis=1) >= 0
         share = ((points - begin) * along).sum(axis=1) / (along * along).sum(axis=1)
         nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
         found = np.minimum(found, np.linalg.norm(points - nearest, axis=1))
@@ -122,19 +135,35 @@ def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
     """As crossing_pairs, without those of which the box of the first is farther than `near` from the plane of
     the second."""
-    one, other = crossing_pairs(first, second).T
     low, high = extents(first)
     middle, reach = (low + high) / 2, (high - low) / 2 + near
     a, b, c = second.transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
-    off, size, allowed = np.zeros((3, len(one)))
-    for k in range(3):
-        away = normal[other, k] * (middle[one, k] - a[other, k])
-        off += away
-        size += np.abs(away)
-        allowed += np.abs(normal[other, k]) * reach[one, k]
-    kept = ~(np.abs(off) > allowed + _ROUNDING * (size + allowed))
+    normal = cross(b - a, c - a)
+    if len(second) <= _FEW:
+        found = [np.empty((0, 2), np.int64)]
+        low, high, middle, reach = (np.ascontiguousarray(each.T) for each in (low, high, middle, reach))
+        for number, (lowest, highest) in enumerate(zip(*extents(second), strict=True)):
+            kept = _near_planes(a[number, :, None], normal[number, :, None], middle, reach)
+            for k in range(3):
+                kept &= (high[k] >= lowest[k]) & (low[k] <= highest[k])
+            rows = np.flatnonzero(kept)
+            found.append(np.column_stack([rows, np.full(len(rows), number)]))
+        return np.concatenate(found)
+    one, other = crossing_pairs(first, second).T
+    kept = _near_planes(a[other].T, normal[other].T, middle[one].T, reach[one].T)
     return np.column_stack([one[kept], other[kept]])
+
+
+def _near_planes(a: np.ndarray, normal: np.ndarray, middle: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether boxes, given by their middles and half sizes (3, K), may meet the planes through
+    points a (3, K) or (3, 1)."""
+    off = size = allowed = 0.0
+    for k in range(3):
+        away = normal[k] * (middle[k] - a[k])
+        off = off + away
+        size = size + np.abs(away)
+        allowed = allowed + np.abs(normal[k]) * reach[k]
+    return ~(np.abs(off) > allowed + _ROUNDING * (size + allowed))
 
 
 def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -157,7 +186,7 @@ def _straddles(triangles: np.ndarray, others: np.ndarray) -> np.ndarray:
     """(K,) bool: whether the first triangle of each pair (K, 3, 3) has corners on both sides of the plane of
     the second one, or on it."""
     a, b, c = others.transpose(1, 0, 2)
-    off = np.einsum("kij,kj->ki", triangles - a[:, None], np.cross(b - a, c - a))
+    off = np.einsum("kij,kj->ki", triangles - a[:, None], cross(b - a, c - a))
     return (off.min(axis=1) <= 0) & (off.max(axis=1) >= 0)
 
 
@@ -165,21 +194,21 @@ def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> n
     """(K,) bool: whether the segment from begin to end (K, 3) meets the triangle of its row (K, 3, 3); one in
     its plane does not."""
     a, b, c = triangles.transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
+    normal = cross(b - a, c - a)
     low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
     crosses = ((low <= 0) & (high >= 0) | (low >= 0) & (high <= 0)) & (low != high)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(crosses, low / (low - high), 0.0)
     at = begin + share[:, None] * (end - begin)
     for p, q in ((a, b), (b, c), (c, a)):
-        crosses &= (np.cross(q - p, at - p) * normal).sum(axis=1) >= 0
+        crosses &= (cross(q - p, at - p) * normal).sum(axis=1) >= 0
     return crosses
 
 
 def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(K,) where segments that hit the plane of the triangle of their row do so, 0 to 1 of their lengths."""
     a, b, c = triangles.transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
+    normal = cross(b - a, c - a)
     low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
     return low / (low - high)
 
@@ -233,7 +262,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     result = np.where(turned[:, None] == 1, triangles[:, ::-1], triangles)
     if parts > 1:
         corners = vertices[result]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         facing = np.array([normals[part == number].sum(axis=0) for number in range(parts)])
         away = (facing @ facing[0] < 0)[part]
         result = np.where(away[:, None], result[:, ::-1], result)
