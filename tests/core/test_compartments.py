@@ -10,7 +10,7 @@ from realmodel.core.structures.joining import acts
 from realmodel.core.structures.parts import divide, structures_of
 from realmodel.core.structures.reach import Reach
 from realmodel.core.structures.sides import FaultShape, fault_sides
-from realmodel.core.work import run
+from realmodel.core.work import native_module, run
 from structure_cases import ball, plane_fault, prepared
 
 BOX = np.array([[0.0, 0.0, -4.0], [10.0, 10.0, 4.0]])
@@ -82,6 +82,13 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
         at = x * 40 + y
         assert over[at].all() and over[at + 1600].all()
         assert own.any() or name == "near"
+        # the region for it has all of these points, and nothing that the sheet would not be kept over
+        plan, triangles = reach.around(reach.columns(part))
+        level = np.column_stack([plan, np.zeros(len(plan))])
+        inside = np.isfinite(native_module().surface_heights(level, triangles, points[:, :2].copy()))
+        assert inside[own].all()
+        x, y = np.clip((points[inside, :2] * 4).astype(int), 0, 39).T
+        assert (over[x * 40 + y] | over[x * 40 + y + 1600]).all()
     assert seen.all()
 
 

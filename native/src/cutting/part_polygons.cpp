@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 
 #include "base/parallel.hpp"
 #include "cutting/part_rounding.hpp"
@@ -315,15 +316,46 @@ std::vector<std::size_t> way_back(std::span<const EdgeOfPiece> uses) {
 
 }  // namespace
 
+/// The edges near the cutter that some part has more than twice, in order.
+std::vector<std::array<NodeId, 2>> PartRounding::touching_edges() const {
+    std::vector<std::int32_t> parts(half_cells_.size());
+    std::iota(parts.begin(), parts.end(), 0);
+    std::vector<std::vector<std::array<NodeId, 2>>> of_parts(parts.size());
+    each_of_parts(parts, [&](std::size_t part, Memory& memory) {
+        auto& uses = memory.uses;
+        uses.clear();
+        for (const std::int32_t p : pieces_of_[part]) {
+            const auto nodes = pieces_.polygons[index(p)];
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                const NodeId a = nodes[i], b = nodes[i + 1 < nodes.size() ? i + 1 : 0];
+                if (is_near_[index(a)] != 0 && is_near_[index(b)] != 0)
+                    uses.push_back(unordered(a, b));
+            }
+        }
+        std::sort(uses.begin(), uses.end());
+        for (std::size_t i = 2; i < uses.size(); ++i) {
+            if (uses[i] == uses[i - 2]) of_parts[part].push_back(uses[i]);
+        }
+    });
+    std::vector<std::array<NodeId, 2>> found;
+    for (const auto& own : of_parts)
+        found.insert(found.end(), own.begin(), own.end());
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
 /// Where parts use an edge more than twice, polygons that lead round other parts there get a node
 /// of their own on it.
 void PartRounding::set_touching_apart() {
+    const auto touching = touching_edges();
+    if (touching.empty()) return;
     std::vector<EdgeOfPiece> uses;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const NodeId a = nodes[i], b = nodes[(i + 1) % nodes.size()];
-            if (is_near_[index(a)] != 0 && is_near_[index(b)] != 0)
+            if (std::ranges::binary_search(touching, unordered(a, b)))
                 uses.push_back({unordered(a, b), p, a < b ? 1 : -1, pieces_[p].parts});
         }
     }

@@ -173,14 +173,12 @@ void PartRounding::add_contracted(std::size_t piece, std::vector<NodeId>& nodes)
 /// passes a node twice, or two are the same. Where models are joined, two that are the same and
 /// face each other make up for each other.
 std::optional<PartRounding::Around> PartRounding::around(std::span<const std::int32_t> pieces,
-                                                         std::int32_t part) const {
-    struct Face {
-        std::uint64_t hash;
-        std::size_t begin, size;
-        int winding;
-    };
-    std::vector<Face> faces;
-    std::vector<NodeId> nodes, sorted;  // of all, the latter of each in order
+                                                         std::int32_t part, Memory& memory) const {
+    auto& [faces, nodes, sorted, is_repeated, uses] = memory;
+    faces.clear();
+    nodes.clear();
+    sorted.clear();
+    uses.clear();
     for (const std::int32_t own : pieces) {
         const std::size_t begin = nodes.size();
         add_contracted(index(own), nodes);
@@ -194,12 +192,14 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
         const int facing = pieces_[index(own)].parts[0] == part ? 1 : -1;
         faces.push_back({hash_of(loop), begin, size, facing * winding_of(loop)});
     }
-    std::ranges::stable_sort(faces, {}, &Face::hash);
-    const auto are_equal = [&sorted](const Face& f, const Face& g) {
+    std::ranges::sort(faces, [](const Face& f, const Face& g) {
+        return std::pair(f.hash, f.begin) < std::pair(g.hash, g.begin);
+    });
+    const auto are_equal = [&sorted = memory.sorted](const Face& f, const Face& g) {
         return std::ranges::equal(std::span(sorted).subspan(f.begin, f.size),
                                   std::span(sorted).subspan(g.begin, g.size));
     };
-    std::vector<std::uint8_t> is_repeated(faces.size(), 0);
+    is_repeated.assign(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (std::size_t j = i; j-- > 0 && faces[j].hash == faces[i].hash;) {
             if (is_repeated[j] != 0 || !are_equal(faces[i], faces[j])) continue;
@@ -210,7 +210,6 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
         }
     }
     Around found;
-    std::vector<std::array<NodeId, 2>> uses;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         if (is_repeated[i] != 0 || faces[i].winding == 0) continue;
         ++found.count;
@@ -227,8 +226,8 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
 }
 
 /// The same of a whole part; none where it has no extent, either.
-std::optional<PartRounding::Around> PartRounding::around(std::int32_t part) const {
-    const auto found = around(pieces_of_[index(part)], part);
+std::optional<PartRounding::Around> PartRounding::around(std::int32_t part, Memory& memory) const {
+    const auto found = around(pieces_of_[index(part)], part, memory);
     if (!found || found->count < 4) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
         if (found->box.low[k] == found->box.high[k]) return std::nullopt;
@@ -238,8 +237,8 @@ std::optional<PartRounding::Around> PartRounding::around(std::int32_t part) cons
 
 /// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
 /// there, and an extent.
-bool PartRounding::stays_sound(std::int32_t part) const {
-    const auto found = around(part);
+bool PartRounding::stays_sound(std::int32_t part, Memory& memory) const {
+    const auto found = around(part, memory);
     return found && (found->touches == 0 || model_.cell_kind == CellKind::kBlocks ||
                      touches_[half_cells_[index(part)].side == kAbove ? 1 : 0]);
 }
@@ -307,14 +306,26 @@ void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
     std::map<NodeId, std::set<std::int32_t>> parts_at;
     for (const std::int32_t part : open)
         each_contracted(part, [&](NodeId node) { parts_at[node].insert(part); });
+    // what all of them are like at first is found on all threads
+    const std::vector<std::int32_t> parts(open.begin(), open.end());
+    std::vector<std::uint8_t> is_sound(half_cells_.size(), 0), is_known(half_cells_.size(), 0);
+    each_of_parts(parts, [&](std::size_t i, Memory& memory) {
+        is_sound[index(parts[i])] = stays_sound(parts[i], memory) ? 1 : 0;
+        is_known[index(parts[i])] = 1;
+    });
+    Memory memory;
     while (!open.empty()) {
         const std::int32_t part = *open.begin();
         open.erase(open.begin());
-        if (stays_sound(part)) continue;
+        if (is_known[index(part)] != 0 ? is_sound[index(part)] != 0 : stays_sound(part, memory))
+            continue;
         // its nodes stay apart; the parts around these are looked at again
         each_contracted(part, [&](NodeId node) {
             becomes_[index(node)] = node;
-            open.insert(parts_at[node].begin(), parts_at[node].end());
+            for (const std::int32_t other : parts_at[node]) {
+                open.insert(other);
+                is_known[index(other)] = 0;
+            }
         });
         open.erase(part);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/counting_sort.hpp"
+#include "base/parallel.hpp"
 #include "cutting/distinct.hpp"
 #include "cutting/halves.hpp"
 #include "spatial/box_tree.hpp"
@@ -53,14 +54,31 @@ private:
         std::size_t touches = 0, count = 0;
         spatial::Box box;
     };
-    std::optional<Around> around(std::span<const std::int32_t> pieces, std::int32_t part) const;
-    std::optional<Around> around(std::int32_t part) const;
-    bool stays_sound(std::int32_t part) const;
+    /// A polygon of a part as contractions leave it: nodes from `begin` on.
+    struct Face {
+        std::uint64_t hash;
+        std::size_t begin, size;
+        int winding;
+    };
+    /// What around() uses again.
+    struct Memory {
+        std::vector<Face> faces;
+        std::vector<NodeId> nodes, sorted;  ///< of all, the latter of each in order
+        std::vector<std::uint8_t> is_repeated;
+        std::vector<std::array<NodeId, 2>> uses;
+    };
+    std::optional<Around> around(std::span<const std::int32_t> pieces, std::int32_t part,
+                                 Memory& memory) const;
+    std::optional<Around> around(std::int32_t part, Memory& memory) const;
+    bool stays_sound(std::int32_t part, Memory& memory) const;
+    template <class Visit>
+    void each_of_parts(std::span<const std::int32_t> parts, const Visit& visit) const;
     void add_contracted(std::size_t piece, std::vector<NodeId>& nodes) const;
     void contract_pieces();
     class ShortEdges;
     std::vector<std::pair<std::vector<NodeId>, std::size_t>> find_doubled() const;
     void cancel_doubled();
+    std::vector<std::array<NodeId, 2>> touching_edges() const;
     void set_touching_apart();
     void set_apart();
     void move_aside(NodeId node);
@@ -96,5 +114,20 @@ private:
     Buckets<std::int32_t> pieces_of_;       ///< the pieces around each part
     Positions taken_;                       ///< positions of nodes
 };
+
+/// Calls visit(i, memory) for all of some parts, on several threads.
+template <class Visit>
+void PartRounding::each_of_parts(std::span<const std::int32_t> parts, const Visit& visit) const {
+    constexpr std::size_t kAtOnce = 1 << 6;
+    parallel_workers((parts.size() + kAtOnce - 1) / kAtOnce, threads_, progress_,
+                     [&] {
+                         return [&, memory = Memory()](std::size_t chunk) mutable {
+                             const std::size_t end = std::min(parts.size(), (chunk + 1) * kAtOnce);
+                             for (std::size_t i = chunk * kAtOnce; i < end; ++i)
+                                 visit(i, memory);
+                         };
+                     },
+                     0.02);
+}
 
 }  // namespace realmodel::cutting

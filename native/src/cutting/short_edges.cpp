@@ -24,6 +24,25 @@ public:
         });
     }
 
+    /// Finds on all threads what parts around edges are like now.
+    void look_at(const std::set<std::array<NodeId, 2>>& edges) {
+        std::vector<std::int32_t> parts;
+        for (const auto& edge : edges) {
+            for (const std::int32_t p : pieces_at_[index(edge[1])]) {
+                for (const std::int32_t part : of_.pieces_[index(p)].parts) {
+                    if (part >= 0) parts.push_back(part);
+                }
+            }
+        }
+        std::ranges::sort(parts);
+        parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+        std::vector<std::optional<Around>> found(parts.size());
+        of_.each_of_parts(
+            parts, [&](std::size_t i, Memory& memory) { found[i] = of_.around(parts[i], memory); });
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            now_.emplace(parts[i], found[i]);
+    }
+
     /// Makes the greater node the lesser one where no part comes to touch itself for it.
     bool contract(NodeId to, NodeId from) {
         std::map<std::int32_t, std::optional<Around>> after;
@@ -65,16 +84,16 @@ private:
     /// What a part is like now.
     const std::optional<Around>& now(std::int32_t part) {
         const auto [at, is_new] = now_.try_emplace(part);
-        if (is_new) at->second = of_.around(part);
+        if (is_new) at->second = of_.around(part, memory_);
         return at->second;
     }
     /// What a part, which is sound, would be like.
     std::optional<Around> contracted(std::int32_t part, NodeId to, NodeId from) {
         if (of_.pieces_of_[index(part)].size() > kMany) {
             const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
-            const auto before = of_.around(pieces, part);
+            const auto before = of_.around(pieces, part, memory_);
             become(from, to);
-            const auto found = of_.around(pieces, part);
+            const auto found = of_.around(pieces, part, memory_);
             become(from, from);
             if (!before || !found) return std::nullopt;
             Around known = *now(part);
@@ -84,7 +103,7 @@ private:
                 return known.count < 4 ? std::nullopt : std::optional(known);
         }
         become(from, to);
-        auto found = of_.around(part);
+        auto found = of_.around(part, memory_);
         become(from, from);
         return found;
     }
@@ -127,7 +146,8 @@ private:
     double allowed_;
     Buckets<std::int32_t> pieces_at_;  ///< of nodes
     std::unordered_map<NodeId, std::vector<NodeId>> nodes_;
-    std::unordered_map<std::int32_t, std::optional<Around>> now_;
+    std::unordered_map<std::int32_t, std::optional<Around>> now_;  ///< of parts
+    Memory memory_;
 };
 
 /// Whether a node on a wall would go off it, if it moved to another one: near 0 on an axis walls
@@ -159,6 +179,7 @@ bool PartRounding::join_short_edges() {
     }
     if (edges.empty()) return false;
     ShortEdges short_edges(*this, allowed);
+    short_edges.look_at(edges);
     bool any = false;
     for (const auto& edge : edges) {
         const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];

@@ -43,6 +43,7 @@ struct Together {
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
+    void reserve(std::span<const PartModel> models);
     void add(const ComplexView& model, std::int32_t number, std::span<const Place> places);
     void share_vertices(int threads, const Progress* progress);
     ComplexView view() const {
@@ -57,6 +58,24 @@ struct Together {
                 .cell_kind = cell_kind};
     }
 };
+
+void Together::reserve(std::span<const PartModel> models) {
+    std::size_t positions = 0, faces = 0, corners = 0, cells = 0;
+    for (const PartModel& own : models) {
+        positions += own.model.vertex_count();
+        faces += own.model.face_count();
+        corners += own.model.face_vertices.size();
+        cells += own.model.cell_count();
+    }
+    vertices.reserve(positions);
+    face_offsets.reserve(faces + 1);
+    face_vertices.reserve(corners);
+    face_cells.reserve(2 * faces);
+    face_surface.reserve(faces);
+    for (auto* of_cells : {&cell_block, &model_of_cell})
+        of_cells->reserve(cells);
+    is_near.reserve(cells);
+}
 
 void Together::add(const ComplexView& model, std::int32_t number, std::span<const Place> places) {
     const auto first_vertex = checked_number(vertices.size() + model.vertex_count(), "vertices") -
@@ -240,6 +259,7 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     const StructureSurface surface = structure_surface(structures, rock);
     const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(progress, 0, 0.1, "leaving out what is in other parts");
+    together.reserve(models);
     for (std::size_t m = 0; m < models.size(); ++m) {
         together.add(models[m].model, static_cast<std::int32_t>(m),
                      places_of_cells(models[m].model, models[m].sides, nearest, threads, progress));

@@ -141,7 +141,13 @@ def _part_model(
     rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
-    rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
+    # blocks end at one border: those that each sheet ends at by itself leave many small ones between
+    around = reach.around(columns) if cells == "blocks" else None
+    regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
+    rocks = [
+        (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
+        for n, region in zip(taken, regions, strict=True)
+    ]
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:

@@ -7,12 +7,14 @@ import itertools
 
 import numpy as np
 
+from ..planar_mesh import triangulate_rings
 from ..work import Work, native_module
 from .parts import Structures
 from .sides import FaultShape, Triangulation, fault_sides
-from .triangles import extents
+from .triangles import border_loops, extents
 
 _CELLS = (64, 64, 16)  # of the grid, at most
+_MARGIN = 0.125  # of a cell: so far a model reaches beyond its part at least
 _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have points
 
 
@@ -48,8 +50,28 @@ class Reach:
         inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
         return (possible & inside).any(axis=2)
 
+    def around(self, columns: np.ndarray) -> Triangulation:
+        """A region in plan: these columns and a little around them, and what is beyond the last ones."""
+        lines = []
+        for axis, (count, step) in enumerate(zip(columns.shape, self.step[:2], strict=True)):
+            at = self.low[axis] + step * (np.arange(count + 1)[:, None] + _MARGIN * np.array([-1.0, 1.0]))
+            at[0, 0] -= step
+            at[-1, 1] += step
+            lines.append(at.ravel())
+        # the strips along the lines are cells, too
+        cells = np.zeros([2 * count + 1 for count in columns.shape], bool)
+        cells[1::2, 1::2] = columns
+        cells = _wider(cells)
+        number = np.arange(lines[0].size * lines[1].size).reshape(lines[0].size, -1)
+        corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+        a, b, c, d = (each[cells] for each in corners)
+        squares = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+        plan = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+        vertices, triangles = triangulate_rings([_corners(plan[ring]) for ring in border_loops(squares)])
+        return np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32)
+
     def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
-        """(T,) bool: the triangles of a sheet whose boxes in plan meet some of these columns."""
+        """(T,) bool: the triangles of a sheet whose boxes in plan meet what `around` gives."""
         first, last = self._ranges_of(sheet)
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
         total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
@@ -62,7 +84,9 @@ class Reach:
         for other, first, last in known:
             if np.array_equal(sheet[0][:, :2], other[0][:, :2]):
                 return first, last
-        first, last = self._range(*extents(sheet[0][sheet[1], :2]))
+        low, high = extents(sheet[0][sheet[1], :2])
+        margin = _MARGIN * self.step[:2]
+        first, last = self._range(low - margin, high + margin)
         known.append((sheet, first, last))
         return first, last
 
@@ -125,14 +149,20 @@ def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarr
     return np.concatenate(done)
 
 
+def _corners(ring: np.ndarray) -> np.ndarray:
+    """Of a ring along two axes the places where it turns."""
+    straight = (np.roll(ring, 1, axis=0) == ring) & (ring == np.roll(ring, -1, axis=0))
+    return ring[~straight.any(axis=1)]
+
+
 def _part(axis: int, part: slice) -> tuple:
     return tuple(part if k == axis else slice(None) for k in range(3))
 
 
 def _wider(cells: np.ndarray) -> np.ndarray:
     """Cells with all that touch them, over corners too."""
-    for axis in range(3):
-        one, other = _part(axis, slice(None, -1)), _part(axis, slice(1, None))
+    for axis in range(cells.ndim):
+        one, other = (_part(axis, part)[: cells.ndim] for part in (slice(None, -1), slice(1, None)))
         wider = cells.copy()
         wider[one] |= cells[other]
         wider[other] |= cells[one]
