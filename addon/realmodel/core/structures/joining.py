@@ -140,8 +140,10 @@ def _part_model(
     rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
+    emptied = [list(stacks[n].emptied) for n in taken]
+    built_as = "columns" if any(emptied) else cells
     # blocks end at one border: those that each sheet ends at by itself leave many small ones between
-    around = reach.around(columns) if cells == "blocks" else None
+    around = reach.around(columns) if built_as == "blocks" else None
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
     rocks = [
         (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
@@ -149,8 +151,6 @@ def _part_model(
     ]
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
-    emptied = [list(stacks[n].emptied) for n in taken]
-    built_as = "columns" if any(emptied) else cells
     try:
         built = work.native(
             native.build_rock_masses,
