@@ -93,6 +93,8 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
     EnteredRock rock;
     rock.first_surface = first_surface;
     rock.rules = input.rules;
+    rock.emptied = input.emptied;
+    if (!rock.emptied.empty()) rock.rules.resize(input.surfaces.size(), Rule::kErosional);
     if (input.base_elevation && !is_within_limits(*input.base_elevation)) {
         throw InputError("not_finite", "the base elevation is not a number or is beyond 1e50",
                          first_surface);
