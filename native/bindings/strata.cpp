@@ -185,9 +185,9 @@ own block. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
                R"(The sides of each cell, in the order of the faces.
 
 face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cells: how many there are.
-Returns (offsets (C + 1,) int64, sides (S,) int64): those of cell c are sides[offsets[c]:offsets[c +
+Returns (offsets (C + 1,) uint32, sides (S,) uint32): those of cell c are sides[offsets[c]:offsets[c +
 1]], each 2 face + 1 where the cell is the face's second one, else 2 face. Raises InputError kind
-"bad_index" (items: the face); Cancelled.)");
+"bad_index" (items: the face), "too_large"; Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

@@ -140,6 +140,41 @@ def test_landxml_and_its_unit(write):
     assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
 
 
+@pytest.mark.parametrize(
+    ("axes", "unit", "warnings"),
+    [
+        ('"ft" "ft" "ft"', "ft", 0),
+        ('" m " " m " " m "', "m", 0),
+        ('"m" "m" "ft"', None, 1),
+        ('"rods" "rods" "rods"', None, 0),
+    ],
+)
+def test_the_unit_of_tsurf(write, axes, unit, warnings):
+    mesh = read_mesh(write("m.ts", TSURF_AXES.replace("AXES", axes)))
+    assert mesh.unit == unit
+    assert len(mesh.warnings) == warnings
+    assert all("its axes have different units (ft, m)" in text for text in mesh.warnings)
+
+
+TSURF_AXES = """GOCAD TSurf 1
+HEADER {
+name: a
+}
+GOCAD_ORIGINAL_COORDINATE_SYSTEM
+NAME Default
+AXIS_NAME "X" "Y" "Z"
+AXIS_UNIT AXES
+ZPOSITIVE Elevation
+END_ORIGINAL_COORDINATE_SYSTEM
+TFACE
+VRTX 1 0 0 1
+VRTX 2 1 0 1
+VRTX 3 0 1 1
+TRGL 1 2 3
+END
+"""
+
+
 def test_properties_of_tsurf_are_told(write):
     text = (
         'GOCAD TSurf 1\nHEADER {\nname:a\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "ft" "ft" "ft"\n'

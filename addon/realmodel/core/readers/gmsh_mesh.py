@@ -16,6 +16,7 @@ from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
 _NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 15: 1, 16: 8}
+_MOST_IN_A_ROW = 1000
 _CORNERS = {2: 3, 9: 3, 3: 4, 10: 4, 16: 4}
 
 
@@ -128,6 +129,13 @@ def _whole(value: float) -> int:
     return int(value)
 
 
+def _few(value: float) -> int:
+    """A number of entries in each row."""
+    if not 0 <= value <= _MOST_IN_A_ROW:
+        raise ValueError(f"{value:g} entries in a row")
+    return int(value)
+
+
 def _nodes_2(read):
     rows = read.take("iddd", _count(read))
     return rows[:, 0], rows[:, 1:]
@@ -138,7 +146,7 @@ def _nodes_4(read):
     blocks, *_ = read.take("ssss")[0]
     for _ in range(_whole(blocks)):
         dimension, _, parametric, count = read.take("iiis")[0]
-        more = int(dimension) if parametric else 0
+        more = _few(dimension) if parametric else 0
         tags.append(read.take("s", _whole(count))[:, 0])
         places.append(read.take("ddd" + "d" * more, _whole(count))[:, :3])
     return np.concatenate(tags), np.concatenate(places)
@@ -151,12 +159,14 @@ def _elements_2(read) -> list[np.ndarray]:
     while done < count:
         if isinstance(read, _Bytes):
             kind, rows, tags = (int(v) for v in read.take("iii")[0])
+            tags = _few(tags)
             if rows < 1:
                 raise ValueError("a block without elements")
             found = read.take("i" * (1 + tags + _NODES[kind]), rows)[:, 1 + tags :]
         else:
             _, kind, tags = (int(v) for v in read.take("iii")[0])
-            rows, found = 1, read.take("i" * (_whole(tags) + _NODES[kind]))[:, tags:]
+            tags = _few(tags)
+            rows, found = 1, read.take("i" * (tags + _NODES[kind]))[:, tags:]
         done += rows
         if kind in _CORNERS:
             faces[_CORNERS[kind]].append(found[:, : _CORNERS[kind]])

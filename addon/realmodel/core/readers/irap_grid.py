@@ -92,7 +92,8 @@ def _binary(file: Path):
         found.append(np.frombuffer(raw, ">f4", size // 4, at + 4))
         have += size // 4
         at += size + 8
-    z = np.concatenate(found).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # NaN of any kind is no height
+        z = np.concatenate(found).astype(np.float64)
     if len(z) != count:
         raise InputRefused(
             f"{columns} columns and {rows} rows need {count} heights; there are {len(z)}", file=file

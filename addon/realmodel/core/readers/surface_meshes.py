@@ -102,7 +102,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
             elif words[0] == "PROPERTIES":
                 properties |= dict.fromkeys(words[1:])
             elif words[0] == "AXIS_UNIT":
-                axis_units |= {word.strip('"').lower() for word in words[1:4]}
+                named = re.findall(r'"([^"]*)"', " ".join(words[1:])) or words[1:4]
+                axis_units |= {word.strip().lower() for word in named}
             elif words[0] in ("VRTX", "PVRTX"):
                 x, y, z = map(float, words[2:5])
                 index[int(words[1])] = len(vertices)
@@ -117,6 +118,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     mesh = mesh_of_faces(file, vertices, faces, lines)
     (unit,) = axis_units if len(axis_units) == 1 else (None,)
     told = [f"its properties {', '.join(properties)} are not read"] if properties else []
+    if len(axis_units) > 1:
+        told.append(f"its axes have different units ({', '.join(sorted(axis_units))}): say which in 'units'")
     return replace(mesh, unit=unit if unit in METERS else None, warnings=tuple(told))
 
 

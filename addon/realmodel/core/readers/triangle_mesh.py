@@ -45,7 +45,8 @@ class TriangleMesh:
 def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, from 0: (F, K), or a list of any lengths.
     lines: where each face stands in the file. Raises InputRefused."""
-    vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+    with np.errstate(invalid="ignore"):  # NaN of any kind is refused below
+        vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
     if not len(faces):
         raise InputRefused("the mesh has no faces", file=file, advice="if it holds points, read it as points")
     bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
