@@ -61,7 +61,7 @@ def write_catalog(catalog: Catalog, folder: Path) -> None:
     """Writes tiles.toml and, where there is one, the library. Raises OutputFailed."""
     project = catalog.project
     lines = [
-        "# A model in tiles, written by RealModel (docs/reference/output_files.md)",
+        "# A model in tiles, written by RealModel (docs/tiles.md)",
         *_lines(
             format=_FORMAT,
             name=project.name,
