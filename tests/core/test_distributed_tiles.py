@@ -22,7 +22,7 @@ distributed = pytest.importorskip("distributed", reason="Dask is not installed")
 def client():
     with (
         distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         distributed.Client(cluster) as made,
     ):
@@ -74,7 +74,7 @@ def test_a_stopped_run_goes_on_in_another_cluster(client, tmp_path):
 
     with (
         distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         distributed.Client(cluster) as other,
     ):
@@ -132,7 +132,7 @@ from realmodel.distributed import build
 
 if __name__ == "__main__":
     project, folder = sys.argv[1:]
-    cluster = distributed.LocalCluster(n_workers=1, processes=True, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=1, processes=True, dashboard_address=":0")
     client = distributed.Client(cluster)
 
     def close():
