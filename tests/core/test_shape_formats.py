@@ -165,6 +165,23 @@ def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
 
 
+def test_vtk_reads_surfaces(model, tmp_path):
+    pyvista = pytest.importorskip("pyvista", reason=f"PyVista is {WHY}")
+    surfaces = build_surfaces(model.project)
+    surfaces.save(tmp_path / "s.vtu")
+    read = pyvista.read(tmp_path / "s.vtu")
+    for number in range(len(surfaces.surface_names)):
+        vertices, triangles = surfaces.surface(number)
+        own = read.extract_cells(np.flatnonzero(read.cell_data["surface"] == number))
+        assert own.n_cells == len(triangles)
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+        assert own.area == pytest.approx(area)
+        used = vertices[np.unique(triangles)]
+        assert own.bounds[::2] == pytest.approx(used.min(axis=0))
+        assert own.bounds[1::2] == pytest.approx(used.max(axis=0))
+
+
 def test_tsurf_says_the_unit(model, tmp_path):
     project = replace(model.project, units="ft")
     surfaces = build_surfaces(project)

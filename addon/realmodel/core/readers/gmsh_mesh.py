@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from .text import Step, no_step, read_bytes
+from .text import Step, line_of_word, no_step, read_bytes
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
@@ -29,13 +29,14 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads the faces of a mesh, and the nodes that they use. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
-    sections = {}
+    sections, begins = {}, {}
     for name in (b"MeshFormat", b"Nodes", b"Elements"):
         begin, end = raw.find(b"$" + name), raw.rfind(b"$End" + name)
         if begin < 0 or end < begin:
             what = f"it has no whole section {name.decode()}"
-            raise InputRefused(what, file=file, advice="the file is cut off")
-        sections[name] = raw[raw.find(b"\n", begin) + 1 : end]
+            raise InputRefused(f"{what} (byte {len(raw)})", file=file, advice="the file is cut off")
+        first = raw.find(b"\n", begin) + 1
+        begins[name], sections[name] = first, raw[first:end]
     words = sections[b"MeshFormat"].split(None, 3)
     version = words[0].decode("ascii", "replace") if words else ""
     if len(words) < 3 or not re.fullmatch(r"2(\.\d+)?|4\.1", version):
@@ -46,17 +47,26 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     order = "<"
     if is_binary and sections[b"MeshFormat"].split(b"\n", 1)[1][:4] == b"\0\0\0\1":
         order = ">"
+    read, section = [], b"Nodes"
     try:
         if is_binary:
-            read = _Bytes(sections[b"Nodes"], order), _Bytes(sections[b"Elements"], order)
+            read = [_Bytes(sections[name], order) for name in (b"Nodes", b"Elements")]
         else:
-            read = _Words(sections[b"Nodes"]), _Words(sections[b"Elements"])
+            read = [_Words(sections[name]) for name in (b"Nodes", b"Elements")]
         old = version.startswith("2")
-        tags, places = (_nodes_2 if old else _nodes_4)(*read[:1])
+        tags, places = (_nodes_2 if old else _nodes_4)(read[0])
         step(0.5)
+        section = b"Elements"
         faces = (_elements_2 if old else _elements_4)(read[1])
     except (ValueError, IndexError, OverflowError, MemoryError, KeyError) as error:
-        raise InputRefused(f"not a Gmsh file that can be read: {error}", file=file) from error
+        what, line = f"not a Gmsh file that can be read: {error}", None
+        if read:
+            at = read[section == b"Elements"].at
+            if is_binary:
+                what += f" (byte {begins[section] + at})"
+            else:
+                line = raw.count(b"\n", 0, begins[section]) + line_of_word(sections[section], at)
+        raise InputRefused(what, file=file, line=line) from error
     order_of_tags = np.argsort(tags, kind="stable")
     faces = [face for face in faces if len(face)]
     if not faces:
@@ -83,17 +93,17 @@ class _Words:
 
     def __init__(self, raw: bytes):
         self._values = np.array(raw.split()).astype(np.float64) if raw.split() else np.empty(0)
-        self._at = 0
+        self.at = 0
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
         """(count, len(kinds)); kinds are those of _Bytes."""
         if not 0 <= count <= len(self._values):
             raise ValueError(f"{count} entries are announced, the file is cut off")
-        end = self._at + count * len(kinds)
-        found = self._values[self._at : end]
+        end = self.at + count * len(kinds)
+        found = self._values[self.at : end]
         if len(found) < count * len(kinds):
             raise ValueError("the file is cut off")
-        self._at = end
+        self.at = end
         return found.reshape(count, len(kinds))
 
 
@@ -101,21 +111,21 @@ class _Bytes:
     """The same of a binary section. kinds: i int32, s size_t, d float64."""
 
     def __init__(self, raw: bytes, order: str):
-        self._raw, self._at = raw, 0
+        self._raw, self.at = raw, 0
         self._types = {"i": f"{order}i4", "s": f"{order}u8", "d": f"{order}f8"}
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
         row = np.dtype([(str(k), self._types[kind]) for k, kind in enumerate(kinds)])
-        if not 0 <= count <= len(self._raw) or self._at + count * row.itemsize > len(self._raw):
+        if not 0 <= count <= len(self._raw) or self.at + count * row.itemsize > len(self._raw):
             raise ValueError(f"{count} entries are announced, the file is cut off")
-        found = np.frombuffer(self._raw, row, count, self._at)
-        self._at += count * row.itemsize
+        found = np.frombuffer(self._raw, row, count, self.at)
+        self.at += count * row.itemsize
         return np.stack([found[name].astype(np.float64) for name in row.names], axis=1)
 
     def line(self) -> int:
         """A number on a line of text."""
-        text, _, _ = self._raw[self._at : self._at + 40].partition(b"\n")
-        self._at += len(text) + 1
+        text, _, _ = self._raw[self.at : self.at + 40].partition(b"\n")
+        self.at += len(text) + 1
         return int(text)
 
 

@@ -69,7 +69,11 @@ struct StackInput {
     std::vector<Rule> rules;            ///< one a surface; none at all means all erosional
     std::optional<RegionView> region;
     std::optional<double> base_elevation;
-    std::optional<Window> window = {};  ///< what lies beyond it is left out, as beyond the region
+    /// Surfaces, ascending: before each of them all that is there becomes air, and only what was
+    /// protected stays so. Of models of columns without a base elevation.
+    std::vector<std::size_t> emptied;
+    /// What lies beyond it is left out, as beyond the region.
+    std::optional<Window> window;
 };
 
 using realmodel::CellComplex;
