@@ -73,7 +73,7 @@ struct StackInput {
     /// protected stays so. Of models of columns without a base elevation.
     std::vector<std::size_t> emptied;
     /// What lies beyond it is left out, as beyond the region.
-    std::optional<Window> window;
+    std::optional<Window> window = {};
 };
 
 using realmodel::CellComplex;
