@@ -152,12 +152,12 @@ def cliff():
 
 def set_up(points, azimuth, elevation, size):
     import bpy
-    import draw_gallery
+    import gallery_picture
     from realmodel.bl import picture
 
     scene = bpy.context.scene
     camera = picture.set_up(scene, points, size)
-    draw_gallery.aim(camera, points, size, azimuth, elevation, (0.0, 0.06))
+    gallery_picture.aim(camera, points, size, azimuth, elevation, (0.0, 0.06))
     picture.set_renderer(scene, "", size, RAYS, SECONDS)
     scene.view_settings.exposure = EXPOSURE
 
@@ -171,7 +171,7 @@ def render(folder, name):
 
 def draw_looks(folder, keys):
     import bpy
-    import draw_gallery
+    import gallery_picture
     import numpy as np
     from realmodel.bl import looks, materials, meshes
     from realmodel.core import polygon_mesh
@@ -183,7 +183,7 @@ def draw_looks(folder, keys):
         if shape is not None:
             mesh = meshes.new_mesh("block", shape)
             mesh.materials.append(material)
-            draw_gallery.smooth(mesh)
+            gallery_picture.smooth(mesh)
             bpy.context.scene.collection.objects.link(bpy.data.objects.new("block", mesh))
             points.append(np.array(shape.coordinates, float))
     set_up(np.concatenate(points), 145.0, 24.0, SIZE)

@@ -182,7 +182,7 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
 }
 
 py::tuple describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-                         const Array<std::int64_t>& begin, const Array<std::int64_t>& sides) {
+                         const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
     simulation::CellDescriptions found;
     {
         const py::gil_scoped_release unlocked;
@@ -277,7 +277,7 @@ Raises InputError kind "bad_index"; Cancelled.)");
                py::arg("begin"), py::arg("sides"),
                R"(Cells as VTK describes polyhedra.
 
-begin: (C + 1,) int64, where the sides of these cells begin and end; sides: (S,) int64, as cell_sides has
+begin: (C + 1,) uint32, where the sides of these cells begin and end; sides: (S,) uint32, as cell_sides has
 them. Returns int64 arrays: of each cell how many faces it has, of each of these how many corners, and the
 corners; the vertices of each cell, every one once, ascending; how many these are (C,), and how many numbers
 of the first array describe each cell (C,). Raises InputError kind "bad_index".)");

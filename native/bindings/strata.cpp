@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -45,13 +46,22 @@ struct MemoryGivenBack {
 };
 
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
-                           int threads, Progress* control) {
+                           int threads, Progress* control,
+                           const std::vector<std::vector<std::size_t>>& emptied) {
     if (cells != "columns" && cells != "blocks") {
         throw py::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
     }
     std::vector<strata::StackInput> input;
     for (const RockArrays& rock : rocks)
         input.push_back(view_of(rock));
+    if (!emptied.empty() && (emptied.size() != rocks.size() || cells != "columns"))
+        throw py::value_error("emptied: one for each rock mass, of columns alone");
+    for (std::size_t r = 0; r < emptied.size(); ++r) {
+        input[r].emptied = emptied[r];
+        if (!std::ranges::is_sorted(emptied[r]) ||
+            (!emptied[r].empty() && emptied[r].back() >= input[r].surfaces.size()))
+            throw py::value_error("emptied: surfaces, ascending");
+    }
     CellComplex complex;
     {
         const py::gil_scoped_release release;
@@ -67,7 +77,8 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      const std::optional<SurfaceArrays>& region,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
-    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control);
+    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
+                             {});
 }
 
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
@@ -96,6 +107,7 @@ Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& ce
 void bind_strata(py::module_& module) {
     module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
@@ -103,7 +115,8 @@ float64, triangles (T, 3) int32), oldest first; region: None or a triangulation 
 float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None or the height of a
 flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosional). cells:
 "columns" or "blocks" (each connected part of a block one cell); threads: 0 for
-all. Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
+all; emptied: of each rock mass the surfaces, ascending, before which all that is there becomes air,
+and only what was protected stays so (columns, no base elevation). Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,
@@ -125,9 +138,9 @@ own block. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
                R"(The sides of each cell, in the order of the faces.
 
 face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cells: how many there are.
-Returns (offsets (C + 1,) int64, sides (S,) int64): those of cell c are sides[offsets[c]:offsets[c +
+Returns (offsets (C + 1,) uint32, sides (S,) uint32): those of cell c are sides[offsets[c]:offsets[c +
 1]], each 2 face + 1 where the cell is the face's second one, else 2 face. Raises InputError kind
-"bad_index" (items: the face); Cancelled.)");
+"bad_index" (items: the face), "too_large"; Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

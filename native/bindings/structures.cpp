@@ -101,21 +101,23 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
     return result;
 }
 
-Array<std::int8_t> structure_sides(const StructureArrays& structure, const Array<double>& points,
-                                   int threads, const Progress* control) {
+Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
+                                   const Array<double>& points, int threads,
+                                   const Progress* control) {
     require_columns(points, 3, "points");
-    const structures::Structure view = view_of(structure);
+    const auto views = views_of(structures);
+    if (views.empty()) throw py::value_error("structures: none is given");
     std::vector<std::int8_t> sides;
     {
         const py::gil_scoped_release release;
         sides = structures::sides_of_points(
-            view, {points.data(), static_cast<std::size_t>(points.size())}, threads, control);
+            views, {points.data(), static_cast<std::size_t>(points.size())}, threads, control);
     }
     return to_array(std::move(sides));
 }
 
-Array<std::uint8_t> structure_beyond(const StructureArrays& fault, const Array<double>& low,
-                                     const Array<double>& high,
+Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
+                                     const Array<double>& low, const Array<double>& high,
                                      const Array<std::int32_t>& triangles, int threads,
                                      const Progress* control) {
     require_columns(low, 3, "low");
@@ -126,21 +128,24 @@ Array<std::uint8_t> structure_beyond(const StructureArrays& fault, const Array<d
         if (triangles.data()[i] < 0 || triangles.data()[i] >= low.shape(0))
             throw py::value_error("triangles: a vertex that is not there");
     }
-    const structures::Structure view = view_of(fault);
+    const auto views = views_of(faults);
+    if (views.empty()) throw py::value_error("faults: none is given");
     std::vector<std::uint8_t> found;
     {
         const py::gil_scoped_release release;
         found = structures::triangles_beyond(
-            view, {low.data(), static_cast<std::size_t>(low.size())},
+            views, {low.data(), static_cast<std::size_t>(low.size())},
             {high.data(), static_cast<std::size_t>(high.size())},
             {triangles.data(), static_cast<std::size_t>(triangles.size())}, threads, control);
     }
     return to_array(std::move(found));
 }
 
-Array<double> structure_continuation(const StructureArrays& fault,
+Array<double> structure_continuation(const std::vector<StructureArrays>& faults,
                                      const std::array<std::array<double, 3>, 2>& box) {
-    const auto found = structures::continuation_of(view_of(fault), box);
+    const auto views = views_of(faults);
+    if (views.empty()) throw py::value_error("faults: none is given");
+    const auto found = structures::continuation_of(views, box);
     Array<double> array({found.size(), std::size_t{3}, std::size_t{3}});
     double* out = array.mutable_data();
     for (const auto& triangle : found) {
@@ -172,22 +177,25 @@ structure_parts. acts: (S, B) uint8, whether a structure divides a block. Return
 complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
 model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
     module.def(
-        "structure_sides", &structure_sides, py::arg("structure"), py::arg("points"),
+        "structure_sides", &structure_sides, py::arg("structures"), py::arg("points"),
         py::arg("threads") = 0, py::arg("control") = nullptr,
         R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
-below or inside; of a fault by its nearest triangle. Raises InputError and Cancelled.)");
-    module.def("structure_beyond", &structure_beyond, py::arg("fault"), py::arg("low"),
+below or inside; of a fault by its nearest triangle.
+
+structures: as of structure_parts, the one that is asked for, then the faults that it ends at. Raises
+InputError and Cancelled.)");
+    module.def("structure_beyond", &structure_beyond, py::arg("faults"), py::arg("low"),
                py::arg("high"), py::arg("triangles"), py::arg("threads") = 0,
                py::arg("control") = nullptr,
                R"(Which triangles of a sheet a fault meets where it goes on beyond its border.
 
-fault: as of structure_parts. low, high: (N, 3) float64, the lowest and the highest place of each
+faults: as of structure_parts, the one that is asked for, then those that it ends at. low, high: (N, 3) float64, the lowest and the highest place of each
 vertex, equal in plan. triangles: (T, 3) int32. Returns (T,) uint8, 1 where it may touch a triangle,
 2 where it may pass it: none too few, perhaps some too many. Raises InputError and Cancelled.)");
-    module.def("structure_continuation", &structure_continuation, py::arg("fault"), py::arg("box"),
+    module.def("structure_continuation", &structure_continuation, py::arg("faults"), py::arg("box"),
                R"(The triangles (K, 3, 3) float64 by which a fault goes on beyond its border.
 
-fault: as of structure_parts. box: two corners of a box around the rock, which they leave. Raises
+faults: as of structure_parts, the one that is asked for, then those that it ends at. box: two corners of a box around the rock, which they leave. Raises
 InputError.)");
 }
 

@@ -27,6 +27,9 @@ add_library(realmodel_settings INTERFACE)
 # No fused multiply-add: the same bytes on every machine. Rounding may change at run time, because
 # CGAL's interval arithmetic changes it: the compiler must not fold or move such operations.
 target_compile_options(realmodel_settings INTERFACE -ffp-contract=off -frounding-math)
+if(REALMODEL_PLAIN_DOUBLE)
+    target_compile_definitions(realmodel_settings INTERFACE REALMODEL_PLAIN_DOUBLE)
+endif()
 if(REALMODEL_SANITIZE)
     target_compile_options(realmodel_settings INTERFACE
         -fsanitize=${REALMODEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

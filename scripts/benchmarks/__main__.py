@@ -12,6 +12,7 @@ from . import (
     blender_table,
     booleans_table,
     display_table,
+    files_table,
     heights_table,
     memory_table,
     meshing_table,
@@ -23,7 +24,7 @@ from . import (
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans", "structures")
+PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans", "structures", "files")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -82,6 +83,9 @@ def main() -> int:
             page.table(structures_table.FAULTS, faulted, 2),
             page.table(structures_table.CUTS, cuts),
         ]
+    if "files" in parts:
+        rows = files_table.measure(given.quick, memory, _say)
+        tables["files"] = [page.table(files_table.FILES, rows)]
     if given.write:
         for name, of_part in tables.items():
             lines = [machine, *(line for table in of_part for line in ("", *table))]

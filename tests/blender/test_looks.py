@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rock looks: chosen by name, rendered, with the colors of the library."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import bpy
 import numpy as np
+import render_eevee
 from blender_state import empty_file
 from panel_case import PanelCase, ops, stack
 from realmodel.bl import looks, materials
 from realmodel.core.looks import LOOKS
 
 PIXELS = 64
+FOR_EEVEE = ("FLAT", "SHALE", "SANDSTONE", "GRAVEL")  # each with a texture takes seconds on a processor
 
 
 class Looks(PanelCase):
@@ -94,6 +101,43 @@ class Looks(PanelCase):
             self.assertGreater(found.min(), 0.02, key)
             if key != "GRASS":  # which is brown below the ground
                 self.assertGreater(found[2], 0.95 * found[0], key)
+
+    def test_eevee_renders_looks(self):
+        """In the color of the property, textured; laminae along the layers. In a process of its own: OpenGL
+        may be missing in ways that end Blender."""
+        keys = tuple(LOOKS) if os.environ.get("EVERY_LOOK") else FOR_EEVEE
+        file, script = self.folder / "eevee.png", Path(render_eevee.__file__)
+        command = [
+            bpy.app.binary_path,
+            "-b",
+            "--factory-startup",
+            "--python-exit-code",
+            "1",
+            "-P",
+            script,
+            "--",
+        ]
+        if not bpy.app.binary_path:
+            command = [sys.executable, script, "--"]
+        done = subprocess.run([*command, file, *keys], capture_output=True, text=True, check=False)
+        if not file.is_file():
+            self.fail(f"{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        image = bpy.data.images.load(str(file))
+        width, height = image.size
+        pixels = np.array(image.pixels[:], np.float32).reshape(height, width, -1)[:, :, :3]
+        bpy.data.images.remove(image)
+        side = render_eevee.TILE
+        for number, key in enumerate(keys):
+            row, column = (place * side for place in divmod(number, render_eevee.COLUMNS))
+            tile = pixels[row + 4 : row + side - 4, column + 4 : column + side - 4]
+            red, green, blue = tile.mean(axis=(0, 1))
+            self.assertGreater(blue, max(red, 0.05), key)  # neither pink nor black
+            self.assertGreater(green, 0.05, key)
+            spread = tile.std(axis=(0, 1)).max()
+            (self.assertLess if key == "FLAT" else self.assertGreater)(spread, 0.004, key)
+            if key == "SHALE":
+                level, across = (tile.mean(axis=axis).std(axis=0).max() for axis in (1, 0))
+                self.assertGreater(level, 2.0 * across)
 
     def test_a_changed_color_reaches_the_look(self):
         ops.rock_looks()

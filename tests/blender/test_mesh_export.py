@@ -127,6 +127,19 @@ class MeshExport(PanelCase):
         shown_models.whole(self.scene).save(expected, contour_interval=5.0)
         self.assertEqual(path.read_bytes(), expected.read_bytes())
 
+    def test_surfaces_alone(self):
+        self.open_two_layers()
+        for ending in (".obj", ".ply", ".stl", ".glb", ".dxf", ".ts", ".vtu", ".npz"):
+            path, expected = self.folder / f"m{ending}", self.folder / f"e{ending}"
+            ops.export(filepath=str(path), surfaces_only=True)
+            shown_models.whole(self.scene).save_surfaces(expected)
+            self.assertEqual(path.read_bytes(), expected.read_bytes())
+        count = len(shown_models.whole(self.scene).surface_names)
+        self.assertEqual((self.folder / "m.ts").read_text().count("GOCAD TSurf"), count)
+        self.refused(
+            ops.export, "surfaces are written to", filepath=str(self.folder / "m.foam"), surfaces_only=True
+        )
+
     def test_cells_are_cleaned_to_a_tolerance(self):
         self.open_two_layers()
         path, expected = self.folder / "m.vtu", self.folder / "e.vtu"

@@ -92,7 +92,7 @@ class SceneExport(PanelCase):
     def assert_pictured(self, found, **options):
         for seen, color in self.assert_whole(found, **options):
             mean, deviation = (np.array(seen["picture"][key]) for key in ("mean", "deviation"))
-            np.testing.assert_allclose(mean, color, rtol=0.35)
+            np.testing.assert_allclose(mean, color, rtol=0.35, atol=0.015)  # beds differ
             self.assertGreater(deviation.max(), 0.02 * mean.max())
             np.testing.assert_allclose(seen["color"], 1.0, atol=0.01)
 
@@ -141,6 +141,17 @@ class SceneExport(PanelCase):
         seen = self.exported("glb")
         self.assertEqual({block["picture"] for block in seen.values()}, {None})
         self.assertGreater(seen["S2 block"]["low"][1], seen["S1 block"]["high"][1])  # y is up in glTF
+
+    def test_weathered_blocks_have_a_picture_for_each_material(self):
+        """Grass lies on the ground of the upper block, whose walls are coal."""
+        ops.weathering(strength=0.2, detail=2, grass_slope=0.5, scree_slope=0.0)
+        found = {seen["material"]: seen["picture"] for seen in self.exported("glb").values()}
+        self.assertEqual(sorted(found), ["Coal seam", "Grass", "Grès d'été"])
+        red, green, blue = found["Grass"]["mean"]
+        self.assertGreater(green, 1.2 * max(red, blue))
+        for name, color in (("Grès d'été", SAND), ("Coal seam", COAL)):
+            color = linear_color(hex_color(color))
+            np.testing.assert_allclose(found[name]["mean"], color, rtol=0.35, atol=0.015)
 
     def test_where_it_fails_the_scene_is_as_it_was(self):
         before = inventory()

@@ -2,6 +2,7 @@
 """build_model.py --section, --fence and --cut: files, and what is wrong said before anything is built."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -45,6 +46,38 @@ def test_sections_fences_and_halves_are_written(layers, out):  # noqa: F811
         rows = list(csv.DictReader(file))
     assert {row["panel"] for row in rows} == {"0", "1"}
     assert {row["block_name"] for row in rows} == set(arrays(out / "below.npz")["block_names"])
+
+
+def test_halves_are_cleaned_and_take_the_size_of_cells(layers, out):  # noqa: F811
+    project, cut = layers([0, 1, 3]), "0,0,1.02,0.002,0,1"
+    done = run(project, "--cut", f"{cut}={out / 'exact.vtu'},{out / 'a.npz'}")
+    assert done.returncode == 0, done.stderr
+    tolerance = ("--cell-tolerance", 0.1, "--cell-size", 0.5)
+    done = run(project, "--cut", f"{cut}={out / 'clean.vtu'},{out / 'grid.csv'}", *tolerance)
+    assert done.returncode == 0, done.stderr
+    assert "clean.vtu: cells cleaned to 0.1: " in done.stdout and "grid.csv: cells" not in done.stdout
+    exact, clean = (cells_of(out / f"{name}.vtu") for name in ("exact", "clean"))
+    assert 0 < clean < exact
+    with (out / "grid.csv").open() as file:
+        assert {float(row["dx"]) for row in csv.DictReader(file)} == {0.5}
+
+
+def cells_of(file):
+    return int(re.search(rb'NumberOfCells="(\d+)"', file.read_bytes())[1])
+
+
+def test_the_unit_of_a_cutter_counts_and_its_content_says_what_it_is(layers, out):  # noqa: F811
+    corners = "".join(
+        f"<P id='{k}'>{y} {x} 200</P>" for k, (x, y) in enumerate([(-1e3, -1e3), (9e3, -1e3), (-1e3, 9e3)])
+    )
+    surface = f"<Surface name='a'><Pnts>{corners}</Pnts><Faces><F>0 1 2</F></Faces></Surface>"
+    units = "<Units><Metric linearUnit='centimeter'/></Units>"
+    (out.parent / "plane.surface").write_text(f"<LandXML>{units}<Surfaces>{surface}</Surfaces></LandXML>")
+    done = run(layers([0, 1, 3]), "--cut", f"{out.parent / 'plane.surface'}={out / 'b.npz'},{out / 'a.npz'}")
+    assert done.returncode == 0, done.stderr
+    assert "its lengths are in cm, according to the file" in done.stdout
+    below = arrays(out / "b.npz")
+    assert below["vertices"][:, 2].max() == pytest.approx(2.0)
 
 
 def test_a_model_is_cut_by_a_surface_from_a_file(layers, out):  # noqa: F811

@@ -11,7 +11,7 @@ from realmodel.core import mesh_region
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import hard_outlines, meshing, page, peers, process, structures
+from benchmarks import files, files_table, hard_outlines, meshing, page, peers, process, structures
 from benchmarks.made_stacks import StackSpec
 
 
@@ -133,3 +133,14 @@ def test_hard_outlines_are_meshed_as_a_whole(kind):
     vertices, triangles = mesh_region(rings, edge_length=edge, mesher="delaunay")
     found = sum(meshing.signed_area(corners) for corners in vertices[triangles])
     assert found == pytest.approx(area, rel=1e-9)
+
+
+def test_files_are_measured_beside_their_bytes():
+    spec = {"surfaces": 3, "quads": 12, "plan": "shared"}
+    found = files.write_in_turns(spec, [".vtu", ".foam"], 1, 1)
+    assert found["cells"] > 400
+    for ending in (".vtu", ".foam"):
+        row = files_table._row(ending, found["cells"], found[ending])
+        assert len(row) == len(files_table.FILES)
+        assert found[ending]["bytes"] > 40 * found["cells"]
+        assert all(seconds > 0 for name in ("cached", "synced") for seconds in found[ending][name])

@@ -9,7 +9,7 @@ from realmodel.core.structures.closed_form import winding_numbers
 from realmodel.core.structures.joining import acts
 from realmodel.core.structures.parts import divide, structures_of
 from realmodel.core.structures.reach import Reach
-from realmodel.core.structures.sides import FaultShape, fault_sides
+from realmodel.core.structures.sides import fault_sides
 from realmodel.core.work import run
 from structure_cases import ball, plane_fault, prepared
 
@@ -53,7 +53,7 @@ NETWORKS = {
 
 def sides_at(structures, points):
     """(N, S) sides of points, branches dropped."""
-    shapes = [FaultShape(each.vertices, each.triangles, each.dies_out) for each in structures.faults]
+    shapes = structures.fault_shapes()
     columns = [run(lambda work, shape=shape: fault_sides(work, points, shape)) for shape in shapes]
     sides = np.column_stack(columns)
     faults = structures.of_rock(0)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces in DXF, VTK's XML, Gmsh's MSH and LandXML, as others write them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, MeshFile, Project, Rock, Surface, build
@@ -140,6 +142,73 @@ def test_landxml_and_its_unit(write):
     assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
 
 
+PLY = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+PLY += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+FACET = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+MSH = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n"
+MSH += "2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
+MSH += "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n"
+VTP = '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian"><PolyData><Piece><Points><DataArray '
+VTP += 'type="Float32" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0</DataArray></Points><Polys>'
+VTP += '<DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataArray><DataArray type="Int32" '
+VTP += 'Name="offsets" format="ascii">3</DataArray></Polys></Piece></PolyData></VTKFile>'
+
+
+def test_a_unit_in_the_header_of_dxf_is_told_and_converts_nothing(write):
+    face = "0\n3DFACE\n10\n0\n11\n1\n12\n0\n22\n1\n"
+    header = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n2\n0\nENDSEC\n"
+    text = f"{header}0\nSECTION\n2\nENTITIES\n{face}0\nENDSEC\n0\nEOF\n"
+    path = write("m.dxf", text)
+    mesh = read_mesh(path)
+    for given, unit, told in (
+        (MeshFile(path), "m", 1),
+        (MeshFile(path), "ft", 0),
+        (MeshFile(path, "ft"), "m", 0),
+    ):
+        vertices, warnings = mesh.in_model(given, unit)
+        assert len(warnings) == told
+        assert vertices.max() == (0.3048 if given.units else 1.0)
+        assert all(
+            'its header says ft; it is read in the unit of the model, m: write units = "ft"' in w
+            for w in warnings
+        )
+
+
+@pytest.mark.parametrize(
+    ("axes", "unit", "warnings"),
+    [
+        ('"ft" "ft" "ft"', "ft", 0),
+        ('" m " " m " " m "', "m", 0),
+        ('"m" "m" "ft"', None, 1),
+        ('"rods" "rods" "rods"', None, 0),
+    ],
+)
+def test_the_unit_of_tsurf(write, axes, unit, warnings):
+    mesh = read_mesh(write("m.ts", TSURF_AXES.replace("AXES", axes)))
+    assert mesh.unit == unit
+    assert len(mesh.warnings) == warnings
+    assert all("its axes have different units (ft, m)" in text for text in mesh.warnings)
+
+
+TSURF_AXES = """GOCAD TSurf 1
+HEADER {
+name: a
+}
+GOCAD_ORIGINAL_COORDINATE_SYSTEM
+NAME Default
+AXIS_NAME "X" "Y" "Z"
+AXIS_UNIT AXES
+ZPOSITIVE Elevation
+END_ORIGINAL_COORDINATE_SYSTEM
+TFACE
+VRTX 1 0 0 1
+VRTX 2 1 0 1
+VRTX 3 0 1 1
+TRGL 1 2 3
+END
+"""
+
+
 def test_properties_of_tsurf_are_told(write):
     text = (
         'GOCAD TSurf 1\nHEADER {\nname:a\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "ft" "ft" "ft"\n'
@@ -152,6 +221,15 @@ def test_properties_of_tsurf_are_told(write):
     assert mesh.unit == "ft"
     _, told = mesh.in_model(MeshFile(path), "ft")
     assert told == [f"{path}: its properties age, porosity are not read"]
+
+
+def test_tsurf_of_loopstructural():
+    """Written by LoopStructural 1.9 (its export/gocad.py), with a property."""
+    path = Path(__file__).parents[1] / "data" / "meshes" / "loopstructural.ts"
+    mesh = read_mesh(path)
+    assert facets(mesh) == expected()
+    assert mesh.unit == "m"
+    assert mesh.warnings == ("its properties val are not read",)
 
 
 @pytest.mark.parametrize(
@@ -173,6 +251,14 @@ def test_what_a_mesh_is_is_told_from_its_content(write, name, content):
     ("name", "content", "match"),
     [
         ("m.xml", landxml().replace("<F>8 11 9</F>", "<F>8 11 99</F>"), r"surface 'Top': '8 11 99' cannot be read"),  # noqa: E501
+        ("m.ply", PLY + "0 0 1\n1 0 2\n1 1 3\n3 0 1", r"m\.ply:13: .* cut off, or a count is wrong"),
+        ("m.ply", PLY.replace("vertex 3", "vertex 9") + "0 0 1\n1 0 2\n1 1 3\n3 0 1 2\n", r"m\.ply:10: .* cut off"),  # noqa: E501
+        ("m.ply", PLY.replace("ascii", "binary_little_endian") + "0123456789" * 4, r"cut off, .* \(byte 206\)"),  # noqa: E501
+        ("m.stl", "solid a\n" + FACET + FACET.replace("vertex 0 1 0\n", "") + FACET, r"m\.stl:9: .* does not have three vertices"),  # noqa: E501
+        ("m.stl", "x" * 80 + "\x03\0\0\0" + "x" * 60, r"3 triangles are announced, the file is cut off at byte 144"),  # noqa: E501
+        ("m.msh", MSH.replace("1 3 1 3\n", "1 9 1 9\n").replace("2 1 0 3", "2 1 0 9"), r"m\.msh:12: .* the file is cut off"),  # noqa: E501
+        ("m.msh", MSH[:-20], r"no whole section Elements \(byte \d+\); the file is cut off"),
+        ("m.vtp", VTP.replace("0 1 2<", "0 1 x<"), r"array 'connectivity': invalid literal"),
         ("m.xml", landxml()[:-30], r"m\.xml:4: damaged XML"),
         ("m.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + landxml(), "document type"),
         ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n10\nx\n0\nENDSEC\n0\nEOF\n", r"m\.dxf:6: a 3DFACE that cannot"),  # noqa: E501

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The blocks of a model in the formats of shapes, as readers that nobody here wrote read them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from conftest import grid_surface
@@ -161,6 +163,36 @@ def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
     read = read_mesh(tmp_path / f"c{ending}")
     a, b, c = (read.vertices[read.triangles] - low).transpose(1, 0, 2)
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
+
+
+def test_vtk_reads_surfaces(model, tmp_path):
+    pyvista = pytest.importorskip("pyvista", reason=f"PyVista is {WHY}")
+    surfaces = build_surfaces(model.project)
+    surfaces.save(tmp_path / "s.vtu")
+    read = pyvista.read(tmp_path / "s.vtu")
+    for number in range(len(surfaces.surface_names)):
+        vertices, triangles = surfaces.surface(number)
+        own = read.extract_cells(np.flatnonzero(read.cell_data["surface"] == number))
+        assert own.n_cells == len(triangles)
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+        assert own.area == pytest.approx(area)
+        used = vertices[np.unique(triangles)]
+        assert own.bounds[::2] == pytest.approx(used.min(axis=0))
+        assert own.bounds[1::2] == pytest.approx(used.max(axis=0))
+
+
+def test_tsurf_says_the_unit(model, tmp_path):
+    project = replace(model.project, units="ft")
+    surfaces = build_surfaces(project)
+    surfaces.save(tmp_path / "s.ts")
+    built = build(project)
+    built.save_surfaces(tmp_path / "b.ts")
+    assert (tmp_path / "b.ts").read_bytes() == (tmp_path / "s.ts").read_bytes()
+    built.save(tmp_path / "m.ts")
+    built.section(built.vertices.mean(axis=0), (1.0, 0.0, 0.0)).save(tmp_path / "c.ts")
+    for name in ("s", "m", "c"):
+        assert read_mesh(tmp_path / f"{name}.ts").unit == "ft"
 
 
 def test_surfaces_have_groups_in_obj(model, tmp_path):

@@ -41,7 +41,7 @@ def modules(unpacked):
 
 
 def test_small():
-    assert ZIP.stat().st_size < 12e6
+    assert ZIP.stat().st_size < 10e6
 
 
 def test_it_says_its_platform(unpacked):

@@ -35,7 +35,7 @@ def test_one_folder_on_top(package):
 
 
 def test_small(package):
-    assert package.stat().st_size < 11e6
+    assert package.stat().st_size < 10e6
 
 
 def test_both_ways_to_be_found_by_blender(unpacked):

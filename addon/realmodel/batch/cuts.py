@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,9 +14,11 @@ from ..core.build import build
 from ..core.errors import InputRefused, UsageError
 from ..core.exporters import format_for, write_model
 from ..core.exporters.sections import section_writer
+from ..core.point_file import MeshFile
 from ..core.project_file import load_project
 from ..core.readers import MESH_ENDINGS, read_mesh
 from ..core.readers.text import read_text
+from ..core.simulation.mesh_request import cleaned_line
 
 
 @dataclass
@@ -58,6 +61,7 @@ class SectionRequest:
 class CutRequest:
     """A cut and the files of its halves; one of them may be left out.
 
+    cell_size, contour_interval, tolerance: as of core.exporters.save_model.
     cutter: point and normal of a plane (6,), the file of a surface, or (project file or None for the model
     itself, block).
     """
@@ -65,6 +69,9 @@ class CutRequest:
     cutter: np.ndarray | Path | tuple[Path | None, str]
     below: Path | None
     above: Path | None
+    cell_size: Sequence[float] | None = None
+    contour_interval: float | None = None
+    tolerance: float | None = None
 
     @property
     def outputs(self) -> list[Path]:
@@ -92,12 +99,15 @@ class CutRequest:
         def step(_share, _text):
             progress(1.0, f"cutting {names}")
 
+        lines = []
         if isinstance(self.cutter, np.ndarray):
             cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads, step)
             text = "by the plane"
         elif isinstance(self.cutter, Path):
+            vertices, told = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
+            lines += [f"warning: {warning}" for warning in told]
             try:
-                cut = model.cut_by_surface(self._mesh.vertices, self._mesh.triangles, threads, step)
+                cut = model.cut_by_surface(vertices, self._mesh.triangles, threads, step)
             except InputRefused as error:
                 raise InputRefused(f"{self.cutter}: {error}") from error
             text = f"by {self.cutter.name}"
@@ -107,10 +117,24 @@ class CutRequest:
             cut = model.cut_by_block(other, int(block) if block.isdecimal() else block, threads, step)
             text = f"by block '{block}'"
         for half, path in ((cut.below, self.below), (cut.above, self.above)):
-            if path is not None:
-                write_model(half, path, outputs)
+            if path is None:
+                continue
+            cells = None
+            if self.tolerance is not None and format_for(path).has_cells:
+                progress(1.0, f"cleaning cells of {path.name}")
+                cells = half.cleaned_cells(self.tolerance, threads=threads, progress=step)
+                lines.append(f"{path.name}: {cleaned_line(cells)}")
+            write_model(
+                half,
+                path,
+                outputs,
+                cell_size=self.cell_size,
+                contour_interval=self.contour_interval,
+                cells=cells,
+            )
         low, high = ("inside", "outside") if isinstance(self.cutter, tuple) else ("below", "above")
-        return f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
+        line = f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
+        return "\n".join([line, *lines])
 
 
 def section_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
@@ -152,7 +176,7 @@ def cut_request(text: str) -> CutRequest:
         if not block:
             raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
-    if Path(what).suffix.lower() not in MESH_ENDINGS:
+    if Path(what).suffix.lower() not in MESH_ENDINGS and not Path(what).is_file():
         raise UsageError(
             f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
             f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK (:BLOCK for one of the "

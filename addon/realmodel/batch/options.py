@@ -33,19 +33,19 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "--cell-size",
         metavar="X[,Y[,Z]]",
         type=_sizes,
-        help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
+        help="the cells of regular grids by --export and --cut (.csv, .vti, .tif, .asc)",
     )
     parser.add_argument(
         "--contour-interval",
         metavar="H",
         type=_length,
-        help="the distance of contours in maps by --export (.gpkg, .geojson)",
+        help="the distance of contours in maps by --export and --cut (.gpkg, .geojson)",
     )
     parser.add_argument(
         "--cell-tolerance",
         metavar="T",
         type=_length,
-        help="clean the model's cells by --export (.vtu, .foam, .exo, .disu): T is the least size",
+        help="clean the cells by --export and --cut (.vtu, .foam, .exo, .disu): T is the least size",
     )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")

@@ -5,6 +5,7 @@ import argparse
 import contextlib
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from ..core import (
@@ -24,7 +25,7 @@ from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
 from ..core.rock_input import with_arrays
 from ..core.simulation.mesh_request import MeshRequest, cleaned_line
 from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
-from .cuts import cut_request, fence_request, section_request
+from .cuts import CutRequest, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
 from .table import ensemble_table, surface_table, volume_table
 from .terminal import TerminalProgress
@@ -177,13 +178,21 @@ def _requests(options: argparse.Namespace) -> list:
     return [
         *(section_request(text, options.exaggeration) for text in options.section),
         *(fence_request(text, options.exaggeration) for text in options.fence),
-        *map(cut_request, options.cut),
+        *(
+            replace(
+                cut_request(text),
+                cell_size=options.cell_size,
+                contour_interval=options.contour_interval,
+                tolerance=options.cell_tolerance,
+            )
+            for text in options.cut
+        ),
     ]
 
 
 def _cleaned_cells(options: argparse.Namespace, model, progress):
-    """The cells that --cell-tolerance asks for, or None."""
-    if options.cell_tolerance is None:
+    """The cells of the model that --cell-tolerance asks for, or None."""
+    if options.cell_tolerance is None or not any(format_for(path).has_cells for path in options.export):
         return None
     return model.cleaned_cells(
         options.cell_tolerance,
@@ -212,8 +221,11 @@ def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> 
         surface_writer_for(path) if options.surfaces_only else format_for(path)
     if options.cell_tolerance is not None:
         able = [known.ending for known in FORMATS.values() if known.has_cells]
-        if not any(path.suffix.lower() in able for path in options.export):
-            raise UsageError(f"--cell-tolerance goes with --export of a file with cells: {', '.join(able)}")
+        cut = [path for request in requests if isinstance(request, CutRequest) for path in request.outputs]
+        if not any(path.suffix.lower() in able for path in (*options.export, *cut)):
+            raise UsageError(
+                f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
+            )
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     paths += [path for request in requests for path in request.outputs]
     targets = [output_target(path) for path in paths]

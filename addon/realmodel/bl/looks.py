@@ -38,6 +38,8 @@ UNITS = 250.0  # texture units along the diagonal of a model, at scale 1
 SIZE = "Texture Size"  # the node that says how large a texture unit is
 _FLAT_LAMINAE = 0.03  # how many times longer than thick laminae are, inverted
 _GROOVE = 0.07  # texture units: half the width of a groove or a crack
+_BENT = 0.9  # texture units: how far joints wind
+_JOINT_SETS = (((0.93, 0.35, 0.09), 1.9), ((-0.46, 0.88, -0.14), 1.0))  # normals, and how far apart
 _CRYSTAL = 0.3  # clasts smaller than this touch one another
 _NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
@@ -94,7 +96,10 @@ def _set_gloss(shader, roughness):
 
 
 def _fill(nodes, shader, look, color, unit, seed):
-    """Nodes of all that a recipe has: `tones` add up to how bright, `heights` to how high (texture units)."""
+    """Nodes of all that a recipe has: `tones` add up to how bright, `heights` to how high (texture units).
+
+    Renderers compute heights three times, for their slope, so few nodes that are slow (three-dimensional
+    noise above all) may be in them: Eevee's shaders take long to compile otherwise."""
     size = nodes.new("ShaderNodeValue")
     size.name = size.label = SIZE
     size = size.outputs[0]
@@ -104,12 +109,10 @@ def _fill(nodes, shader, look, color, unit, seed):
     place = nodes.vector("SCALE", place, nodes.math("DIVIDE", 1.0, size))
     place = nodes.vector("ADD", place, tuple(rng.uniform(-50.0, 50.0, 3)))
     above = _above(nodes, place, size)
-    large = nodes.noise(place, 0.12, 3.0)
-    rough = nodes.noise(place, 1.0 / look.relief_size, 5.0) if look.relief else None
-    worn = nodes.ramp(
-        large, 0.35, 0.6, 0.15, 1.0
-    )  # cracks are filled here, open there, and hardly seen on top
-    worn = nodes.math("MULTIPLY", worn, nodes.math("MULTIPLY_ADD", nodes.attribute("is_top"), -0.7, 1.0))
+    large = nodes.noise(place, 0.12, 2.0)
+    rough = nodes.noise(place, 1.0 / look.relief_size, 4.0) if look.relief else None
+    worn = nodes.ramp(large, 0.35, 0.6, 0.15, 1.0)  # cracks are filled here, open there
+    on_wall = nodes.math("MULTIPLY_ADD", nodes.attribute("is_top"), -0.7, 1.0)  # and hardly seen on top
     tones, heights, hues = [], [], []
     if look.stain:
         tones.append(nodes.about(large, 2.0 * look.stain))
@@ -119,28 +122,33 @@ def _fill(nodes, shader, look, color, unit, seed):
         heights.append(nodes.about(rough, 2.0 * look.relief))
         tones.append(nodes.about(rough, min(0.7, 1.4 * look.relief)))  # hollows are dark
     if look.lamination:
-        lamina = nodes.about(nodes.noise(_in_layer(nodes, place, above, look.lamina), 1.0, 3.0), 1.0)
-        patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
-        lamina = nodes.math("MULTIPLY", lamina, patchy)
-        tones.append(nodes.math("MULTIPLY", lamina, 2.0 * look.lamination))
+        lamina = nodes.about(_laminae(nodes, place, above, look.lamina), 1.0)
         heights.append(nodes.math("MULTIPLY", lamina, look.lamination))
-    beds = None
+        patchy = nodes.ramp(large, 0.3, 0.65, 0.35, 1.0)  # here they stand out, there they are worn away
+        tones.append(nodes.math("MULTIPLY", nodes.math("MULTIPLY", lamina, patchy), 2.0 * look.lamination))
+    bed = None
     if look.bed:
-        beds, groove = _beds(nodes, above, rough, look.bed)
-        tones.append(nodes.about(nodes.part(beds, 0), 0.22))
-        hues.append(nodes.part(beds, 1))
-        _groove(nodes, look, nodes.math("MULTIPLY", groove, worn), tones, heights)
-    if look.joint:
-        shown = nodes.attribute("is_top") if look.on_top else worn
-        joints, tone = _joints(nodes, place, rough, beds, look)
-        _groove(nodes, look, nodes.math("MULTIPLY", joints, shown), tones, heights)
-        if look.columns:
+        bed, groove = _beds(nodes, above, rough, look.bed)
+        tones.append(nodes.about(bed[0], 0.22))
+        hues.append(bed[1])
+        _groove(nodes, look, nodes.math("MULTIPLY", groove, on_wall), worn, tones, heights)
+    if look.joint and look.cells:
+        crack, tone = _cells(nodes, place, rough, look)
+        shown = nodes.attribute("is_top") if look.on_top else on_wall
+        _groove(
+            nodes, look, nodes.math("MULTIPLY", crack, shown), None if look.on_top else worn, tones, heights
+        )
+        if not look.on_top:
             tones.append(nodes.about(tone, 0.15))
+    elif look.joint:
+        joints = _joints(nodes, place, rough, bed, look.joint)
+        _groove(nodes, look, nodes.math("MULTIPLY", joints, on_wall), worn, tones, heights)
     if look.clasts:
         tone, height, hue = _clasts(nodes, place, look)
         tones.append(tone)
-        heights.append(height)
         hues.append(hue)
+        if height is not None:
+            heights.append(height)
     elif look.grassy:
         hues.append(large)
     tone = nodes.math("MULTIPLY", nodes.total(tones), 1.6)
@@ -186,63 +194,101 @@ def _above(nodes, place, size):
     return nodes.math("ADD", above, without)
 
 
-def _in_layer(nodes, place, above, lamina):
-    """Coordinates in which laminae are level."""
+def _laminae(nodes, place, above, lamina):
+    """Noise from 0 to 1 of laminae, which are level in the layer and end somewhere."""
     joined = nodes.new("ShaderNodeCombineXYZ")
-    nodes.link(nodes.math("MULTIPLY", nodes.part(place, 0), _FLAT_LAMINAE), joined.inputs[0])
-    nodes.link(nodes.math("MULTIPLY", nodes.part(place, 1), _FLAT_LAMINAE), joined.inputs[1])
-    nodes.link(nodes.math("MULTIPLY", above, 1.0 / lamina), joined.inputs[2])
-    return joined.outputs[0]
+    nodes.link(
+        nodes.vector("DOT_PRODUCT", place, (0.8 * _FLAT_LAMINAE, 0.6 * _FLAT_LAMINAE, 0.0)), joined.inputs[0]
+    )
+    nodes.link(nodes.math("MULTIPLY", above, 1.0 / lamina), joined.inputs[1])
+    return nodes.noise(joined.outputs[0], 1.0, 3.0, "2D")
+
+
+def _bands(nodes, along):
+    """Numbers of the bands, of irregular width and about 1 on average, that a coordinate is in, and how far
+    the border of one is, from 0 to 0.5. Voronoi textures would say so too, but take Eevee minutes to compile
+    where there are several."""
+    bent = along
+    for often, far in (
+        (1.9, 0.32),
+        (0.83, 0.2),
+    ):  # the product of both adds up to less than 1: bands have an order
+        wave = nodes.math("SINE", nodes.math("MULTIPLY", along, often))
+        bent = nodes.math("MULTIPLY_ADD", wave, far, bent)
+    return nodes.math("FLOOR", bent), nodes.math("PINGPONG", bent, 0.5)
 
 
 def _beds(nodes, above, rough, bed):
-    """The color of each bed, at random, and how deep in the groove between two (0 to 1)."""
+    """Three numbers from 0 to 1 of each bed, at random, and how deep in the groove between two (0 to 1)."""
     level = nodes.math("MULTIPLY", above, 1.0 / bed)
     if rough is not None:
         level = nodes.math("ADD", level, nodes.about(rough, 0.12 / bed))
-    cell, edge = nodes.cells("1D", level, 1.0, "F1"), nodes.cells("1D", level, 1.0, "DISTANCE_TO_EDGE")
-    return cell.outputs["Color"], nodes.ramp(edge.outputs["Distance"], 0.0, _GROOVE / bed, 1.0, 0.0)
+    number, edge = _bands(nodes, level)
+    random = nodes.new("ShaderNodeTexWhiteNoise")
+    random.noise_dimensions = "1D"
+    nodes.link(number, random.inputs["W"])
+    numbers = [nodes.part(random.outputs["Color"], axis) for axis in range(3)]
+    open_here = nodes.math("MULTIPLY_ADD", numbers[2], 0.8, 0.2)
+    groove = nodes.ramp(edge, 0.0, _GROOVE / bed, 1.0, 0.0)
+    return numbers, nodes.math("MULTIPLY", groove, open_here)
 
 
-def _joints(nodes, place, rough, beds, look):
-    """How deep in a crack (0 to 1), and a number from 0 to 1 of what cracks enclose. In each bed they are
-    elsewhere."""
+def _joints(nodes, place, rough, bed, spacing):
+    """How deep in a joint (0 to 1). Joints are steep planes of two sets at irregular distances; those of the
+    first go through all beds, those of the second are in some beds, elsewhere in each."""
+    found = []
+    for number, (normal, apart) in enumerate(_JOINT_SETS):
+        apart *= spacing
+        along = nodes.vector("DOT_PRODUCT", place, tuple(part / apart for part in normal))
+        if rough is not None:
+            along = nodes.math("ADD", along, nodes.about(rough, _BENT / apart))
+        if number and bed is not None:
+            along = nodes.math("MULTIPLY_ADD", bed[2], 40.0, along)
+        joint = nodes.ramp(_bands(nodes, along)[1], 0.0, _GROOVE / apart, 1.0, 0.0)
+        if number and bed is not None:
+            joint = nodes.math("MULTIPLY", joint, nodes.ramp(bed[1], 0.35, 0.65, 0.0, 1.0))
+        found.append(joint)
+    return nodes.math("MAXIMUM", *found)
+
+
+def _cells(nodes, place, rough, look):
+    """How deep in an upright crack (0 to 1), and a number from 0 to 1 of what cracks enclose."""
     bent = nodes.vector("SCALE", place, 1.0 / look.joint)
-    if beds is not None:
-        bent = nodes.vector("ADD", bent, nodes.vector("SCALE", beds, 40.0))
     if rough is not None:
         shift = nodes.new("ShaderNodeCombineXYZ")
         for axis in range(2):
             nodes.link(nodes.about(rough, 0.25), shift.inputs[axis])
         bent = nodes.vector("ADD", bent, shift.outputs[0])
-    edge = nodes.cells("2D", bent, 0.85, "DISTANCE_TO_EDGE")
-    crack = nodes.ramp(edge.outputs["Distance"], 0.0, _GROOVE / look.joint, 1.0, 0.0)
-    return crack, nodes.part(nodes.cells("2D", bent, 0.85, "F1").outputs["Color"], 0)
+    # The distance to an edge itself would be slower by far, and takes Eevee minutes to compile.
+    first, second = (nodes.cells("2D", bent, 0.85, feature) for feature in ("F1", "F2"))
+    edge = nodes.math("SUBTRACT", second.outputs["Distance"], first.outputs["Distance"])
+    crack = nodes.ramp(edge, 0.0, 2.0 * _GROOVE / look.joint, 1.0, 0.0)
+    return crack, nodes.part(first.outputs["Color"], 0)
 
 
-def _groove(nodes, look, groove, tones, heights):
-    tones.append(nodes.math("MULTIPLY", groove, -look.crack))
+def _groove(nodes, look, groove, worn, tones, heights):
+    """worn: how much of its color is there, or None."""
     heights.append(nodes.math("MULTIPLY", groove, -0.5 * look.crack))
+    seen = groove if worn is None else nodes.math("MULTIPLY", groove, worn)
+    tones.append(nodes.math("MULTIPLY", seen, -look.crack))
 
 
 def _clasts(nodes, place, look):
-    """Tone, height and hue of pebbles or crystals that differ from one another."""
+    """Tone, height (None: level) and a number from 0 to 1 of pebbles or crystals that differ from one
+    another."""
     place = nodes.vector("SCALE", place, 1.0 / look.clast_size)
-    if look.clast_size > _CRYSTAL:  # pebbles are not round
-        bent = nodes.of_noise(place, 0.9, 1.0).outputs["Color"]
-        place = nodes.vector("ADD", place, nodes.vector("SCALE", bent, 1.6))
-    cell = nodes.cells("3D", place, 1.0, "F1")
+    if look.clast_size <= _CRYSTAL:
+        first = nodes.part(nodes.cells("3D", place, 1.0, "F1").outputs["Color"], 0)
+        return nodes.about(first, 2.0 * look.clasts), None, first
+    bent = nodes.vector("SINE", nodes.vector("CROSS_PRODUCT", place, (1.9, 2.3, -2.6)))  # not round
+    cell = nodes.cells("3D", nodes.vector("ADD", place, nodes.vector("SCALE", bent, 0.14)), 1.0, "F1")
     first, second = nodes.part(cell.outputs["Color"], 0), nodes.part(cell.outputs["Color"], 1)
-    if look.clast_size > _CRYSTAL:
-        inside = nodes.ramp(cell.outputs["Distance"], 0.38, 0.66, 1.0, 0.0)
-    else:
-        edge = nodes.cells("3D", place, 1.0, "DISTANCE_TO_EDGE")
-        inside = nodes.ramp(edge.outputs["Distance"], 0.02, 0.14, 0.0, 1.0)
+    inside = nodes.ramp(cell.outputs["Distance"], 0.38, 0.66, 1.0, 0.0)
     if look.packing < 1.0:
         inside = nodes.math("MULTIPLY", inside, nodes.math("LESS_THAN", second, look.packing))
     tone = nodes.math("MULTIPLY", nodes.about(first, 2.0 * look.clasts), inside)
-    if look.clast_size > _CRYSTAL:  # between pebbles it is dark
-        tone = nodes.math("ADD", tone, nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, 1.0), 0.15))
+    # between pebbles it is dark
+    tone = nodes.math("ADD", tone, nodes.math("MULTIPLY", nodes.math("SUBTRACT", inside, 1.0), 0.15))
     return tone, nodes.math("MULTIPLY", inside, 0.6 * look.clast_size * look.clasts), first
 
 

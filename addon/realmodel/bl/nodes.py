@@ -62,11 +62,9 @@ class Nodes:
             self.link(given, socket)
         return node.outputs[0]
 
-    def noise(self, place, scale, detail):
-        return self.of_noise(place, scale, detail).outputs[0]
-
-    def of_noise(self, place, scale, detail):
+    def noise(self, place, scale, detail, dimensions="3D"):
         node = self.new("ShaderNodeTexNoise")
+        node.noise_dimensions = dimensions
         self.link(place, node.inputs["Vector"])
         node.inputs["Scale"].default_value, node.inputs["Detail"].default_value = scale, detail
-        return node
+        return node.outputs[0]

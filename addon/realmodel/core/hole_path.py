@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .elementary import atan2, cos, sin
+
 Direction = tuple[float, float, float]  # of length 1: to the east, to the north, down
 _STRAIGHT = 1e-12  # radians
 
@@ -15,7 +17,7 @@ def direction(inclination: float, azimuth: float) -> Direction:
     """inclination: degrees from the vertical, 0 straight down, 90 level, 180 straight up. azimuth: degrees
     clockwise from north (+y)."""
     tilt, turn = np.radians(inclination), np.radians(azimuth)
-    return float(np.sin(tilt) * np.sin(turn)), float(np.sin(tilt) * np.cos(turn)), float(np.cos(tilt))
+    return sin(tilt) * sin(turn), sin(tilt) * cos(turn), cos(tilt)
 
 
 class HolePath:
@@ -58,14 +60,18 @@ class HolePath:
     def _along(self, n: int, length: float) -> np.ndarray:
         """The way of this length from station n towards the next one."""
         turned = self._bends[n] * length / (self._depths[n + 1] - self._depths[n])
-        # np.sinc(x) is sin(pi x) / (pi x), and (1 - cos t) / t = t / 2 (sin(t / 2) / (t / 2))^2
-        half = np.sinc(turned / (2 * np.pi))
-        sideways = turned / 2 * half**2 * self._across[n]
-        return length * (np.sinc(turned / np.pi) * self._directions[n] + sideways)
+        # (1 - cos t) / t = t / 2 (sin(t / 2) / (t / 2))^2
+        sideways = turned / 2 * _sin_by(turned / 2) ** 2 * self._across[n]
+        return length * (_sin_by(turned) * self._directions[n] + sideways)
+
+
+def _sin_by(x: float) -> float:
+    """sin(x) / x."""
+    return sin(x) / x if x else 1.0
 
 
 def bend_between(begin, end) -> np.ndarray:
     """(...) the angles in radians between directions (..., 3) of length 1; as exact for small ones as for
     large."""
     begin, end = np.asarray(begin, float), np.asarray(end, float)
-    return 2 * np.arctan2(np.linalg.norm(begin - end, axis=-1), np.linalg.norm(begin + end, axis=-1))
+    return 2 * atan2(np.linalg.norm(begin - end, axis=-1), np.linalg.norm(begin + end, axis=-1))

@@ -16,12 +16,13 @@ class Look:
     units.
 
     lamination: of laminae, which follow the layer as it was deposited; lamina: how thick one is. bed: how
-    thick beds are (0: none), which differ in tone and are parted by grooves. joint: the size of what upright
-    cracks divide each bed into (0: none); columns: as columns, through all beds; on_top: only on faces that
-    are ground. crack: how dark and deep cracks and grooves are. stain, grain: of large and of fine mottling;
-    grain_size. clasts: of pebbles or crystals that differ from one another; clast_size; packing: the share of
-    the rock that they take. hue: by how much beds and clasts differ in hue. relief: how high the surface is
-    rough; relief_size. roughness: how matt. grassy: on faces that are ground, other faces are brown.
+    thick beds are (0: none), which differ in tone and are parted by grooves. joint: how far steep joints are
+    apart (0: none); cells: how large are what upright cracks enclose, instead: columns, or on_top: only on
+    faces that are ground. crack: how dark and deep cracks and grooves are. stain, grain: of large and of fine
+    mottling; grain_size. clasts: of pebbles or crystals that differ from one another; clast_size; packing:
+    the share of the rock that they take. hue: by how much beds and clasts differ in hue. relief: how high the
+    surface is rough; relief_size. roughness: how matt. grassy: on faces that are ground, other faces are
+    brown.
     hardness: from 0 to 1, how well the rock withstands weathering.
     """
 
@@ -33,7 +34,7 @@ class Look:
     lamina: float = 0.5
     bed: float = 0.0
     joint: float = 0.0
-    columns: bool = False
+    cells: bool = False
     on_top: bool = False
     crack: float = 0.5
     stain: float = 0.12
@@ -70,8 +71,8 @@ LOOKS = {
         ("limestone", "dolomite", "chalk", "marble", "carbonate"),
         0.75,
         lamination=0.05,
-        bed=1.5,
-        joint=2.6,
+        bed=1.7,
+        joint=3.8,
         crack=0.4,
         stain=0.2,
         grain=0.05,
@@ -112,12 +113,11 @@ LOOKS = {
         "#c0a79c",
         ("granite", "gneiss", "diorite", "gabbro", "intrusive", "basement", "pluton"),
         0.95,
-        joint=11.0,
-        columns=True,
+        joint=6.0,
         crack=0.3,
         stain=0.14,
         grain=0.05,
-        clasts=0.55,
+        clasts=0.36,
         clast_size=0.14,
         hue=0.012,
         relief=0.9,
@@ -130,7 +130,7 @@ LOOKS = {
         ("basalt", "lava", "andesite", "volcanic", "tuff", "rhyolite"),
         0.9,
         joint=1.5,
-        columns=True,
+        cells=True,
         crack=0.4,
         stain=0.2,
         grain=0.15,
@@ -160,6 +160,7 @@ LOOKS = {
         lamination=0.06,
         lamina=0.4,
         joint=0.9,
+        cells=True,
         on_top=True,
         crack=0.22,
         grain=0.04,

@@ -19,6 +19,7 @@ from .contours import contours
 from .erosion import Erosion, eroded
 from .errors import UsageError
 from .exporters import save_model
+from .exporters.surfaces import save_surfaces
 from .geological_map import geological_map
 from .heights import Interpolation
 from .project import Project
@@ -143,6 +144,14 @@ class Model:
         known, OutputFailed where it cannot be written.
         """
         save_model(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
+
+    def save_surfaces(self, path: str | Path) -> None:
+        """Writes the surfaces, faults and bodies as they were used, by the file's ending (.obj, .ply, .stl,
+        .glb, .dxf, .ts with a part for each, .npz, .vtu). It appears whole or not at all.
+
+        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        """
+        save_surfaces(self, path)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no

@@ -60,7 +60,8 @@ class SurfaceSet:
         return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
 
     def save(self, path: str | Path) -> None:
-        """Writes the surfaces to a file, by its ending (.npz, .vtu). It appears whole or not at all.
+        """Writes the surfaces to a file, by its ending (.obj, .ply, .stl, .glb, .dxf, .ts with a
+        part for each, .npz, .vtu). It appears whole or not at all.
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """

@@ -166,10 +166,18 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
         default=0.0,
     )
 
+    surfaces_only: BoolProperty(
+        name="Surfaces Only",
+        description="Write the surfaces as they were used, a part for each, in place of cells and blocks "
+        "(OBJ, PLY, STL, glTF, DXF, GOCAD, VTK, NumPy)",
+        default=False,
+    )
+
     def begin(self, context):
         return ExportJob(
             shown_models.whole(context.scene),
             self.target(),
+            surfaces_only=self.surfaces_only,
             cell_size=self.cell_size[:] if any(self.cell_size) else None,
             contour_interval=self.contour_interval or None,
             tolerance=self.cell_tolerance or None,

@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "bedding/sheet_heights.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::bedding {
@@ -312,7 +313,7 @@ PlanPosition Corners::beside(const PlanPosition& position, const Polygon& polygo
     const auto [normal, middle] = facing(polygon);
     PlanPosition found{position[0] + kInwards * (middle[0] - position[0]),
                        position[1] + kInwards * (middle[1] - position[1])};
-    const double across = std::hypot(normal[0], normal[1]);
+    const double across = elementary::hypot(normal[0], normal[1]);
     if (across > 0 && std::abs(normal[2]) <= 1e-6 * across) {
         const double step = kBeside * largest_plan_ / across;
         found[0] -= step * normal[0];
@@ -337,7 +338,7 @@ void Corners::set(std::uint32_t corner, const Polygon& polygon, const Column& co
         return;
     }
     const auto normal = facing(polygon).normal;
-    const double across = std::hypot(normal[0], normal[1]);
+    const double across = elementary::hypot(normal[0], normal[1]);
     const bool is_upright = std::abs(normal[2]) <= 1e-6 * across;
     bedding.height[corner] = is_upright ? 0.5F : normal[2] > 0 ? 1.0F : 0.0F;
 }

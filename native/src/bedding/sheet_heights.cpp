@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::bedding {
@@ -81,7 +82,7 @@ void SheetHeights::add_triangles(const strata::SurfaceView& sheet) {
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const auto &a = triangle.corner[i], &b = triangle.corner[(i + 1) % 3];
-            triangle.slack[i] = near_ * std::hypot(b[0] - a[0], b[1] - a[1]);
+            triangle.slack[i] = near_ * elementary::hypot(b[0] - a[0], b[1] - a[1]);
         }
         triangles_.push_back(triangle);
         numbers.push_back(v);

@@ -9,10 +9,13 @@
 #include "booleans/loops.hpp"
 #include "booleans/refinement.hpp"
 #include "booleans/space_cells.hpp"
+#include "exact/double_double_interval.hpp"
 
 namespace realmodel::booleans {
 
 namespace {
+
+using exact::DoubleDoubleInterval;
 
 /// Whether a surface has no border: it passes each edge as often one way as the other.
 std::array<bool, 2> closed_surfaces(const FacetMesh& mesh) {
@@ -77,12 +80,12 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
 }
 
 /// Six times the volume between a triangle and an origin.
-long double volume_below(const std::vector<Position>& vertices,
-                         const std::array<std::int32_t, 3>& t, const Position& origin) {
-    std::array<std::array<long double, 3>, 3> p;
+DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
+                                  const std::array<std::int32_t, 3>& t, const Position& origin) {
+    std::array<std::array<DoubleDoubleInterval, 3>, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = 0; k < 3; ++k)
-            p[i][k] = static_cast<long double>(vertices[index(t[i])][k]) - origin[k];
+            p[i][k] = DoubleDoubleInterval::difference(vertices[index(t[i])][k], origin[k]);
     }
     return p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
            p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
@@ -103,10 +106,10 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
     }
     for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
         SubBlock& block = result.sub_blocks[i];
-        long double sum = 0;
+        DoubleDoubleInterval sum = 0.0;
         for (const auto& t : block.triangles)
-            sum += volume_below(vertices, t, vertices[index(block.triangles[0][0])]);
-        block.volume = static_cast<double>(sum / 6);
+            sum = sum + volume_below(vertices, t, vertices[index(block.triangles[0][0])]);
+        block.volume = (sum.high + sum.low) / 6;
         for (std::size_t source = 0; source < 2; ++source)
             block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }

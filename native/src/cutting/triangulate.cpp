@@ -7,6 +7,7 @@
 
 #include "cutting/plane_cross.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "spatial/corner_grid.hpp"
 
 namespace realmodel::cutting {
@@ -14,7 +15,7 @@ namespace realmodel::cutting {
 namespace {
 
 double length(const PlanePosition& a, const PlanePosition& b) {
-    return std::hypot(b[0] - a[0], b[1] - a[1]);
+    return elementary::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
 double twice_area(const Loop& loop) {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !defined(REALMODEL_PLAIN_DOUBLE)
 #include <emmintrin.h>
 #endif
 
@@ -116,7 +116,7 @@ struct LineRow {
 
 /// The sides that floating point tells of values with bounds of their errors, for the first `size`
 /// of a row; value_of and bound_of give them two by two, as `Pair`s, from an even index on.
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !defined(REALMODEL_PLAIN_DOUBLE)
 using Pair = __m128d;
 inline Pair pair_of(double value) {
     return _mm_set1_pd(value);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::interpolation {
 
 namespace {
@@ -62,9 +64,9 @@ DriftFrame::DriftFrame(std::span<const Position> positions, Drift drift) : drift
     }
     if (largest > kLeastSpread) scale_ = largest;
     // The axis of greatest spread of the covariance matrix [xx xy; xy yy].
-    const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
-    along_x_ = std::cos(angle);
-    along_y_ = std::sin(angle);
+    const double angle = 0.5 * elementary::atan2(2 * xy, xx - yy);
+    along_x_ = elementary::cos(angle);
+    along_y_ = elementary::sin(angle);
 }
 
 DriftFrame::Terms DriftFrame::terms(const Position& position) const {

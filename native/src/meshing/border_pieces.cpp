@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::meshing {
@@ -17,7 +18,7 @@ constexpr double kSharpAngle = std::numbers::pi / 3;
 
 double length_of(const RegionGraph& graph, const Segment& edge) {
     const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
-    return std::hypot(b[0] - a[0], b[1] - a[1]);
+    return elementary::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
 /// For each point the distance at which its edges are cut because two of them meet at a sharp angle
@@ -34,8 +35,8 @@ std::vector<double> tip_lengths(const RegionGraph& graph, const SizeField& size)
     const auto add = [&](const Segment& edge, bool is_inner) {
         const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
         const double length = length_of(graph, edge);
-        spokes.push_back({edge[0], std::atan2(b[1] - a[1], b[0] - a[0]), true, length});
-        spokes.push_back({edge[1], std::atan2(a[1] - b[1], a[0] - b[0]), is_inner, length});
+        spokes.push_back({edge[0], elementary::atan2(b[1] - a[1], b[0] - a[0]), true, length});
+        spokes.push_back({edge[1], elementary::atan2(a[1] - b[1], a[0] - b[0]), is_inner, length});
     };
     for (const Segment& edge : graph.border)
         add(edge, false);
@@ -80,7 +81,7 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
                          const SizeField& size) {
     std::vector<double> shares;
     if (begin > 0) shares.push_back(begin);
-    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
     if (size.is_uniform()) {
         const std::size_t count = piece_count((end - begin) * length / size.largest());
         for (std::size_t i = 1; i < count; ++i) {

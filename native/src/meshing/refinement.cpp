@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <queue>
 #include <string>
 
 #include "meshing/point_insertion.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::meshing {
@@ -35,7 +35,7 @@ public:
         : mesh_(mesh),
           target_(target),
           size_(size),
-          least_sine2_(std::pow(std::sin(target.least_angle), 2)),
+          least_sine2_(elementary::sin(target.least_angle) * elementary::sin(target.least_angle)),
           check_(check) {}
 
     void run(std::int32_t first, std::span<const std::int32_t> also) {

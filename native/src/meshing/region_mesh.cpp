@@ -337,7 +337,7 @@ PlanarMesh Meshing::run_for_count() {
     PlanarMesh best;
     double best_miss = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kMostRounds; ++round) {
-        const double begin = 1 - std::pow(0.5, round), end = 1 - std::pow(0.5, round + 1);
+        const double begin = 1 - std::ldexp(1.0, -round), end = 1 - std::ldexp(1.0, -round - 1);
         PlanarMesh made = mesh(field(scale * unit, scale), begin, end);
         const auto count = static_cast<double>(made.triangles.size());
         const double miss = std::abs(count / wanted - 1);

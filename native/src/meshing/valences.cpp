@@ -7,6 +7,7 @@
 
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::meshing {
 
@@ -60,7 +61,7 @@ double Valences::angle_at(HalfEdge edge) const {
     const PlanPoint &p = mesh_.origin_point(edge), &a = mesh_.target_point(edge),
                     &b = mesh_.apex_point(edge);
     const double ux = a[0] - p[0], uy = a[1] - p[1], vx = b[0] - p[0], vy = b[1] - p[1];
-    return std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+    return elementary::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
 }
 
 int Valences::gain_of_flip(HalfEdge edge) const {

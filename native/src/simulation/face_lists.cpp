@@ -2,6 +2,7 @@
 #include "realmodel/simulation/face_lists.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -34,48 +35,67 @@ namespace {
 
 constexpr std::size_t kCells = 2048;  ///< described at a time
 constexpr std::size_t kFaces = 8192;  ///< put in order at a time
-constexpr std::size_t kFewCorners = 64;
 
-/// Sorts the corners of a cell and leaves each once. @return how many there are then
-std::size_t each_once(std::int64_t* corners, std::size_t count) {
-    if (count > kFewCorners) {
-        std::sort(corners, corners + count);
-        return static_cast<std::size_t>(std::unique(corners, corners + count) - corners);
+/// Numbers, each once, by a table of remainders that fits the nearest cache.
+class Distinct {
+public:
+    void clear() {
+        values_.clear();
+        ++round_;
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::int64_t own = corners[i];
-        std::size_t at = kept;
-        while (at > 0 && corners[at - 1] > own)
-            --at;
-        if (at > 0 && corners[at - 1] == own) continue;
-        std::copy_backward(corners + at, corners + kept, corners + kept + 1);
-        corners[at] = own;
-        ++kept;
+    void add(std::int32_t value) {
+        if (values_.size() > kMost) {  // of cells like these there are few
+            values_.push_back(value);
+            return;
+        }
+        for (auto at = static_cast<std::uint32_t>(value);; ++at) {
+            Slot& slot = slots_[at % kSlots];
+            if (slot.round != round_) {
+                slot = {round_, value};
+                values_.push_back(value);
+                return;
+            }
+            if (slot.value == value) return;
+        }
     }
-    return kept;
-}
+    /// In ascending order.
+    std::span<const std::int32_t> sorted() {
+        std::sort(values_.begin(), values_.end());
+        if (values_.size() > kMost)
+            values_.erase(std::unique(values_.begin(), values_.end()), values_.end());
+        return values_;
+    }
+
+private:
+    static constexpr std::size_t kSlots = 256, kMost = 64;
+    struct Slot {
+        std::uint64_t round = 0;
+        std::int32_t value = 0;
+    };
+    std::array<Slot, kSlots> slots_;
+    std::vector<std::int32_t> values_;
+    std::uint64_t round_ = 0;
+};
 
 }  // namespace
 
-CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::int64_t> begin,
-                                std::span<const std::int64_t> sides) {
+CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uint32_t> begin,
+                                std::span<const std::uint32_t> sides) {
     CellDescriptions made;
     const std::size_t cells = begin.empty() ? 0 : begin.size() - 1;
     made.lengths.resize(cells);
     made.counts.resize(cells);
     const auto sides_of = [&](std::size_t c) {
-        return sides.subspan(index(begin[c]), index(begin[c + 1] - begin[c]));
+        return sides.subspan(begin[c], begin[c + 1] - begin[c]);
     };
     std::vector<std::size_t> first_number((cells + kCells - 1) / kCells);
     parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
         std::size_t total = 0;
         for (std::size_t c = from; c < to; ++c) {
-            if (begin[c] < 0 || begin[c] > begin[c + 1] ||
-                begin[c + 1] > static_cast<std::int64_t>(sides.size()))
+            if (begin[c] > begin[c + 1] || begin[c + 1] > sides.size())
                 refuse(static_cast<std::int64_t>(c), "the cell has sides that do not exist");
             std::size_t own = 1;
-            for (const std::int64_t side : sides_of(c))
+            for (const std::uint32_t side : sides_of(c))
                 own += 1 + loop_of(faces, side >> 1).size();
             made.lengths[c] = static_cast<std::int64_t>(own);
             total += own;
@@ -87,20 +107,22 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::int
     parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
         std::int64_t* number = made.faces.data() + first_number[from / kCells];
         auto& corners = vertices[from / kCells];
+        Distinct distinct;
         for (std::size_t c = from; c < to; ++c) {
             const auto own = sides_of(c);
-            const std::size_t first = corners.size();
+            distinct.clear();
             *number++ = static_cast<std::int64_t>(own.size());
-            for (const std::int64_t side : own) {
+            for (const std::uint32_t side : own) {
                 const auto loop = loop_of(faces, side >> 1);
                 *number++ = static_cast<std::int64_t>(loop.size());
                 number = (side & 1) == 0 ? std::copy(loop.begin(), loop.end(), number)
                                          : std::reverse_copy(loop.begin(), loop.end(), number);
-                corners.insert(corners.end(), loop.begin(), loop.end());
+                for (const std::int32_t vertex : loop)
+                    distinct.add(vertex);
             }
-            const std::size_t count = each_once(corners.data() + first, corners.size() - first);
-            corners.resize(first + count);
-            made.counts[c] = static_cast<std::int64_t>(count);
+            const auto found = distinct.sorted();
+            corners.insert(corners.end(), found.begin(), found.end());
+            made.counts[c] = static_cast<std::int64_t>(found.size());
         }
     });
     std::vector<std::size_t> first_corner;

@@ -395,8 +395,8 @@ std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces, do
     }
     const double volume =
         (box.xmax() - box.xmin()) * (box.ymax() - box.ymin()) * (box.zmax() - box.zmin());
-    const double most =
-        10000 + 8 * volume / std::pow(edge_length, 3) + area / (tolerance * tolerance);
+    const double most = 10000 + 8 * volume / (edge_length * edge_length * edge_length) +
+                        area / (tolerance * tolerance);
     return static_cast<std::size_t>(std::min(most, kMostPoints));
 }
 

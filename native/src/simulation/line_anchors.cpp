@@ -9,6 +9,7 @@
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::simulation {
 
@@ -18,7 +19,7 @@ constexpr double kNearerOnSteps = 0.7;
 constexpr double kCornerTurn = 0.35;  ///< radians: a wall that turns by more has a corner
 
 double distance(const PlanPoint& a, const PlanPoint& b) {
-    return std::hypot(a[0] - b[0], a[1] - b[1]);
+    return elementary::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
 /// Points in a grid of squares, at least `spacing` apart; those of one chain, `share` of it.
@@ -109,7 +110,7 @@ double turn_of_steps(const Traces& traces, const Graph& graph, std::int32_t poin
             if (i == j) continue;
             const double dot =
                 -(directions[i][0] * directions[j][0] + directions[i][1] * directions[j][1]);
-            least = std::min(least, std::acos(std::clamp(dot, -1.0, 1.0)));
+            least = std::min(least, elementary::acos(std::clamp(dot, -1.0, 1.0)));
         }
         sharpest = std::max(sharpest, least);
     }

@@ -11,6 +11,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
 #include "simulation/column_heights.hpp"
@@ -204,8 +205,8 @@ std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
         if (s.right_rock >= 0 && s.left_rock < 0) next[s.to].push_back(s.from);
     }
     const auto direction = [&](std::int32_t a, std::int32_t b) {
-        return std::atan2(lines.points[index(b)][1] - lines.points[index(a)][1],
-                          lines.points[index(b)][0] - lines.points[index(a)][0]);
+        return elementary::atan2(lines.points[index(b)][1] - lines.points[index(a)][1],
+                                 lines.points[index(b)][0] - lines.points[index(a)][0]);
     };
     std::vector<meshing::Ring> rings;
     while (!next.empty()) {

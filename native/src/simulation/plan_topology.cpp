@@ -11,6 +11,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::simulation {
@@ -29,7 +30,7 @@ double least_angle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
     for (std::size_t i = 0; i < 3; ++i) {
         const PlanPoint &o = *p[i], &u = *p[(i + 1) % 3], &v = *p[(i + 2) % 3];
         const double ux = u[0] - o[0], uy = u[1] - o[1], vx = v[0] - o[0], vy = v[1] - o[1];
-        least = std::min(least, std::atan2(std::abs(ux * vy - uy * vx), ux * vx + uy * vy));
+        least = std::min(least, elementary::atan2(std::abs(ux * vy - uy * vx), ux * vx + uy * vy));
     }
     return least;
 }
@@ -165,7 +166,7 @@ bool PlanTopology::divide_lines() {
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const PlanPoint &p = at(own[k]), &q = at(own[(k + 1) % 3]);
-            const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
+            const double length = elementary::hypot(q[0] - p[0], q[1] - p[1]);
             if (length > longest) i = k;
             longest = std::max(longest, length);
         }
@@ -326,8 +327,8 @@ bool PlanTopology::move_nodes() {
                    start[1] + share * (middle[1] - start[1]));
         const std::int32_t any_corner = mesh_.triangles[index(around[n][0])][0],
                            other = mesh_.triangles[index(around[n][0])][1];
-        const double step =
-            kStep * std::hypot(at(any_corner)[0] - at(other)[0], at(any_corner)[1] - at(other)[1]);
+        const double step = kStep * elementary::hypot(at(any_corner)[0] - at(other)[0],
+                                                      at(any_corner)[1] - at(other)[1]);
         if (best == start) {
             for (const double x : {-step, 0.0, step}) {
                 for (const double y : {-step, 0.0, step})
@@ -364,7 +365,7 @@ void PlanTopology::mark_segments() {
                              {static_cast<std::int64_t>(s)},
                              std::array<double, 3>{from[0], from[1], 0});
         }
-        const double dx = to[0] - from[0], dy = to[1] - from[1], length = std::hypot(dx, dy);
+        const double dx = to[0] - from[0], dy = to[1] - from[1], length = elementary::hypot(dx, dy);
         std::int32_t here = begin->second;
         for (std::size_t steps = 0; here != end->second && steps < nodes(); ++steps) {
             // the edge that leads on along the line

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::simulation {
 
@@ -25,7 +26,7 @@ Nearest nearest_on(const std::array<PlanPoint, 2>& line, const PlanPoint& p) {
     const double square = x * x + y * y;
     const double along = (p[0] - line[0][0]) * x + (p[1] - line[0][1]) * y;
     const double share = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
-    return {std::hypot(line[0][0] + share * x - p[0], line[0][1] + share * y - p[1]), share};
+    return {elementary::hypot(line[0][0] + share * x - p[0], line[0][1] + share * y - p[1]), share};
 }
 
 bool is_upright(const ComplexView& model, std::size_t face) {
@@ -39,7 +40,7 @@ bool is_upright(const ComplexView& model, std::size_t face) {
             area[k] += u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
         u = v;
     }
-    return std::abs(area[2]) < kUpright * std::hypot(area[0], area[1]);
+    return std::abs(area[2]) < kUpright * elementary::hypot(area[0], area[1]);
 }
 
 PlanPoint plan_of(const ComplexView& model, std::int32_t vertex) {
@@ -53,7 +54,7 @@ PlanPoint farthest_from(const ComplexView& model, std::span<const std::int32_t> 
     double most = 0;
     for (const std::int32_t v : loop) {
         const PlanPoint p = plan_of(model, v);
-        const double distance = std::hypot(p[0] - from[0], p[1] - from[1]);
+        const double distance = elementary::hypot(p[0] - from[0], p[1] - from[1]);
         if (distance <= most) continue;
         most = distance;
         found = p;
@@ -103,7 +104,7 @@ VerticalFaults::VerticalFaults(const ComplexView& model,
 std::int32_t VerticalFaults::fault_at(const PlanPoint& from, const PlanPoint& to,
                                       double height) const {
     const PlanPoint middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
-    const double edge = std::hypot(to[0] - from[0], to[1] - from[1]);
+    const double edge = elementary::hypot(to[0] - from[0], to[1] - from[1]);
     const spatial::Box box = plan_box(std::array<PlanPoint, 1>{middle}, kReach * edge);
     double least = kReach * edge;
     face_tree_.find(box, [&](std::int32_t n) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/index.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::spatial {
 
@@ -22,7 +23,7 @@ bool BlockNeighbors::prepare(std::span<const PlanPosition> nodes) {
     tree_.find(center, count_, found_);
     if (nodes.size() > 1) {
         const double wanted = std::sqrt(found_.back().squared_distance);
-        const double radius = std::hypot(box.high_x - center[0], box.high_y - center[1]);
+        const double radius = elementary::hypot(box.high_x - center[0], box.high_y - center[1]);
         if (radius > kWidest * wanted) return false;
         // The nearest of a node lie within wanted + radius of it.
         const double reach = (wanted + 2 * radius) * (1 + 1e-9);

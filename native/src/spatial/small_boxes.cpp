@@ -5,7 +5,7 @@
 
 #include "base/index.hpp"
 
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(REALMODEL_PLAIN_DOUBLE)
 #include <xmmintrin.h>
 #endif
 
@@ -78,7 +78,7 @@ std::vector<std::int32_t> SmallBoxes::fill(const std::vector<PlanBox>& boxes,
 }
 
 inline std::uint32_t SmallBoxes::meets(const Item& item, const Limits& limits) {
-#if defined(__SSE__)
+#if defined(__SSE__) && !defined(REALMODEL_PLAIN_DOUBLE)
     const __m128 within =
         _mm_cmple_ps(_mm_loadu_ps(item.corners.data()), _mm_loadu_ps(limits.data()));
     return _mm_movemask_ps(within) == 15 ? 1 : 0;

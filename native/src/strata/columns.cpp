@@ -19,10 +19,15 @@ class TilingSequence {
 public:
     TilingSequence(Site& site, EnteredRock& rock, int threads, const Progress* progress)
         : site_(site), rock_(rock), threads_(threads), progress_(progress) {
-        if (rock.is_erosional()) return;  // e_k is the surface itself, made when it is asked for
+        if (rock.is_erosional() && rock.emptied.empty())
+            return;  // e_k is the surface itself, made when it is asked for
         RuleReplay replay(TilingRaising(site.geometry, threads, progress), rock.rules);
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
             if (progress != nullptr) progress->check();
+            if (std::ranges::binary_search(rock.emptied, k)) {
+                replay.empty();
+                replayed_.clear();
+            }
             replayed_.push_back(replay.add(surface(k)));
         }
     }
@@ -75,14 +80,15 @@ void finish_rock(const Site& site, const EnteredRock& rock, const Envelope& enve
 void add_rock(Site& site, EnteredRock& rock, Construction& construction, double start, double share,
               int threads, Progress* progress) {
     const std::size_t first_node = construction.node_block.size();
-    const auto count = static_cast<std::int32_t>(rock.surfaces.size());
+    const auto count = static_cast<std::int32_t>(rock.surfaces.size()),
+               first = static_cast<std::int32_t>(rock.emptied.empty() ? 0 : rock.emptied.back());
     Envelope envelope;
     if (rock.region) {
         envelope = initial_envelope(
             make_region_tiling(site.geometry, *rock.region, rock.region_filling), -1);
     }
     TilingSequence tilings(site, rock, threads, progress);
-    for (std::int32_t k = count - 1; k >= 0; --k) {
+    for (std::int32_t k = count - 1; k >= first; --k) {
         begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,
                    share / count, "intersecting the surfaces");
         SurfaceTiling tiling = tilings.take(k);

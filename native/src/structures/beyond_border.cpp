@@ -84,7 +84,8 @@ bool may_meet(const Prism& prism, const Slab& slab, double near) {
 
 }  // namespace
 
-std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<const double> low,
+std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
+                                           std::span<const double> low,
                                            std::span<const double> high,
                                            std::span<const std::int32_t> triangles, int threads,
                                            const Progress* progress) {
@@ -103,7 +104,7 @@ std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<con
     }
     std::vector<std::uint8_t> found(count, 0);
     if (count == 0) return found;
-    const StructureSurface surface = structure_surface(std::span(&fault, 1), all, true);
+    const StructureSurface surface = first_surface(faults, all);
     for (const Position& p : surface.single[0].vertices)
         all.include(p);
     const Position extent = minus(all.high, all.low);
@@ -136,11 +137,11 @@ std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<con
 }
 
 std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
-    const Structure& fault, const std::array<std::array<double, 3>, 2>& corners) {
+    std::span<const Structure> faults, const std::array<std::array<double, 3>, 2>& corners) {
     Box box;
     for (const Position& p : corners)
         box.include(p);
-    const StructureSurface surface = structure_surface(std::span(&fault, 1), box, true);
+    const StructureSurface surface = first_surface(faults, box);
     std::vector<std::array<Position, 3>> found;
     for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
         if (surface.is_continuation[t] == 0) continue;

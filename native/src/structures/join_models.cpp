@@ -251,15 +251,16 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     return *join(together, surface, models, structures, acts, threads, progress);
 }
 
-std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
-                                         int threads, const Progress* progress) {
+std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
+                                         std::span<const double> points, int threads,
+                                         const Progress* progress) {
     Box box;
     for (std::size_t i = 0; i + 2 < points.size(); i += 3)
         box.include(Position{points[i], points[i + 1], points[i + 2]});
-    const StructureSurface surface = structure_surface(std::span(&structure, 1), box, true);
+    const StructureSurface surface = first_surface(structures, box);
     const cutting::NearestSide nearest(surface.single[0]);
     // what is beside the fault itself is on its side, wherever its continuation goes
-    const cutting::CutterSurface own = checked_surface(structure, 0);
+    const cutting::CutterSurface own = checked_surface(structures[0], 0);
     const cutting::NearestSide beside(own);
     std::vector<std::int8_t> sides(points.size() / 3);
     parallel_ranges(sides.size(), 1 << 8, threads, progress,
@@ -268,7 +269,7 @@ std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<c
                             const Position p{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
                             bool at_border = false;
                             const std::int8_t side =
-                                structure.is_body ? nearest.within(p) : beside(p, &at_border);
+                                structures[0].is_body ? nearest.within(p) : beside(p, &at_border);
                             sides[i] = at_border ? nearest(p) : side;
                         }
                     });

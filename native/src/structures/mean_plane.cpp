@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
@@ -67,7 +68,7 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     }
     if (!make_unit(normal)) return std::nullopt;
     Position strike{-normal[1], normal[0], 0};
-    if (std::hypot(normal[0], normal[1]) < 1e-6) strike = cross({0, 1, 0}, normal);
+    if (elementary::hypot(normal[0], normal[1]) < 1e-6) strike = cross({0, 1, 0}, normal);
     make_unit(strike);
     Position middle = first;
     for (std::size_t k = 0; k < 3; ++k)
@@ -156,7 +157,7 @@ std::optional<std::vector<Corners>> continued_in_mean_plane(
     }
     if (edges.empty()) return std::nullopt;
     // wide enough for the surface to come down to the plane by and by
-    const double margin = std::hypot(high[0] - low[0], high[1] - low[1]) / 2;
+    const double margin = elementary::hypot(high[0] - low[0], high[1] - low[1]) / 2;
     std::array<PlanPoint, 4> inner{{{low[0] - margin, low[1] - margin},
                                     {high[0] + margin, low[1] - margin},
                                     {high[0] + margin, high[1] + margin},

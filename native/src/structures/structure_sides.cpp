@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
+#include "structures/branch_sides.hpp"
 
 namespace realmodel::structures {
 
@@ -213,49 +214,14 @@ bool StructureSides::is_beyond(std::int32_t s, std::size_t part) const {
     return false;
 }
 
-/// Whether regions of two structures share an edge.
-bool StructureSides::meets(std::int32_t s, std::int32_t other) const {
-    for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
-        bool one = false, two = false;
-        for (const EdgeUse& use : winding_.edge(e)) {
-            const auto item = index(use.item);
-            if (item >= overlay_.size() || !overlay_.of_cutter(item)) continue;
-            for (const RegionOf& of : of_[item]) {
-                one = one || (of.structure == s && of.is_own);
-                two = two || (of.structure == other && of.is_own);
-            }
-        }
-        if (one && two) return true;
-    }
-    return false;
-}
-
 /// Of a fault that ends at others: on which side of each the larger part of its area lies.
 void StructureSides::find_kept_sides(std::int32_t s) {
     for (const std::int32_t other : structures_[index(s)].ends_at) {
-        double above = 0, below = 0;
-        for (std::size_t r = 0; r < overlay_.size(); ++r) {
-            if (!overlay_.of_cutter(r)) continue;
-            const auto triangle = index(overlay_.cutter_triangle(r));
-            if (surface_.structure[triangle] != s || surface_.is_continuation[triangle] != 0)
-                continue;
-            double area = 0;
-            for (const auto& loop : overlay_.loops(r)) {
-                std::vector<Position> corners;
-                for (const NodeId node : loop)
-                    corners.push_back(overlay_.position(node));
-                const Position normal = cutting::polygon_normal(corners);
-                const double size = std::sqrt(cutting::dot(normal, normal));
-                area += area == 0 ? size : -size;
-            }
-            const std::int8_t side = part_[r] >= 0 ? sides_[part_at(r, 0)][index(other)]
-                                                   : nearest_[index(other)](middle_of(r));
-            (side == kBelow ? below : above) += area;
-        }
-        kept_[index(s)].push_back(below > above ? kBelow : kAbove);
-        if (std::min(above, below) == 0 && !meets(s, other))
+        const BranchSides found = branch_sides(surface_, s, other);
+        if (std::min(found.above, found.below) == 0 && !found.meets)
             throw InputError("does_not_meet",
                              "the fault does not meet a fault that it is to end at", s, {other});
+        kept_[index(s)].push_back(found.below > found.above ? kBelow : kAbove);
     }
 }
 

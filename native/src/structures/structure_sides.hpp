@@ -63,7 +63,6 @@ private:
     void spread(std::int32_t s, std::size_t start, std::vector<std::int32_t>& known);
     bool is_beyond(std::int32_t s, std::size_t part) const;
     void find_kept_sides(std::int32_t s);
-    bool meets(std::int32_t s, std::int32_t other) const;
     Position middle_of(std::size_t region) const;
     bool is_inside(std::int32_t s, std::size_t part);
 

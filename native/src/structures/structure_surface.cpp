@@ -245,28 +245,10 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
     return *std::move(found);
 }
 
-}  // namespace
-
-CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
-    try {
-        CutterSurface surface = cutting::oriented_surface(structure.surface, false);
-        if (structure.is_body && !surface.is_closed) {
-            const auto border = border_of(surface);
-            const Position place = surface.vertices[border.empty() ? 0 : index(border[0].from)];
-            throw InputError("not_closed", "the body is not closed: its surface ends at an edge",
-                             -1, {}, place);
-        }
-        if (!structure.is_body && surface.is_closed)
-            throw InputError("is_closed", "the fault is a closed surface: it has no border");
-        return surface;
-    } catch (InputError& error) {
-        error.surface = number;
-        throw;
-    }
-}
-
-StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock,
-                                   bool continues_all) {
+/// @param count  of structures, those that are taken
+/// @param continues_all  whether those are continued, too, that divide the rock by themselves
+StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
+                            const Box& rock, bool continues_all) {
     std::vector<CutterSurface> given;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
@@ -284,7 +266,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
         if (is_new) all.surface.vertices.push_back(p);
         return found->second;
     };
-    for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
+    for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];
         const auto add = [&](const std::array<Position, 3>& corners, bool is_continuation) {
             const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
@@ -313,6 +295,34 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
         }
     }
     return all;
+}
+
+}  // namespace
+
+CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
+    try {
+        CutterSurface surface = cutting::oriented_surface(structure.surface, false);
+        if (structure.is_body && !surface.is_closed) {
+            const auto border = border_of(surface);
+            const Position place = surface.vertices[border.empty() ? 0 : index(border[0].from)];
+            throw InputError("not_closed", "the body is not closed: its surface ends at an edge",
+                             -1, {}, place);
+        }
+        if (!structure.is_body && surface.is_closed)
+            throw InputError("is_closed", "the fault is a closed surface: it has no border");
+        return surface;
+    } catch (InputError& error) {
+        error.surface = number;
+        throw;
+    }
+}
+
+StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
+    return surface_of(structures, structures.size(), rock, false);
+}
+
+StructureSurface first_surface(std::span<const Structure> structures, const Box& rock) {
+    return surface_of(structures, 1, rock, true);
 }
 
 }  // namespace realmodel::structures

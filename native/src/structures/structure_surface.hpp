@@ -24,10 +24,12 @@ struct StructureSurface {
 };
 
 /// @param rock  a box around the rock
-/// @param continues_all  whether those are continued, too, that divide it by themselves
 /// @throws InputError  as parts_of does
-StructureSurface structure_surface(std::span<const Structure> structures, const spatial::Box& rock,
-                                   bool continues_all = false);
+StructureSurface structure_surface(std::span<const Structure> structures, const spatial::Box& rock);
+
+/// The first of some structures alone, with what continues it; the others are the faults that it
+/// ends at.
+StructureSurface first_surface(std::span<const Structure> structures, const spatial::Box& rock);
 
 /// One structure alone, checked and oriented.
 cutting::CutterSurface checked_surface(const Structure& structure, std::int32_t number);

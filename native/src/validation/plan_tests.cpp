@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exact/orient2d.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::validation {
 
@@ -30,7 +31,7 @@ bool passes(const PlanPosition& from, const PlanPosition& to, const PlanPosition
     }
     const double dx = to[0] - from[0], dy = to[1] - from[1];
     const double off = dx * (place[1] - from[1]) - dy * (place[0] - from[0]);
-    return std::abs(off) <= 1.001 * reach * std::hypot(dx, dy) + 1e-290;
+    return std::abs(off) <= 1.001 * reach * elementary::hypot(dx, dy) + 1e-290;
 }
 
 }  // namespace realmodel::validation

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::validation {
 
@@ -165,7 +166,7 @@ PlanPosition outward(const ComplexView& model, const WallSample& wall) {
         area_x += (p[1] - o[1]) * (q[2] - o[2]) - (p[2] - o[2]) * (q[1] - o[1]);
         area_y += (p[2] - o[2]) * (q[0] - o[0]) - (p[0] - o[0]) * (q[2] - o[2]);
     }
-    const double length = std::hypot(dx, dy), sign = area_x * dy - area_y * dx >= 0 ? 1 : -1;
+    const double length = elementary::hypot(dx, dy), sign = area_x * dy - area_y * dx >= 0 ? 1 : -1;
     return {sign * dy / length, -sign * dx / length};
 }
 

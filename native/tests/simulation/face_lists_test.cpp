@@ -12,6 +12,7 @@ namespace realmodel::simulation {
 namespace {
 
 using Wide = std::vector<std::int64_t>;
+using Sides = std::vector<std::uint32_t>;
 
 const Wide kOffsets{0, 3, 7};
 const std::vector<std::int32_t> kVertices{5, 1, 3, 2, 1, 3, 4};
@@ -22,7 +23,7 @@ Wide wide(const Numbers& numbers) {
 }
 
 TEST(FaceListsTest, CellsAreDescribedWithTheirFacesSeenFromOutside) {
-    const Wide begin{0, 2, 3}, sides{0, 3, 2};
+    const Sides begin{0, 2, 3}, sides{0, 3, 2};
     const CellDescriptions found = describe_cells({kOffsets, kVertices}, begin, sides);
     EXPECT_EQ(wide(found.faces), (Wide{2, 3, 5, 1, 3, 4, 4, 3, 1, 2, 1, 4, 2, 1, 3, 4}));
     EXPECT_EQ(wide(found.vertices), (Wide{1, 2, 3, 4, 5, 1, 2, 3, 4}));
@@ -35,7 +36,7 @@ TEST(FaceListsTest, CornersOfLargeCellsStandOnceToo) {
     for (std::int32_t i = 0; i < 100; ++i)
         vertices.push_back((i * 37) % 50);
     const Wide offsets{0, 100};
-    const CellDescriptions found = describe_cells({offsets, vertices}, Wide{0, 1}, Wide{0});
+    const CellDescriptions found = describe_cells({offsets, vertices}, Sides{0, 1}, Sides{0});
     ASSERT_EQ(found.vertices.size(), 50u);
     for (std::int64_t i = 0; i < 50; ++i)
         EXPECT_EQ(found.vertices[static_cast<std::size_t>(i)], i);
@@ -62,9 +63,9 @@ TEST(FaceListsTest, InnerFacesComeByTheirLowerCell) {
 
 TEST(FaceListsTest, NumbersOfWhatIsNotThereAreRefused) {
     const FaceLoops faces{kOffsets, kVertices};
-    EXPECT_THROW(describe_cells(faces, Wide{0, 1}, Wide{4}), InputError);
-    EXPECT_THROW(describe_cells(faces, Wide{0, 1}, Wide{-2}), InputError);
-    EXPECT_THROW(describe_cells(faces, Wide{0, 2}, Wide{0}), InputError);
+    EXPECT_THROW(describe_cells(faces, Sides{0, 1}, Sides{4}), InputError);
+    EXPECT_THROW(describe_cells(faces, Sides{1, 0}, Sides{0}), InputError);
+    EXPECT_THROW(describe_cells(faces, Sides{0, 2}, Sides{0}), InputError);
     const Pairs one{{0, -1}}, two{{0, -1}, {0, -1}};
     EXPECT_THROW(ordered_faces(faces, two, Wide{2}), InputError);
     EXPECT_THROW(ordered_faces(faces, one, Wide{0}), InputError);

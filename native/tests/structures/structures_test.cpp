@@ -143,6 +143,26 @@ TEST(PartsOf, OneThatMissesTheFaultThatItIsToEndAtIsRefused) {
               "does_not_meet");
 }
 
+TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface trunk = sheet(90, 0, -99, 99);
+    OwnedSurface branch;  // level: what is in the rock ends before the trunk, and is continued
+    for (const double x : {-30.0, 50.0, 95.0}) {
+        branch.vertex(x, -20, 1.5);
+        branch.vertex(x, 20, 1.5);
+    }
+    for (const int v : {0, 2}) {
+        branch.triangle(v, v + 2, v + 3);
+        branch.triangle(v, v + 3, v + 1);
+    }
+    Structure ends = fault(branch);
+    ends.ends_at = {0};
+    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+    const std::int8_t side =
+        sides_of_points(std::array{fault(trunk)}, std::array{0.0, 0.0, 0.0}, 1, nullptr)[0];
+    EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{side, -1}, {side, 1}}));
+}
+
 TEST(PartsOf, ABodyHasAnInside) {
     const CellComplex rock = layers({0, 3});
     const OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
@@ -173,7 +193,7 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
     const OwnedSurface upright = sheet(1, 0);
     const std::array structures{fault(upright)};
     const std::int8_t east_side =
-        sides_of_points(structures[0], std::array{3.0, 2.0, 1.0}, 1, nullptr)[0];
+        sides_of_points(std::span(structures).first(1), std::array{3.0, 2.0, 1.0}, 1, nullptr)[0];
     const auto west_side = static_cast<std::int8_t>(-east_side);
     const Joined j = joined(
         std::array<PartModel, 2>{{{with(west, 1), {west_side}}, {with(east, 1), {east_side}}}},
@@ -222,7 +242,7 @@ TEST(JoinModels, AReverseFaultHasASurfaceTwiceAtOnePlace) {
     const OwnedSurface inclined = sheet(0.5, 1);  // 45 degrees
     const std::array structures{fault(inclined)};
     const std::int8_t above =
-        sides_of_points(structures[0], std::array{0.0, 2.0, 2.0}, 1, nullptr)[0];
+        sides_of_points(std::span(structures).first(1), std::array{0.0, 2.0, 2.0}, 1, nullptr)[0];
     EXPECT_EQ(above, 1);
     const Joined j = joined(std::array<PartModel, 2>{{{with(high, 1), {1}}, {with(low, 1), {-1}}}},
                             structures, kAllAct);
@@ -353,19 +373,34 @@ TEST(JoinModels, AVoidBodyLeavesNothing) {
 
 TEST(SidesOfPoints, AboveAFaultsBorderAreThoseOfWhatIsStraightAboveIt) {
     const OwnedSurface inclined = sheet(0, 1, -9, 9, -1, 1);  // 45 degrees, from x = -1 to 1
-    EXPECT_EQ(
-        sides_of_points(fault(inclined), std::array{0.5, 0.0, 3.0, 1.5, 0.0, 3.0}, 1, nullptr),
-        (std::vector<std::int8_t>{1, -1}));
+    EXPECT_EQ(sides_of_points(std::array{fault(inclined)}, std::array{0.5, 0.0, 3.0, 1.5, 0.0, 3.0},
+                              1, nullptr),
+              (std::vector<std::int8_t>{1, -1}));
 }
 
 TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
     const OwnedSurface inclined = sheet(0, 1);
-    const auto sides = sides_of_points(
-        fault(inclined), std::array{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, 1, nullptr);
+    const auto sides =
+        sides_of_points(std::array{fault(inclined)},
+                        std::array{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, 1, nullptr);
     EXPECT_EQ(sides, (std::vector<std::int8_t>{1, -1, 1}));  // the last lies on it
     const OwnedSurface chest = box({0, 0, 0}, {1, 1, 1});
-    EXPECT_EQ(sides_of_points(body(chest), std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.5}, 2, nullptr),
+    EXPECT_EQ(sides_of_points(std::array{body(chest)}, std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.5}, 2,
+                              nullptr),
               (std::vector<std::int8_t>{-1, 1}));
+}
+
+TEST(SidesOfPoints, BeyondTheFaultThatItEndsAtAFaultGoesOnInItsPlane) {
+    const OwnedSurface trunk = sheet(0, 0);                   // x = 0
+    const OwnedSurface branch = sheet(0, 1, -9, 9, -9, 0.5);  // x = z, until x = 0.5
+    const std::array points{1.0, 0.0, 1.25, 1.0, 0.0, 0.75};
+    Structure alone = fault(branch);
+    EXPECT_EQ(sides_of_points(std::array{alone}, points, 1, nullptr),
+              (std::vector<std::int8_t>{-1, -1}));  // beside what goes straight up
+    Structure ends = fault(branch);
+    ends.ends_at = {1};
+    EXPECT_EQ(sides_of_points(std::array{ends, fault(trunk)}, points, 1, nullptr),
+              (std::vector<std::int8_t>{1, -1}));
 }
 
 TEST(TrianglesBeyond, AreMetWhereAFaultThatDiesOutWouldGoOn) {
@@ -375,12 +410,12 @@ TEST(TrianglesBeyond, AreMetWhereAFaultThatDiesOutWouldGoOn) {
     // beside the fault, across its tip, beyond it, and with an edge in its plane beyond it
     const std::vector<double> low{1, 0, 0, 3, 0, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 2, 4, 0, 2, 5, 0};
     const std::vector<std::int32_t> triangles{0, 1, 2, 0, 1, 4, 2, 4, 3, 3, 5, 6};
-    EXPECT_EQ(triangles_beyond(dying, low, low, triangles, 1, nullptr),
+    EXPECT_EQ(triangles_beyond(std::array{dying}, low, low, triangles, 1, nullptr),
               (std::vector<std::uint8_t>{0, 0, 2, 1}));
     std::vector<double> high = low;
     for (std::size_t v = 0; v < 7; ++v)
         high[3 * v + 2] = 100;  // its upper border is at 9
-    EXPECT_EQ(triangles_beyond(dying, low, high, triangles, 1, nullptr),
+    EXPECT_EQ(triangles_beyond(std::array{dying}, low, high, triangles, 1, nullptr),
               (std::vector<std::uint8_t>{2, 2, 2, 1}));
 }
 
@@ -400,7 +435,7 @@ TEST(ContinuationOf, AFaultThatDiesOutDoesNotCrossItselfWhereItBends) {
     }
     Structure dying = fault(bent);
     dying.dies_out = true;
-    const auto beyond = continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}});
+    const auto beyond = continuation_of(std::array{dying}, {{{-9, -9, -9}, {9, 9, 9}}});
     EXPECT_GT(beyond.size(), 0U);
     // all that has the mean plane's normal on one side: a function over that plane
     std::vector<std::array<double, 3>> normals;
@@ -433,7 +468,7 @@ TEST(ContinuationOf, ARaggedFaultThatDiesOutIsContinuedOnceEverywhere) {
     }
     Structure dying = fault(comb);
     dying.dies_out = true;
-    const auto beyond = continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}});
+    const auto beyond = continuation_of(std::array{dying}, {{{-9, -9, -9}, {9, 9, 9}}});
     std::vector<std::array<std::array<double, 3>, 3>> all = beyond;
     for (std::size_t t = 0; t + 2 < comb.triangles.size(); t += 3) {
         auto& corners = all.emplace_back();
@@ -482,7 +517,7 @@ TEST(ContinuationOf, PartsOfAFaultThatDiesOutMayNotLieBesideEachOther) {
         EXPECT_TRUE(error.place.has_value());
     }
     dying.dies_out = false;
-    EXPECT_NO_THROW(continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}}));
+    EXPECT_NO_THROW(continuation_of(std::array{dying}, {{{-9, -9, -9}, {9, 9, 9}}}));
 }
 
 }  // namespace

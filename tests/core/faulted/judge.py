@@ -221,8 +221,12 @@ class Judgement:
         return str(blocks[block]) if 0 <= block < len(blocks) else {AIR: "air"}.get(block, str(block))
 
     def _sides_of_cells(self, points, rows, rock, of_point):
-        """No cell straddles a fault that acts, and compartments are named by these sides. Round a branch of a
-        fault that dies out, past the tip of that one, a cell may reach."""
+        """No cell straddles a fault that acts, and compartments are named by these sides.
+
+        A fault that dies out leaves one compartment with a slit: a cell that reaches past its tip is on both
+        sides. A branch that ends at such a fault is there on one side of it alone. Past the tip a way leads
+        out of where the branch is, and from there to its other side: so that is one compartment, too, and a
+        cell that reaches out may be on both sides."""
         failures, seen = [], {}
         for n in np.flatnonzero(of_point >= 0):
             cell = int(of_point[n])
@@ -236,6 +240,7 @@ class Judgement:
             if first != own and not self._near(points[n]) and not self._near(points[at]):
                 ends = [points[at].tolist(), points[n].tolist()]
                 failures.append(f"straddles: cell {cell} is on {first} at {ends[0]} and {own} at {ends[1]}")
+        failures += self._around_branches(points, rows, of_point)
         for (cell, r), (own, at) in seen.items():
             words = [
                 f"{'above' if side > 0 else 'below'} {fault.name}"
@@ -253,6 +258,32 @@ class Judgement:
                 place = points[at].tolist()
                 failures.append(f"compartment: cell {cell} is in '{given}', at {place} is '{name or mass}'")
         return failures[:6]
+
+    def _around_branches(self, points, rows, of_point):
+        """No cell is on both sides of a branch that ends at a fault that dies out, but one that reaches past
+        that fault: with some vertex, as these are planes."""
+        failures, model = [], self.model
+        for f, fault in enumerate(self.case.faults):
+            if not self.around.fullmatch(f"above {fault.name}"):
+                continue
+            sides = [set(of_point[(of_point >= 0) & (rows[:, f] == side)].tolist()) for side in (-1, 1)]
+            for cell in sides[0] & sides[1]:
+                if not any(
+                    self.contract.acts(f, int(self.block[cell]), r) for r in range(len(self.case.rocks))
+                ):
+                    continue
+                faces = np.flatnonzero((model.face_cells == cell).any(axis=1))
+                spans = zip(model.face_offsets[faces], model.face_offsets[faces + 1], strict=True)
+                corners = model.vertices[np.unique([v for a, b in spans for v in model.face_vertices[a:b]])]
+                ends = zip(self.contract.ends[f], self.contract.kept[f], strict=True)
+                reaches = any((self.contract.sides[other](corners) == -kept).any() for other, kept in ends)
+                at = [points[(of_point == cell) & (rows[:, f] == side)] for side in (-1, 1)]
+                if not reaches and not any(all(self._near(p) for p in some) for some in at):
+                    ends = [some[0].tolist() for some in at]
+                    failures.append(
+                        f"straddles: cell {cell} is below {fault.name} at {ends[0]}, above at {ends[1]}"
+                    )
+        return failures
 
     def _without_branches(self, name, mass):
         """The name of a compartment without the branches that cells may go round."""

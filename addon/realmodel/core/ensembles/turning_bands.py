@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..elementary import cos, exp, hypot, sin
 from ..variogram import NO_ANISOTROPY, Structure, Variogram
 from ..work import Work, native_module
 
@@ -26,11 +27,11 @@ _LINES_AT_ONCE = 64
 _A, _B = 4.743864518390579, 5.918649346310188
 _ON_LINE = {
     "spherical": lambda t: np.where(t < 1, 1 - 3 * t + 2 * t**3, 0.0),
-    "exponential": lambda t: (1 - 3 * t) * np.exp(-3 * t),
-    "gaussian": lambda t: (1 - 6 * t**2) * np.exp(-3 * t**2),
+    "exponential": lambda t: (1 - 3 * t) * exp(-3 * t),
+    "gaussian": lambda t: (1 - 6 * t**2) * exp(-3 * t**2),
     "cubic": lambda t: np.where(t < 1, 1 - 21 * t**2 + 35 * t**3 - 21 * t**5 + 6 * t**7, 0.0),
-    "matern32": lambda t: (1 + _A * t - (_A * t) ** 2) * np.exp(-_A * t),
-    "matern52": lambda t: (1 + _B * t - (_B * t) ** 3 / 3) * np.exp(-_B * t),
+    "matern32": lambda t: (1 + _A * t - (_A * t) ** 2) * exp(-_A * t),
+    "matern52": lambda t: (1 + _B * t - (_B * t) ** 3 / 3) * exp(-_B * t),
 }
 
 
@@ -86,7 +87,7 @@ def _of_structure(
     work, part: Structure, anisotropy, frame, local, noise: Noise, number, threads
 ) -> np.ndarray:
     directions = _directions() @ _to_isotropic(part.anisotropy or anisotropy or NO_ANISOTROPY)
-    reach = float(np.hypot(*(frame.high - frame.low))) / 2
+    reach = hypot(*(frame.high - frame.low)) / 2
     reach *= float(np.linalg.norm(directions, axis=1).max())  # how far lines go, both ways
     # half of it is as far as covariances count; a process as smooth as these needs them to end near 0
     length = 2 * max(2 * reach, _ENDS * part.range)
@@ -135,13 +136,13 @@ def _directions() -> np.ndarray:
     number = np.arange(LINES)
     height = (number + 0.5) / LINES
     around = number * math.pi * (3 - math.sqrt(5))  # the golden angle
-    return np.sqrt(1 - height**2)[:, None] * np.column_stack([np.cos(around), np.sin(around)])
+    return np.sqrt(1 - height**2)[:, None] * np.column_stack([cos(around), sin(around)])
 
 
 def _to_isotropic(anisotropy: dict) -> np.ndarray:
     """(2, 2): a direction times it is one in the plan whose ranges are the same in all directions."""
     ratio, azimuth = anisotropy["ratio"], math.radians(anisotropy["azimuth"])
     ratio = max(ratio, 1 / ratio)
-    along = np.array([math.sin(azimuth), math.cos(azimuth)])
-    across = np.array([math.cos(azimuth), -math.sin(azimuth)])
+    along = np.array([sin(azimuth), cos(azimuth)])
+    across = np.array([cos(azimuth), -sin(azimuth)])
     return np.array([along, ratio * across])

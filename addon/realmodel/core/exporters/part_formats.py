@@ -22,9 +22,14 @@ PART_WRITERS: dict[str, Callable[..., None]] = {
 }
 
 
-def part_writers(parts_of: Callable) -> dict[str, Callable[..., None]]:
-    """Functions (item, file) by ending that write parts_of(item)."""
-    return {
-        ending: lambda item, file, write=write: write(parts_of(item), file, lambda _: None)
-        for ending, write in PART_WRITERS.items()
-    }
+def part_writers(parts_of: Callable, unit_of: Callable[..., str]) -> dict[str, Callable[..., None]]:
+    """Functions (item, file) by ending that write parts_of(item). unit_of(item): of its lengths."""
+
+    def writer(write: Callable[..., None]) -> Callable[..., None]:
+        def write_it(item, file) -> None:
+            unit = {"unit": unit_of(item)} if write is write_tsurf else {}
+            write(parts_of(item), file, lambda _: None, **unit)
+
+        return write_it
+
+    return {ending: writer(write) for ending, write in PART_WRITERS.items()}

@@ -114,7 +114,11 @@ def write_section_csv(section, file: BinaryIO) -> None:
 
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
-    **{ending: writer for ending, writer in part_writers(section_parts).items() if ending != ".dxf"},
+    **{
+        ending: writer
+        for ending, writer in part_writers(section_parts, lambda section: section.unit).items()
+        if ending != ".dxf"
+    },
     ".obj": write_section_obj,
     ".csv": write_section_csv,
     ".npz": write_section_npz,

@@ -76,7 +76,7 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
 WRITERS: dict[str, Callable[..., None]] = {
     ".npz": write_surfaces_npz,
     ".vtu": write_surfaces_vtu,
-    **part_writers(surface_parts),
+    **part_writers(surface_parts, lambda surfaces: surfaces.project.units),
 }
 
 
@@ -89,7 +89,7 @@ def surface_writer_for(path: str | Path) -> Callable[..., None]:
 
 
 def save_surfaces(surfaces, path: str | Path) -> None:
-    """Writes surfaces to a file that appears whole or not at all."""
+    """Writes surfaces, or those of a model, to a file that appears whole or not at all."""
     writer = surface_writer_for(path)
     with Outputs() as outputs, outputs.file(path) as file:
         writer(surfaces, file)

@@ -74,7 +74,7 @@ def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None
 class CellFaces:
     """The faces of each cell, from the two cells of each face.
 
-    begin: (C + 1,) int64, where the faces of each cell begin."""
+    begin: (C + 1,) uint32, where the faces of each cell begin."""
 
     def __init__(self, mesh: PolyhedralMesh):
         self.mesh = mesh
@@ -82,7 +82,7 @@ class CellFaces:
 
     @property
     def face(self) -> np.ndarray:
-        """(N,) int64: the faces of all cells, cell by cell."""
+        """(N,) uint32: the faces of all cells, cell by cell."""
         return self._sides >> 1
 
     @property

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What geologists do with few points: a constant, a plane, a surface parallel to another."""
+"""What geologists do with few points: a constant, a plane, a surface parallel to another.
+
+Calculated without NumPy's linear algebra, which gives other last digits on other processors.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..elementary import atan2, cos, sin
 from ..errors import InputRefused
 from ..methods import checked_options
 from .interpolation import Result, Task, run_method
@@ -42,35 +46,60 @@ def plane(task: Task) -> Result:
     dip = task.settings["dip"]
     if dip is not None:
         azimuth = math.radians(task.settings["dip_direction"])
-        slope = -math.tan(math.radians(dip)) * np.array([math.sin(azimuth), math.cos(azimuth)])
-        return _with_variance(z - plan @ slope, np.ones((len(plan), 1)), base + nodes @ slope, _ones(nodes))
-    _, spread, axes = np.linalg.svd(plan, full_matrices=False)
-    shown = spread > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
-    scale = spread[0] if shown.any() else 1.0
-    axes = axes[shown]
+        down = math.radians(dip)
+        steepest = -sin(down) / cos(down)
+        dipping = _along(plan, azimuth), _along(nodes, azimuth)
+        return _with_variance(
+            z - steepest * dipping[0], [_ones(plan)], steepest * dipping[1] + base, [_ones(nodes)]
+        )
+    x, y = plan.T
+    azimuth = 0.5 * atan2(2 * (x * y).sum(), (y * y).sum() - (x * x).sum())  # in which they spread most
+    azimuths = azimuth, azimuth + math.pi / 2
+    spread = [math.sqrt(np.square(_along(plan, each)).sum()) for each in azimuths]
+    shown = [
+        each
+        for each, size in zip(azimuths, spread, strict=True)
+        if size > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
+    ]
     return _with_variance(
         z,
-        np.column_stack([_ones(plan), plan @ axes.T / scale]),
+        [_ones(plan), *(_along(plan, each) / spread[0] for each in shown)],
         np.full(len(nodes), base),
-        np.column_stack([_ones(nodes), nodes @ axes.T / scale]),
+        [_ones(nodes), *(_along(nodes, each) / spread[0] for each in shown)],
     )
 
 
 def _ones(places: np.ndarray) -> np.ndarray:
-    return np.ones((len(places), 1))
+    return np.ones(len(places))
+
+
+def _along(plan: np.ndarray, azimuth: float) -> np.ndarray:
+    """(N,) how far places lie in a direction."""
+    return sin(azimuth) * plan[:, 0] + cos(azimuth) * plan[:, 1]
 
 
 def _with_variance(z, terms, start, terms_at_nodes) -> Result:
-    """start + the terms that fit z best, with the variance of regression."""
-    q, r = np.linalg.qr(terms)
-    coefficients = np.linalg.solve(r, q.T @ z)
-    heights = start + terms_at_nodes @ coefficients
-    free = len(z) - terms.shape[1]
+    """start + the terms that fit z best, with the variance of regression.
+
+    The terms are made orthonormal one by one (modified Gram-Schmidt), those at nodes along with them.
+    """
+    heights, residual, leverage = start, z, np.zeros(len(start))
+    done: list[tuple[np.ndarray, np.ndarray]] = []
+    for term, at_nodes in zip(terms, terms_at_nodes, strict=True):
+        for before, before_at_nodes in done:
+            share = (before * term).sum()
+            term, at_nodes = term - share * before, at_nodes - share * before_at_nodes
+        size = math.sqrt(np.square(term).sum())
+        term, at_nodes = term / size, at_nodes / size
+        done.append((term, at_nodes))
+        coefficient = (term * residual).sum()
+        residual = residual - coefficient * term
+        heights = heights + coefficient * at_nodes
+        leverage += np.square(at_nodes)
+    free = len(z) - len(terms)
     if free <= 0:
         return Result(heights)
-    residual = z - terms @ coefficients
-    leverage = np.square(np.linalg.solve(r.T, terms_at_nodes.T)).sum(axis=0)
-    return Result(heights, residual @ residual / free * (1 + leverage))
+    return Result(heights, np.square(residual).sum() / free * (1 + leverage))
 
 
 def parallel(task: Task) -> Result:

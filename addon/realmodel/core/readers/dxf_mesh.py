@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,7 +16,10 @@ from .text import LINES_AT_ONCE, Step, no_step, read_text
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _BEGINNING = re.compile(rb"(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
+_HEADER = 200_000  # characters in which the header's variables are looked for
 _BINARY = b"AutoCAD Binary DXF"
+_UNITS = re.compile(r"\n\s*9\s*\n\s*\$INSUNITS\s*\n\s*70\s*\n\s*(\d{1,2})\s*\n")
+_UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
 _CLOSED_M, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 16, 32, 64
 
 
@@ -35,7 +39,8 @@ def read_dxf(file: str | Path, step: Step = no_step) -> TriangleMesh:
         if opened.read(len(_BINARY)) == _BINARY:
             raise InputRefused("binary DXF is not read", file=file, advice="save it as text (ASCII)")
     faces: list[list[tuple[float, ...]]] = []
-    for entity, number, codes in _entities(file, step):
+    text = read_text(file)
+    for entity, number, codes in _entities(file, text, step):
         try:
             if entity == "3DFACE":
                 corners = [_place(codes, corner) for corner in range(4 if 13 in codes else 3)]
@@ -51,13 +56,17 @@ def read_dxf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     corners = np.array([place for face in faces for place in face])
     vertices, index = np.unique(corners, axis=0, return_inverse=True)
     index, ends = index.ravel().tolist(), np.cumsum([len(face) for face in faces]).tolist()
-    return mesh_of_faces(file, vertices, [index[begin:end] for begin, end in pairwise([0, *ends])])
+    mesh = mesh_of_faces(file, vertices, [index[begin:end] for begin, end in pairwise([0, *ends])])
+    # many programs write the unit of their template, so that nothing is converted by it
+    said = _UNITS.search(text, 0, _HEADER)
+    unit = _UNIT_NAMES.get(int(said[1])) if said else None
+    return replace(mesh, said_unit=unit)
 
 
-def _entities(file: Path, step: Step) -> Iterator[tuple[str, int, dict]]:
+def _entities(file: Path, text: str, step: Step) -> Iterator[tuple[str, int, dict]]:
     """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has those of
     its VERTEX entities under "vertices"."""
-    lines = read_text(file).split("\n")
+    lines = text.split("\n")
     within, section, polyline = False, False, None
     name, begin, codes = "", 0, {}
     for at in range(0, len(lines) - 1, 2):

@@ -30,6 +30,7 @@ _GEOGRAPHIC, _PIXEL_IS_POINT = 2, 2
 _FEET = {9002: "ft", 9003: "us-ft"}
 _NONE, _LZW, _DEFLATE, _PACKBITS = 1, 5, (8, 32946), 32773
 _MOST_COMPRESSED = 3000  # bytes of one, of LZW; DEFLATE stays below
+_MOST_WITHOUT_BYTES = 1 << 24  # pixels of a strip or tile that is not stored
 _BYTES_PER_PIXEL = 40  # of the height, of the point made of it, and of what they are made from
 _WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
@@ -111,8 +112,10 @@ def _heights(file: Path, tifffile, tiff, page, step: Step) -> tuple[np.ndarray, 
     places = list(zip(page.dataoffsets, page.databytecounts, strict=True))
     if len(places) < a_row * -(-rows // high):
         raise refuse("a damaged TIFF: strips or tiles are missing")
-    whole = all(size for _, size in places)
-    if whole and rows * columns * stored.itemsize > _MOST_COMPRESSED * sum(size for _, size in places):
+    sizes = [size for _, size in places]
+    there_are = min(sum(sizes), tiff.filehandle.size)
+    is_too_much = rows * columns * stored.itemsize > _MOST_COMPRESSED * there_are
+    if is_too_much and (all(sizes) or min(high, rows) * min(wide, columns) > _MOST_WITHOUT_BYTES):
         raise refuse(f"a damaged TIFF: {columns} x {rows} pixels cannot come of so few bytes")
     room = native_module().available_memory()
     if _BYTES_PER_PIXEL * rows * columns > room:
@@ -128,7 +131,9 @@ def _heights(file: Path, tifffile, tiff, page, step: Step) -> tuple[np.ndarray, 
         if size:  # a part without bytes is all nodata
             expected = (high if page.is_tiled else there) * wide * stored.itemsize
             tiff.filehandle.seek(offset)
-            data = _decompressed(tifffile, page.compression, tiff.filehandle.read(size), expected)
+            data = _decompressed(
+                tifffile, page.compression, tiff.filehandle.read(min(size, there_are)), expected
+            )
             if len(data) < there * wide * stored.itemsize:
                 raise refuse("a damaged TIFF: a strip or tile is cut off")
             data = data[: len(data) // (wide * stored.itemsize) * wide * stored.itemsize]

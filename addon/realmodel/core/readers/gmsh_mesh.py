@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from .text import Step, no_step, read_bytes
+from .text import Step, line_of_word, no_step, read_bytes
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
 _NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 15: 1, 16: 8}
+_MOST_IN_A_ROW = 1000
 _CORNERS = {2: 3, 9: 3, 3: 4, 10: 4, 16: 4}
 
 
@@ -28,13 +29,14 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads the faces of a mesh, and the nodes that they use. Raises InputRefused naming the file."""
     file = Path(file)
     raw = read_bytes(file)
-    sections = {}
+    sections, begins = {}, {}
     for name in (b"MeshFormat", b"Nodes", b"Elements"):
         begin, end = raw.find(b"$" + name), raw.rfind(b"$End" + name)
         if begin < 0 or end < begin:
             what = f"it has no whole section {name.decode()}"
-            raise InputRefused(what, file=file, advice="the file is cut off")
-        sections[name] = raw[raw.find(b"\n", begin) + 1 : end]
+            raise InputRefused(f"{what} (byte {len(raw)})", file=file, advice="the file is cut off")
+        first = raw.find(b"\n", begin) + 1
+        begins[name], sections[name] = first, raw[first:end]
     words = sections[b"MeshFormat"].split(None, 3)
     version = words[0].decode("ascii", "replace") if words else ""
     if len(words) < 3 or not re.fullmatch(r"2(\.\d+)?|4\.1", version):
@@ -45,17 +47,26 @@ def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     order = "<"
     if is_binary and sections[b"MeshFormat"].split(b"\n", 1)[1][:4] == b"\0\0\0\1":
         order = ">"
+    read, section = [], b"Nodes"
     try:
         if is_binary:
-            read = _Bytes(sections[b"Nodes"], order), _Bytes(sections[b"Elements"], order)
+            read = [_Bytes(sections[name], order) for name in (b"Nodes", b"Elements")]
         else:
-            read = _Words(sections[b"Nodes"]), _Words(sections[b"Elements"])
+            read = [_Words(sections[name]) for name in (b"Nodes", b"Elements")]
         old = version.startswith("2")
-        tags, places = (_nodes_2 if old else _nodes_4)(*read[:1])
+        tags, places = (_nodes_2 if old else _nodes_4)(read[0])
         step(0.5)
+        section = b"Elements"
         faces = (_elements_2 if old else _elements_4)(read[1])
     except (ValueError, IndexError, OverflowError, MemoryError, KeyError) as error:
-        raise InputRefused(f"not a Gmsh file that can be read: {error}", file=file) from error
+        what, line = f"not a Gmsh file that can be read: {error}", None
+        if read:
+            at = read[section == b"Elements"].at
+            if is_binary:
+                what += f" (byte {begins[section] + at})"
+            else:
+                line = raw.count(b"\n", 0, begins[section]) + line_of_word(sections[section], at)
+        raise InputRefused(what, file=file, line=line) from error
     order_of_tags = np.argsort(tags, kind="stable")
     faces = [face for face in faces if len(face)]
     if not faces:
@@ -82,17 +93,17 @@ class _Words:
 
     def __init__(self, raw: bytes):
         self._values = np.array(raw.split()).astype(np.float64) if raw.split() else np.empty(0)
-        self._at = 0
+        self.at = 0
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
         """(count, len(kinds)); kinds are those of _Bytes."""
         if not 0 <= count <= len(self._values):
             raise ValueError(f"{count} entries are announced, the file is cut off")
-        end = self._at + count * len(kinds)
-        found = self._values[self._at : end]
+        end = self.at + count * len(kinds)
+        found = self._values[self.at : end]
         if len(found) < count * len(kinds):
             raise ValueError("the file is cut off")
-        self._at = end
+        self.at = end
         return found.reshape(count, len(kinds))
 
 
@@ -100,21 +111,21 @@ class _Bytes:
     """The same of a binary section. kinds: i int32, s size_t, d float64."""
 
     def __init__(self, raw: bytes, order: str):
-        self._raw, self._at = raw, 0
+        self._raw, self.at = raw, 0
         self._types = {"i": f"{order}i4", "s": f"{order}u8", "d": f"{order}f8"}
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
         row = np.dtype([(str(k), self._types[kind]) for k, kind in enumerate(kinds)])
-        if not 0 <= count <= len(self._raw) or self._at + count * row.itemsize > len(self._raw):
+        if not 0 <= count <= len(self._raw) or self.at + count * row.itemsize > len(self._raw):
             raise ValueError(f"{count} entries are announced, the file is cut off")
-        found = np.frombuffer(self._raw, row, count, self._at)
-        self._at += count * row.itemsize
+        found = np.frombuffer(self._raw, row, count, self.at)
+        self.at += count * row.itemsize
         return np.stack([found[name].astype(np.float64) for name in row.names], axis=1)
 
     def line(self) -> int:
         """A number on a line of text."""
-        text, _, _ = self._raw[self._at : self._at + 40].partition(b"\n")
-        self._at += len(text) + 1
+        text, _, _ = self._raw[self.at : self.at + 40].partition(b"\n")
+        self.at += len(text) + 1
         return int(text)
 
 
@@ -128,6 +139,13 @@ def _whole(value: float) -> int:
     return int(value)
 
 
+def _few(value: float) -> int:
+    """A number of entries in each row."""
+    if not 0 <= value <= _MOST_IN_A_ROW:
+        raise ValueError(f"{value:g} entries in a row")
+    return int(value)
+
+
 def _nodes_2(read):
     rows = read.take("iddd", _count(read))
     return rows[:, 0], rows[:, 1:]
@@ -138,7 +156,7 @@ def _nodes_4(read):
     blocks, *_ = read.take("ssss")[0]
     for _ in range(_whole(blocks)):
         dimension, _, parametric, count = read.take("iiis")[0]
-        more = int(dimension) if parametric else 0
+        more = _few(dimension) if parametric else 0
         tags.append(read.take("s", _whole(count))[:, 0])
         places.append(read.take("ddd" + "d" * more, _whole(count))[:, :3])
     return np.concatenate(tags), np.concatenate(places)
@@ -151,12 +169,14 @@ def _elements_2(read) -> list[np.ndarray]:
     while done < count:
         if isinstance(read, _Bytes):
             kind, rows, tags = (int(v) for v in read.take("iii")[0])
+            tags = _few(tags)
             if rows < 1:
                 raise ValueError("a block without elements")
             found = read.take("i" * (1 + tags + _NODES[kind]), rows)[:, 1 + tags :]
         else:
             _, kind, tags = (int(v) for v in read.take("iii")[0])
-            rows, found = 1, read.take("i" * (_whole(tags) + _NODES[kind]))[:, tags:]
+            tags = _few(tags)
+            rows, found = 1, read.take("i" * (tags + _NODES[kind]))[:, tags:]
         done += rows
         if kind in _CORNERS:
             faces[_CORNERS[kind]].append(found[:, : _CORNERS[kind]])

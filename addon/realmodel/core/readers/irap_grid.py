@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..elementary import cos, sin
 from ..errors import InputRefused
 from .grid_text import grid_heights, header_numbers, read_grid_text, require_count
 from .raster import Raster, without_values
@@ -39,7 +40,7 @@ def read_irap_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = 
     if not (np.isfinite([west, south, dx, dy, angle]).all() and dx > 0 and dy > 0):
         raise InputRefused("the header has no place for the grid, or no steps above 0", file=file)
     z[z >= _NO_HEIGHT] = np.nan
-    across, up = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    across, up = cos(math.radians(angle)), sin(math.radians(angle))
     step(1.0)
     z = without_values(z, list(nodata))
     return Raster(z, (west, south), (dx * across, dx * up), (-dy * up, dy * across))
@@ -92,7 +93,8 @@ def _binary(file: Path):
         found.append(np.frombuffer(raw, ">f4", size // 4, at + 4))
         have += size // 4
         at += size + 8
-    z = np.concatenate(found).astype(np.float64)
+    with np.errstate(invalid="ignore"):  # NaN of any kind is no height
+        z = np.concatenate(found).astype(np.float64)
     if len(z) != count:
         raise InputRefused(
             f"{columns} columns and {rows} rows need {count} heights; there are {len(z)}", file=file

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..units import METERS
-from .text import LINES_AT_ONCE, Step, no_step, read_text
+from .text import LINES_AT_ONCE, Step, line_of_word, no_step, read_text
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)
@@ -102,7 +102,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
             elif words[0] == "PROPERTIES":
                 properties |= dict.fromkeys(words[1:])
             elif words[0] == "AXIS_UNIT":
-                axis_units |= {word.strip('"').lower() for word in words[1:4]}
+                named = re.findall(r'"([^"]*)"', " ".join(words[1:])) or words[1:4]
+                axis_units |= {word.strip().lower() for word in named}
             elif words[0] in ("VRTX", "PVRTX"):
                 x, y, z = map(float, words[2:5])
                 index[int(words[1])] = len(vertices)
@@ -117,6 +118,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     mesh = mesh_of_faces(file, vertices, faces, lines)
     (unit,) = axis_units if len(axis_units) == 1 else (None,)
     told = [f"its properties {', '.join(properties)} are not read"] if properties else []
+    if len(axis_units) > 1:
+        told.append(f"its axes have different units ({', '.join(sorted(axis_units))}): say which in 'units'")
     return replace(mesh, unit=unit if unit in METERS else None, warnings=tuple(told))
 
 
@@ -129,12 +132,14 @@ def read_stl(file: str | Path, step: Step = no_step) -> TriangleMesh:
     try:
         if len(raw) == size or not raw.lstrip().startswith(b"solid"):
             if len(raw) < max(size, _STL_HEAD):
-                raise ValueError(f"{count} triangles are announced, the file is cut off")
+                raise ValueError(f"{count} triangles are announced, the file is cut off at byte {len(raw)}")
             corners = np.frombuffer(raw, _STL_FACET, count, _STL_HEAD)["corners"].reshape(-1, 3)
         else:
             corners = np.array(_STL_CORNER.findall(raw)).astype(np.float64).reshape(-1, 3)
             if len(corners) != 3 * raw.count(b"endfacet"):
-                raise ValueError("a triangle does not have three vertices")
+                raise _Damaged("a triangle does not have three vertices", line=_wrong_facet(raw))
+            if not len(corners):
+                raise _Damaged("it has no triangles", line=1)
     except _UNREADABLE as error:
         raise _unreadable(file, "STL", error) from error
     step(0.5)
@@ -152,6 +157,7 @@ def read_ply(file: str | Path, step: Step = no_step) -> TriangleMesh:
         if not (kind and end) or not {"vertex", "face"} <= elements.keys():
             raise ValueError("its header has no format, vertices or faces")
         body = body[2:] if body.startswith(b"\r\n") else body[1:]
+        begins, text = len(raw) - len(body), body
         if kind == "ascii":  # the same with numbers of one kind
             body = np.array(body.split()).astype("<f8").tobytes()
         found, at = {}, 0
@@ -164,6 +170,12 @@ def read_ply(file: str | Path, step: Step = no_step) -> TriangleMesh:
                 at += count * np.dtype([(key, form) for key, _, form in properties]).itemsize
             step(0.5)
         vertices = np.column_stack([found["vertex"][axis] for axis in "xyz"])
+    except _Cut as error:
+        place = {"byte": begins + error.at}
+        if kind == "ascii":
+            place = {"line": raw.count(b"\n", 0, begins) + line_of_word(text, error.at // 8)}
+        damage = _Damaged("it is cut off, or a count is wrong", **place)
+        raise _unreadable(file, "PLY", damage) from error
     except _UNREADABLE as error:
         raise _unreadable(file, "PLY", error) from error
     return mesh_of_faces(file, vertices, found["face"])
@@ -190,7 +202,10 @@ def _ply_rows(body: bytes, at: int, count: int, properties, is_face: bool):
     """The rows of an element from byte `at`, and where it ends: of vertices a structured array, of faces the
     corners of each."""
     if not is_face:
-        table = np.frombuffer(body, np.dtype([(name, form) for name, _, form in properties]), count, at)
+        row = np.dtype([(name, form) for name, _, form in properties])
+        if not 0 <= count * row.itemsize <= len(body) - at:
+            raise _Cut(min(at, len(body)))
+        table = np.frombuffer(body, row, count, at)
         return table, at + table.nbytes
     keys = [name for name, length, _ in properties if length and name in _PLY_CORNERS]
     if len(keys) != 1:
@@ -222,15 +237,43 @@ def _ply_face(body: bytes, at: int, properties, key: str):
     for name, length, form in properties:
         size = 1
         if length:
+            if at + np.dtype(length).itemsize > len(body):
+                raise _Cut(at)
             size = int(np.frombuffer(body, length, 1, at)[0])
             at += np.dtype(length).itemsize
-        if not 0 <= size <= len(body):
-            raise ValueError("a list of impossible length")
+        if not 0 <= size * np.dtype(form).itemsize <= len(body) - at:
+            raise _Cut(at)
         values = np.frombuffer(body, form, size, at) if size else np.empty(0, form)
         at += values.nbytes
         sizes.append(size)
         corners = values if name == key else corners
     return corners, sizes, at
+
+
+class _Cut(ValueError):
+    """What is announced at a byte of the body is not there."""
+
+    def __init__(self, at: int):
+        super().__init__(f"byte {at}")
+        self.at = at
+
+
+class _Damaged(ValueError):
+    """What is wrong, and the line or the byte where."""
+
+    def __init__(self, what: str, line: int | None = None, byte: int | None = None):
+        super().__init__(what if byte is None else f"{what} (byte {byte})")
+        self.line = line
+
+
+def _wrong_facet(raw: bytes) -> int:
+    """The line of the first facet of a text STL that has not three vertices."""
+    at = 0
+    for facet in raw.split(b"endfacet"):
+        if len(_STL_CORNER.findall(facet)) != 3:
+            break
+        at += len(facet) + len(b"endfacet")
+    return raw.count(b"\n", 0, max(raw.find(b"facet", at), at)) + 1
 
 
 def _rows(file: Path, step: Step) -> Iterator[tuple[int, list[str]]]:
@@ -257,4 +300,5 @@ def _unreadable_line(file: Path, number: int, words: list[str]) -> InputRefused:
 
 def _unreadable(file: Path, kind: str, error: Exception) -> InputRefused:
     reason = " ".join(str(error).split()) or type(error).__name__
-    return InputRefused(f"not a {kind} file that can be read: {reason:.200}", file=file)
+    line = getattr(error, "line", None)
+    return InputRefused(f"not a {kind} file that can be read: {reason:.200}", file=file, line=line)

@@ -103,4 +103,5 @@ def _values(file: Path, raw: bytes, at: int, kind: str, columns: int, rows: int)
     if len(raw) < needed:
         what = f"{columns} columns and {rows} rows need {needed} bytes; there are {len(raw)}"
         raise InputRefused(what, file=file, advice="the file is cut off or its header is wrong")
-    return np.frombuffer(raw, kind, columns * rows, at).astype(np.float64).reshape(rows, columns)
+    with np.errstate(invalid="ignore"):  # NaN of any kind is no height
+        return np.frombuffer(raw, kind, columns * rows, at).astype(np.float64).reshape(rows, columns)

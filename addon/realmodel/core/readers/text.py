@@ -37,6 +37,15 @@ def read_bytes(file: Path) -> bytes:
     return raw
 
 
+def line_of_word(raw: bytes, number: int) -> int:
+    """The line, from 1, of a word, from 0; the last line where there are fewer words."""
+    for line, text in enumerate(raw.split(b"\n"), 1):
+        number -= len(text.split())
+        if number < 0:
+            return line
+    return raw.rstrip().count(b"\n") + 1
+
+
 def require_text(file: Path, raw: bytes) -> None:
     """Refuses what cannot be text."""
     if b"\0" in raw[:4096]:

@@ -19,13 +19,15 @@ class TriangleMesh:
     """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner.
 
     face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
-    unit: of its lengths (units.METERS), where the file says one. warnings: sentences.
+    unit: of its lengths (units.METERS), where the file says one; said_unit: one that may not be meant.
+    warnings: sentences.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     face_of_triangle: np.ndarray | None = None
     unit: str | None = None
+    said_unit: str | None = None
     warnings: tuple[str, ...] = ()
 
     def in_model(self, given: MeshFile, model_unit: str) -> tuple[np.ndarray, list[str]]:
@@ -36,6 +38,9 @@ class TriangleMesh:
         if given.units is None and self.unit not in (None, model_unit):
             given = replace(given, units=self.unit)
             told.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
+        if given.units is None and self.said_unit not in (None, model_unit):
+            what = f"its header says {self.said_unit}; it is read in the unit of the model, {model_unit}"
+            told.append(f'{given.file}: {what}: write units = "{self.said_unit}" if the header is right')
         plan_scale, height_scale = given.scale(model_unit)
         if (plan_scale, height_scale) == (1.0, 1.0):
             return self.vertices, told
@@ -45,7 +50,8 @@ class TriangleMesh:
 def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, from 0: (F, K), or a list of any lengths.
     lines: where each face stands in the file. Raises InputRefused."""
-    vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+    with np.errstate(invalid="ignore"):  # NaN of any kind is refused below
+        vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
     if not len(faces):
         raise InputRefused("the mesh has no faces", file=file, advice="if it holds points, read it as points")
     bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))

@@ -135,6 +135,16 @@ class _Arrays:
         raise ValueError(f"it has no array '{name}'")
 
     def values(self, array: ElementTree.Element) -> np.ndarray:
+        """The numbers of an array. Raises ValueError naming the array, and the byte where it is appended."""
+        try:
+            return self._values(array)
+        except (ValueError, KeyError, IndexError, OverflowError, zlib.error) as error:
+            where = f"array '{array.get('Name', '')}'"
+            if array.get("format") == "appended":
+                where += f" at byte {array.get('offset', '0'):.20} of the appended data"
+            raise ValueError(f"{where}: {error}") from error
+
+    def _values(self, array: ElementTree.Element) -> np.ndarray:
         kind = np.dtype(self._order + _TYPES[array.get("type", "")])
         form = array.get("format", "ascii")
         if form == "ascii":

@@ -7,6 +7,7 @@ import itertools
 
 import numpy as np
 
+from ..elementary import cos, sin
 from ..errors import InputRefused
 from ..heights import heights
 from ..mesh_sizes import AUTO
@@ -174,7 +175,7 @@ def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _outline(plan: np.ndarray, extend: float, sideways: bool) -> np.ndarray:
     if extend > 0 and sideways:
         angles = np.arange(_ROUND) * (2 * np.pi / _ROUND)
-        moves = extend * np.column_stack([np.cos(angles), np.sin(angles)])
+        moves = extend * np.column_stack([cos(angles), sin(angles)])
     else:
         moves = np.array([[0.0, extend], [0.0, -extend]]) if extend > 0 else np.zeros((1, 2))
     return convex_hull((convex_hull(plan)[:, None] + moves).reshape(-1, 2))

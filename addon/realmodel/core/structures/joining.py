@@ -123,10 +123,9 @@ def _part_model(
     first = _first_surfaces(inputs)
     native = native_module()
 
-    def of_columns(sheets, region, rules) -> dict:
-        return work.native(
-            native.build_rock_masses, [(sheets, region, None, rules)], cells="columns", threads=threads
-        )
+    def of_columns(sheets, region, rules, emptied) -> dict:
+        rocks = [(sheets, region, None, rules)]
+        return work.native(native.build_rock_masses, rocks, emptied=[list(emptied)], threads=threads)
 
     stacks = [
         _stack(inputs, structures, part, number, first[number], first[-1], of_columns)
@@ -144,8 +143,16 @@ def _part_model(
     rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
+    emptied = [list(stacks[n].emptied) for n in taken]
+    built_as = "columns" if any(emptied) else cells
     try:
-        built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
+        built = work.native(
+            native.build_rock_masses,
+            rocks,
+            cells=built_as,
+            threads=threads,
+            emptied=emptied if any(emptied) else [],
+        )
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):
             error.items = rows[error.surface][error.items].tolist()
@@ -169,7 +176,7 @@ def _part_model(
         return None
     if (model["cell_block"] < 0).any():
         model |= _without_cells(model, model["cell_block"] < 0)
-    if cells == "blocks" and len(set(blocks.tolist())) < len(blocks):
+    if cells != built_as or (cells == "blocks" and len(set(blocks.tolist())) < len(blocks)):
         model |= one_cell_each(model)
     warnings = [
         (kind, surfaces[k], rows[k][items].tolist(), text) if k >= 0 else (kind, k, items, text)

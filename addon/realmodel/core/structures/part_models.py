@@ -12,19 +12,22 @@ from .voids import Build, Older, distinct_plans, level
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
 DEEP = -3  # below everything, under a body where no base elevation is
-_DEPOSITS, _PROTECTS = "conformable", "base"
+_DEPOSITS = "conformable"
 
 
 @dataclass
 class Stack:
     """A stack as the builder takes it. blocks: of each surface the number of the block beneath it, NOTHING
-    for none. surfaces: of each surface its number in the rock mass, FILLER, FLOOR or DEEP."""
+    for none. surfaces: of each surface its number in the rock mass, FILLER, FLOOR or DEEP. emptied: surfaces,
+    ascending, before which all that is there becomes air; of those before the last of them stays what they
+    protect."""
 
     sheets: list[Triangulation]
     rules: list[str]
     base_elevation: float | None
     blocks: list[int]
     surfaces: list[int]
+    emptied: tuple[int, ...] = ()
 
     def without(self, empty: list[bool]) -> Stack:
         """Without the surfaces that do not exist here. Where the oldest is none, no block is on the base."""
@@ -35,7 +38,10 @@ class Stack:
         if kept and kept[0] > 0:
             base, blocks[0] = None, NOTHING
         sheets, rules = [self.sheets[k] for k in kept], [self.rules[k] for k in kept]
-        return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept])
+        emptied = tuple(sorted({sum(k < at for k in kept) for at in self.emptied} - {0}))
+        if emptied and emptied[-1] == len(kept):
+            return Stack([], [], None, [], [])
+        return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept], emptied)
 
 
 def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | None, first: int) -> Stack:
@@ -64,47 +70,45 @@ def inside_body(
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
-        base = float(stack.sheets[0][0][0, 2])
-    before = Older(build, stack.sheets[:older], stack.rules[:older], region)
+        base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
+    before = Older(build, stack.sheets[:older], stack.rules[:older], region, stack.emptied)
     if block == NOTHING:
         return _emptied(stack, older, base, before)
     # what is protected depends on all that was there
     protects = any(RULES[rule].protects for rule in before.rules)
-    kept = [k for k in range(older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
+    first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
+    kept = [k for k in range(first, older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
     lowest: list[tuple[Triangulation, int]] = []
     if base is None:  # a body also lies where no older surface is
         lowest = [(level(plan, ends[0]), DEEP) for plan in plans]
         if len(distinct_plans([stack.sheets[k] for k in kept if stack.surfaces[k] != FILLER])) > 1:
             lowest += _never(stack, before)
             kept = kept if protects else []
+    else:
+        lowest = [(level(plan, base), FLOOR) for plan in plans]
     inside = Stack(
-        [*(sheet for sheet, _ in lowest), *(stack.sheets[k] for k in kept)],
-        [*[_DEPOSITS] * len(lowest), *(stack.rules[k] for k in kept)],
+        [*stack.sheets[:first], *(sheet for sheet, _ in lowest), *(stack.sheets[k] for k in kept)],
+        [*stack.rules[:first], *[_DEPOSITS] * len(lowest), *(stack.rules[k] for k in kept)],
         None,
         [
-            *[NOTHING] * len(lowest),
+            *[NOTHING] * (first + len(lowest)),
             *(NOTHING if base is None and stack.blocks[k] == NOTHING else block for k in kept),
         ],
-        [*(of for _, of in lowest), *(stack.surfaces[k] for k in kept)],
+        [*stack.surfaces[:first], *(of for _, of in lowest), *(stack.surfaces[k] for k in kept)],
+        stack.emptied,
     )
     for plan in plans:
         inside.sheets.append(level(plan, ends[1]))
         inside.rules.append(_DEPOSITS)
         inside.blocks.append(block)
         inside.surfaces.append(FILLER)
-    return _upon(base, plans, inside, stack, older)
-
-
-def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> Stack:
-    """Floors at a base elevation, which all else lies on, then one stack, then the younger surfaces of
-    another."""
-    floors = [] if base is None else [level(plan, base) for plan in plans]
     return Stack(
-        [*floors, *lower.sheets, *stack.sheets[older:]],
-        [*[_DEPOSITS] * len(floors), *lower.rules, *stack.rules[older:]],
+        [*inside.sheets, *stack.sheets[older:]],
+        [*inside.rules, *stack.rules[older:]],
         None,
-        [*[NOTHING] * len(floors), *lower.blocks, *stack.blocks[older:]],
-        [*[FLOOR] * len(floors), *lower.surfaces, *stack.surfaces[older:]],
+        [*inside.blocks, *stack.blocks[older:]],
+        [*inside.surfaces, *stack.surfaces[older:]],
+        stack.emptied,
     )
 
 
@@ -116,27 +120,21 @@ def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
 
 def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
-    of what is below the oldest surface. What they fill below the top of what was protected stays: it is there
-    before they come as they do elsewhere."""
+    of what is below the oldest surface. The older ones only stay where they protect."""
     if base is not None:
         # where no older surface was, none that comes later forms a block
         floors = [(level(plan, base), FLOOR) for plan in before.plans]
     else:
         floors = _never(stack, before)
-    young = range(older, len(stack.sheets))
-    kept: list[tuple[Triangulation, int, int]] = []  # with their blocks and surfaces
-    tops = before.protected() if any(RULES[stack.rules[k]].cuts for k in young[1:]) else []
-    for k in young:
-        if not tops:  # all below them is filled: once more would only round it once more
-            break
-        for piece in before.lower(tops, stack.sheets[k], k):
-            kept.append((piece.sheet, stack.blocks[k], stack.surfaces[piece.of]))
-        tops = before.above(tops, stack.sheets[k])
-    parts = [
-        *((sheet, _DEPOSITS, NOTHING, of) for sheet, of in floors),
-        *((sheet, _DEPOSITS, block, of) for sheet, block, of in kept),
-        *((sheet, _PROTECTS, NOTHING, of) for sheet, of in floors if kept),  # protects what there is
-        *((stack.sheets[k], stack.rules[k], stack.blocks[k], stack.surfaces[k]) for k in young),
-    ]
-    sheets, rules, blocks, surfaces = map(list, zip(*parts, strict=True)) if parts else ([], [], [], [])
-    return Stack(sheets, rules, None, blocks, surfaces)
+    protects = any(RULES[rule].protects for rule in before.rules)
+    # upon a base the first that comes finds nothing to cut
+    may_cut = stack.rules[older + (base is not None) :]
+    kept = older if protects and any(RULES[rule].cuts for rule in may_cut) else 0
+    return Stack(
+        [*stack.sheets[:kept], *(sheet for sheet, _ in floors), *stack.sheets[older:]],
+        [*stack.rules[:kept], *[_DEPOSITS] * len(floors), *stack.rules[older:]],
+        None,
+        [*[NOTHING] * (kept + len(floors)), *stack.blocks[older:]],
+        [*stack.surfaces[:kept], *(of for _, of in floors), *stack.surfaces[older:]],
+        (*stack.emptied, kept) if kept else (),
+    )

@@ -61,6 +61,11 @@ class Structures:
         ]
         return given + [(body.vertices, body.triangles, True, [], False) for body in self.bodies]
 
+    def fault_shapes(self) -> list[FaultShape]:
+        """Of each fault."""
+        alone = {f.name: FaultShape(f.vertices, f.triangles, f.dies_out) for f in self.faults}
+        return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
+
     def of_rock(self, rock: int) -> RockFaults:
         """The faults that act in a rock mass; those that end at others as the parts have it."""
         numbers = [n for n, displaced in enumerate(self.displaced) if rock in displaced]
@@ -69,10 +74,10 @@ class Structures:
         for number in numbers:
             kept = self._kept_sides(number)
             ends.append([(here[name], side) for name, side in kept.items() if name in here])
-        faults = [self.faults[number] for number in numbers]
+        faults, shapes = [self.faults[number] for number in numbers], self.fault_shapes()
         return RockFaults(
             [fault.name for fault in faults],
-            [FaultShape(fault.vertices, fault.triangles, fault.dies_out) for fault in faults],
+            [shapes[number] for number in numbers],
             [self.displaced[number][rock] for number in numbers],
             [fault.dies_out for fault in faults],
             numbers,

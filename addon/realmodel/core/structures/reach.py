@@ -32,10 +32,7 @@ class Reach:
         self.step = self.size / self.cells
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
-        self.masks = [
-            self._sides(work, FaultShape(fault.vertices, fault.triangles, fault.dies_out), threads)
-            for fault in structures.faults
-        ]
+        self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
 
     def columns(self, part: int) -> np.ndarray:
         """(nx, ny) bool: over which cells in plan a part may have points."""

@@ -14,16 +14,18 @@ Triangulation = tuple[np.ndarray, np.ndarray]
 
 
 class FaultShape(NamedTuple):
-    """vertices (V, 3) float64 and triangles (T, 3) int32 of a fault; dies_out: how it is continued beyond its
-    border."""
+    """vertices (V, 3) float64 and triangles (T, 3) int32 of a fault. dies_out, ends, the faults that it ends
+    at: how it is continued beyond its border."""
 
     vertices: np.ndarray
     triangles: np.ndarray
     dies_out: bool = False
+    ends: tuple[FaultShape, ...] = ()
 
-    def native(self) -> tuple:
-        """As the native part takes it."""
-        return self.vertices, self.triangles, False, [], self.dies_out
+    def native(self) -> list[tuple]:
+        """As the native part takes it, and those at which it ends."""
+        own = (self.vertices, self.triangles, False, list(range(1, 1 + len(self.ends))), self.dies_out)
+        return [own, *((other.vertices, other.triangles, False, [], other.dies_out) for other in self.ends)]
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ def _where_sides_change(
 
 def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
-    vertices, triangles, _ = fault
+    vertices, triangles = fault.vertices, fault.triangles
     near = _ON * float(np.linalg.norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
     boxes = np.stack([points - near, points + near, points], axis=1)
     found = np.zeros(len(points), bool)
@@ -114,7 +114,7 @@ def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
 
 def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
-    vertices, triangles, _ = fault
+    vertices, triangles = fault.vertices, fault.triangles
     corners = vertices[triangles]
     found = np.full(len(begin), np.nan)
     pairs = crossing_pairs(np.stack([begin, end, end], axis=1), corners)

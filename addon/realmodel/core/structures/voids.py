@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What younger surfaces make of the inside of a void.
 
-What was there is gone, but it is remembered where nothing ever was, and what was protected: younger surfaces
-fill the void from the top of the former, and below the top of the latter they cut nothing, though it is air
-now. Both tops are found by building the older surfaces alone.
+What was there is gone, but it is remembered where nothing ever was: younger surfaces fill the void from the
+top of that. It is found by building the older surfaces alone.
 """
 
 from __future__ import annotations
@@ -13,17 +12,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..rules import RULES
 from ..work import native_module
 from .exact import orient2d
 from .located import fanned
 from .rock_structure import Triangulation
 
-_DEPOSITS, _CUTS = "conformable", "erosional"
+_DEPOSITS = "conformable"
 _FAR = 1.0  # ranges of heights below everything: where there is rock for sure
 
-# (sheets, region, rules) to the arrays of a model of columns
-Build = Callable[[list[Triangulation], Triangulation | None, list[str]], dict]
+# (sheets, region, rules, surfaces before which all becomes air) to the arrays of a model of columns
+Build = Callable[[list[Triangulation], Triangulation | None, list[str], Sequence[int]], dict]
 
 
 class Piece(NamedTuple):
@@ -34,66 +32,48 @@ class Piece(NamedTuple):
 
 
 class Older(NamedTuple):
-    """sheets, rules: of the surfaces before a void or body. region: that of the rock mass, or None."""
+    """sheets, rules: of the surfaces before a void or body. region: that of the rock mass, or None. emptied:
+    the surfaces before which all that was there became air."""
 
     build: Build
     sheets: Sequence[Triangulation]
     rules: Sequence[str]
     region: Triangulation | None
+    emptied: Sequence[int] = ()
 
     @property
     def plans(self) -> list[Triangulation]:
         """Triangulations that cover what the sheets cover."""
         return distinct_plans(self.sheets)
 
-    def _built(self, sheets, rules, region) -> dict:
-        """The model of sheets upon one more for each plan, far below all."""
-        heights = [vertices[:, 2] for vertices, _ in (*self.sheets, *sheets) if len(vertices)]
+    def _built(self) -> dict:
+        """The model of the sheets upon one more for each plan, far below all; these count first."""
+        heights = [vertices[:, 2] for vertices, _ in self.sheets if len(vertices)]
         low, high = min(each.min() for each in heights), max(each.max() for each in heights)
         far = float(low - _FAR * (high - low) - 1.0)
         floors = [level(plan, far) for plan in self.plans]
-        return self.build([*floors, *sheets], region, [*[_DEPOSITS] * len(floors), *rules])
+        first = self.emptied[-1] if self.emptied else 0
+        sheets = [*self.sheets[:first], *floors, *self.sheets[first:]]
+        rules = [*self.rules[:first], *[_DEPOSITS] * len(floors), *self.rules[first:]]
+        model = self.build(sheets, self.region, rules, self.emptied)
+        count = len(floors)
+        order = [*range(count, count + first), *range(count), *range(count + first, len(sheets))]
+        number = np.array([*order, -2, -1], np.int32)  # bases and walls stay
+        return {
+            **model,
+            "face_surface": number[model["face_surface"]],
+            "cell_block": number[model["cell_block"]],
+        }
 
     def never(self, fills: Sequence[bool]) -> list[Piece]:
         """The top of what is below the oldest surface, where there is one. fills: sheets that fill bodies:
         nothing is below these."""
-        model = self._built(self.sheets, self.rules, self.region)
+        model = self._built()
         count = len(self.plans)
         chosen = np.zeros(len(model["cell_block"]), bool)
         chosen[model["face_cells"][model["face_surface"] >= 0][_are_floors(model, count)].max(axis=1)] = True
         chosen &= ~np.array([*[False] * count, *fills], bool)[model["cell_block"]]
         return _tops(self.build, model, chosen, count)
-
-    def protected(self) -> list[Piece]:
-        """The top of what is protected: of the rock when each surface that protects came, where that is."""
-        found = []
-        for k, rule in enumerate(self.rules):
-            if not RULES[rule].protects:
-                continue
-            model = self._built(self.sheets[: k + 1], self.rules[: k + 1], _plan(self.sheets[k]))
-            found += _tops(self.build, model, np.ones(len(model["cell_block"]), bool), len(self.plans))
-        return found
-
-    def lower(self, tops: list[Piece], sheet: Triangulation, number: int) -> list[Piece]:
-        """The lower one of tops, the highest of them, and of a sheet, where there are both."""
-        rules = [*[_DEPOSITS] * len(tops), _CUTS]
-        model = self._built([*(piece.sheet for piece in tops), sheet], rules, _plan(sheet))
-        last = len(self.plans) + len(tops)
-        found = _tops(self.build, model, model["cell_block"] < last, len(self.plans))
-        of = [*(piece.of for piece in tops), number]
-        return [Piece(piece.sheet, of[piece.of]) for piece in found]
-
-    def above(self, tops: list[Piece], sheet: Triangulation) -> list[Piece]:
-        """What of tops, the highest of them, lies above a sheet, or where that is not."""
-        model = self._built([sheet, *(piece.sheet for piece in tops)], [_DEPOSITS] * (1 + len(tops)), None)
-        first = len(self.plans) + 1
-        found = _tops(self.build, model, model["cell_block"] >= first, first)
-        return [Piece(piece.sheet, tops[piece.of].of) for piece in found]
-
-
-def _plan(sheet: Triangulation) -> Triangulation:
-    """What a sheet covers, as a region."""
-    return np.ascontiguousarray(sheet[0][:, :2]), sheet[1]
 
 
 def _are_floors(model: dict, count: int) -> np.ndarray:
@@ -130,7 +110,7 @@ def _single_valued(build: Build, sheet: Triangulation) -> list[Triangulation]:
         kept = np.setdiff1d(np.arange(len(triangles)), aside)
         part = vertices, np.ascontiguousarray(triangles[kept])
         try:
-            build([part], None, [_DEPOSITS])
+            build([part], None, [_DEPOSITS], ())
         except native_module().InputError as error:
             if error.kind != "double_valued":
                 raise

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/base/array.hpp"
 #include "realmodel/base/progress.hpp"
 
 namespace realmodel::strata {
@@ -24,11 +25,11 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
 
 /// The sides of each cell: the faces that bound it, and whether it lies on their far side.
 struct CellSides {
-    std::vector<std::int64_t> offsets;  ///< sides of cell c: offsets[c] .. offsets[c + 1] - 1
-    std::vector<std::int64_t> sides;    ///< 2 face + 1 where the cell is the face's second one
+    Array<std::uint32_t> offsets;  ///< sides of cell c: offsets[c] .. offsets[c + 1] - 1
+    Array<std::uint32_t> sides;    ///< 2 face + 1 where the cell is the face's second one
 };
-/// Sorts the sides of faces by cell, in the order of the faces.
-/// @throws InputError kind bad_index where a face refers to a cell that does not exist
+/// Sorts the sides of faces by cell, in the order of the faces, on all threads.
+/// @throws InputError kinds bad_index where a face refers to a cell that does not exist, too_large
 /// @throws Cancelled
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
                      const Progress* progress = nullptr);

@@ -64,6 +64,9 @@ struct StackInput {
     std::vector<Rule> rules;            ///< one a surface; none at all means all erosional
     std::optional<RegionView> region;
     std::optional<double> base_elevation;
+    /// Surfaces, ascending: before each of them all that is there becomes air, and only what was
+    /// protected stays so. Of models of columns without a base elevation.
+    std::vector<std::size_t> emptied;
 };
 
 using realmodel::CellComplex;

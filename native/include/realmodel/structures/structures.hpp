@@ -67,25 +67,30 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 /// The side of a structure that points are on: of a fault that of the triangle nearest to each,
 /// of a body by the number of times that a ray from there leaves it. A point on it is above, or
 /// outside.
+/// @param structures  the structure, then the faults that it ends at
 /// @param points  3 P coordinates
 /// @throws InputError  as parts_of does
-std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
-                                         int threads, const Progress* progress);
+std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
+                                         std::span<const double> points, int threads,
+                                         const Progress* progress);
 
 /// Which triangles of a sheet a fault's continuation beyond its border may touch, 1, or pass, 2,
 /// wherever the sheet lies between two heights: none too few, perhaps some too many.
+/// @param faults  the fault, then those that it ends at
 /// @param low, high  3 N coordinates of its vertices, equal in plan
 /// @param triangles  3 T
 /// @throws InputError  as parts_of does
-std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<const double> low,
+std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
+                                           std::span<const double> low,
                                            std::span<const double> high,
                                            std::span<const std::int32_t> triangles, int threads,
                                            const Progress* progress);
 
 /// The triangles by which a fault is continued beyond its border, farther than a box around the
 /// rock (two corners) reaches.
+/// @param faults  the fault, then those that it ends at
 /// @throws InputError  as parts_of does
 std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
-    const Structure& fault, const std::array<std::array<double, 3>, 2>& corners);
+    std::span<const Structure> faults, const std::array<std::array<double, 3>, 2>& corners);
 
 }  // namespace realmodel::structures

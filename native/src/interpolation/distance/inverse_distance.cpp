@@ -7,6 +7,7 @@
 
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/nearest_points.hpp"
 
@@ -62,7 +63,7 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
                 // Relative to the nearest point, so that no power overflows.
                 const double closeness = nearest.squared_distance / squared_distance;
                 const double weight =
-                    options.power == 2 ? closeness : std::pow(closeness, options.power / 2);
+                    options.power == 2 ? closeness : elementary::pow(closeness, options.power / 2);
                 sum += weight * (data.values[point] - base);
                 weights += weight;
             };

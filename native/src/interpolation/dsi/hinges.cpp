@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/counting_sort.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -39,7 +40,7 @@ bool has_area(const Position& a, const Position& b, const Position& c) {
 Hinge hinge(std::span<const Position> nodes, const std::array<std::int32_t, 4>& of) {
     const auto at = [&](int k) { return nodes[of[k]]; };
     const Position a = at(0), b = at(1), c = at(2), d = at(3);
-    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
     const Foot left = foot(a, b, c), right = foot(a, b, d);
     // L^2 / (A + B), and the areas are L h / 2.
     const double scale = std::sqrt(2 * length / (left.height + right.height));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::interpolation {
 
 namespace {
@@ -206,7 +208,7 @@ int SmoothSystem::iterate(Vector& z, const Vector& right, double goal, int most,
         energy = next;
         // The error falls by nearly the same factor each time.
         if (start > goal && energy > 0)
-            report(std::log(start / std::sqrt(energy)) / std::log(start / goal));
+            report(elementary::log(start / std::sqrt(energy)) / elementary::log(start / goal));
     }
     converged_ = !(energy > goal * goal) || iteration < most;
     return iteration;

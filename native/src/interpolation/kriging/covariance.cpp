@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::interpolation {
 
 Covariance::Covariance(const Variogram& variogram) {
@@ -12,7 +14,7 @@ Covariance::Covariance(const Variogram& variogram) {
         // Distances across the azimuth count `ratio` times.
         const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
         const double ratio = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
-        const double x = std::sin(azimuth), y = std::cos(azimuth);
+        const double x = elementary::sin(azimuth), y = elementary::cos(azimuth);
         parts_.push_back({model, x / range, y / range, ratio * y / range, -ratio * x / range,
                           sill / variogram.sill});
     };

@@ -9,6 +9,7 @@
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
@@ -17,7 +18,7 @@ namespace {
 
 /// r^2 log r from r^2.
 double kernel(double squared) {
-    return squared > 0 ? 0.5 * squared * std::log(squared) : 0;
+    return squared > 0 ? 0.5 * squared * elementary::log(squared) : 0;
 }
 
 double squared_distance(const Position& a, const Position& b) {

@@ -6,9 +6,10 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -73,7 +74,8 @@ double PointTriangulation::linear(const Position& position, Face face) const {
     if (!(area > 0)) {
         std::size_t nearest = 0;
         for (std::size_t k = 1; k < 3; ++k) {
-            if (std::hypot(x[k], y[k]) < std::hypot(x[nearest], y[nearest])) nearest = k;
+            if (elementary::hypot(x[k], y[k]) < elementary::hypot(x[nearest], y[nearest]))
+                nearest = k;
         }
         return z[nearest];
     }

@@ -4,12 +4,12 @@
 #include <CGAL/function_objects.h>
 #include <CGAL/natural_neighbor_coordinates_2.h>
 
-#include <cmath>
 #include <iterator>
 #include <utility>
 
 #include "interpolation/node_loop.hpp"
 #include "interpolation/triangulation/point_triangulation.hpp"
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -74,9 +74,9 @@ double natural(const DataPoints& data, const PointTriangulation& triangulation,
         x += weight * dx;
         y += weight * dy;
         z += weight * (data.values[point] - base);
-        reach += weight * std::hypot(dx, dy);
+        reach += weight * elementary::hypot(dx, dy);
     }
-    if (!(sum > 0) || !(std::hypot(x, y) <= kAreasAgree * reach)) {
+    if (!(sum > 0) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
         return triangulation.linear(node, face);
     }
     return base + z / sum;

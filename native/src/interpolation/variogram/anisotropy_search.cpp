@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::interpolation {
 
 namespace {
@@ -21,10 +23,10 @@ constexpr double kLeastSpread = 0.05;                  // across, of that along
 using Vector = std::array<double, 2>;
 
 Anisotropy anisotropy_of(const Vector& v) {
-    const double length = std::min(std::hypot(v[0], v[1]), std::log(kLargestRatio));
-    double azimuth = std::atan2(v[1], v[0]) * 90 / std::numbers::pi;
+    const double length = std::min(elementary::hypot(v[0], v[1]), elementary::log(kLargestRatio));
+    double azimuth = elementary::atan2(v[1], v[0]) * 90 / std::numbers::pi;
     if (azimuth < 0) azimuth += 180;
-    return {std::exp(length), length > 0 ? azimuth : 0};
+    return {elementary::exp(length), length > 0 ? azimuth : 0};
 }
 
 }  // namespace
@@ -53,7 +55,8 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
     for (const double ratio : kFirstRatios) {
         for (int k = 0; k < kDirections; ++k) {
             const double angle = 2 * std::numbers::pi * k / kDirections;
-            attempt({std::log(ratio) * std::cos(angle), std::log(ratio) * std::sin(angle)});
+            attempt({elementary::log(ratio) * elementary::cos(angle),
+                     elementary::log(ratio) * elementary::sin(angle)});
         }
     }
     // Steps along the axes, shorter where none is better (Hooke and Jeeves 1961, the plain part).
@@ -61,7 +64,8 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
         bool better = false;
         for (const Vector& side : {Vector{1, 0}, Vector{0, 1}, Vector{-1, 0}, Vector{0, -1}}) {
             const Vector v{best[0] + step * side[0], best[1] + step * side[1]};
-            if (std::hypot(v[0], v[1]) <= std::log(kLargestRatio)) better = attempt(v) || better;
+            if (elementary::hypot(v[0], v[1]) <= elementary::log(kLargestRatio))
+                better = attempt(v) || better;
         }
         if (!better) step /= 2;
     }
@@ -81,7 +85,7 @@ bool spread_in_plan(const DataPoints& data) {
         yy += (py - y) * (py - y);
     }
     // Eigenvalues of the matrix of second moments: squares of the spreads along and across.
-    const double half = (xx + yy) / 2, apart = std::hypot((xx - yy) / 2, xy);
+    const double half = (xx + yy) / 2, apart = elementary::hypot((xx - yy) / 2, xy);
     return half - apart > kLeastSpread * kLeastSpread * (half + apart);
 }
 

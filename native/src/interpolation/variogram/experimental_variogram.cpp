@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "interpolation/data_points.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 #include "spatial/nearest_points.hpp"
 
@@ -22,15 +23,15 @@ constexpr double kClassGrowth = 1.25;
 class Classes {
 public:
     Classes(double first_limit, double last_limit) : first_(first_limit) {
-        const double growth = std::log(last_limit / first_limit) / std::log(kClassGrowth);
+        const double growth = elementary::log(last_limit / first_limit) / log_growth_;
         sums_.resize(static_cast<std::size_t>(std::max(1.0, std::ceil(growth) + 1)));
     }
-    double limit(std::size_t k) const { return first_ * std::pow(kClassGrowth, k); }
+    double limit(std::size_t k) const { return first_ * elementary::pow(kClassGrowth, k); }
     std::size_t size() const { return sums_.size(); }
     std::size_t class_of(double distance) const {
         if (distance <= first_) return 0;
         return static_cast<std::size_t>(
-            std::ceil(std::log(distance / first_) / std::log(kClassGrowth)));
+            std::ceil(elementary::log(distance / first_) / log_growth_));
     }
     void add(std::size_t k, double distance, double difference) {
         sums_[k].pairs += 1;
@@ -73,6 +74,7 @@ private:
         out.pairs.push_back(sum.pairs);
     }
     double first_;
+    const double log_growth_ = elementary::log(kClassGrowth);
     std::vector<Sum> sums_;
 };
 
@@ -87,7 +89,7 @@ double upper_median(std::vector<double>& values) {
 std::vector<Position> isotropic_positions(const DataPoints& data, const Anisotropy& anisotropy) {
     const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
     const double stretch = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
-    const double s = std::sin(azimuth), c = std::cos(azimuth);
+    const double s = elementary::sin(azimuth), c = elementary::cos(azimuth);
     std::vector<Position> positions;
     positions.reserve(data.local.size());
     for (const auto& [x, y] : data.local)
@@ -97,7 +99,7 @@ std::vector<Position> isotropic_positions(const DataPoints& data, const Anisotro
 
 double diagonal(std::span<const Position> positions) {
     const spatial::PlanBox box = spatial::box_around(positions);
-    return std::hypot(box.width(), box.height());
+    return elementary::hypot(box.width(), box.height());
 }
 
 ExperimentalVariogram experimental_variogram(const DataPoints& data, const Anisotropy& anisotropy) {
@@ -145,8 +147,8 @@ ExperimentalVariogram experimental_variogram(const DataPoints& data, const Aniso
     const std::vector<std::int32_t> far_part = even_part(count, kPointsForFarPairs);
     for (auto i = far_part.begin(); i != far_part.end(); ++i) {
         for (auto j = i + 1; j != far_part.end(); ++j) {
-            const double distance = std::hypot(positions[*i][0] - positions[*j][0],
-                                               positions[*i][1] - positions[*j][1]);
+            const double distance = elementary::hypot(positions[*i][0] - positions[*j][0],
+                                                      positions[*i][1] - positions[*j][1]);
             if (distance > far_limit) continue;
             const std::size_t k = classes.class_of(distance);
             if (k >= near_classes && k < classes.size()) add_pair(k, distance, *i, *j);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "interpolation/kriging/decay.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
@@ -55,15 +56,15 @@ double structure(VariogramModel model, double t) {
         case VariogramModel::kSpherical:
             return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;
         case VariogramModel::kExponential:
-            return -std::expm1(-3 * t);
+            return -elementary::expm1(-3 * t);
         case VariogramModel::kGaussian:
-            return -std::expm1(-3 * t * t);
+            return -elementary::expm1(-3 * t * t);
         case VariogramModel::kCubic:
             return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;
         case VariogramModel::kMatern32:
-            return 1 - (1 + a * t) * std::exp(-a * t);
+            return 1 - (1 + a * t) * elementary::exp(-a * t);
         case VariogramModel::kMatern52:
-            return 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
+            return 1 - (1 + b * t + b * b * t * t / 3) * elementary::exp(-b * t);
     }
     return 1;
 }

@@ -13,6 +13,7 @@
 #include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
 #include "interpolation/variogram/variogram_search.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -149,21 +150,22 @@ private:
         if (!(scale > 0) || !std::isfinite(scale)) return;
         // As much of what the errors ask for as so many of them justify.
         const auto count = static_cast<double>(errors.errors.size());
-        const double left_undone = std::pow(scale, kFewPoints / (count + kFewPoints));
+        const double left_undone = elementary::pow(scale, kFewPoints / (count + kFewPoints));
         scale /= left_undone;
         const double power = growth(variogram, out.experimental.lags.front());
         const double longest = std::max(variogram.range, extent(variogram.anisotropy));
         double reach = 1;  // share of the step that would do it all
-        for (int step = 0; step < 4 && std::abs(std::log(scale)) > 0.05; ++step) {
-            const double times = std::min(std::clamp(std::pow(scale, -reach / power), 0.5, 2.0),
-                                          std::max(longest / variogram.range, 1.0));
+        for (int step = 0; step < 4 && std::abs(elementary::log(scale)) > 0.05; ++step) {
+            const double times =
+                std::min(std::clamp(elementary::pow(scale, -reach / power), 0.5, 2.0),
+                         std::max(longest / variogram.range, 1.0));
             Variogram moved = variogram;
             moved.range *= times;
             for (NestedStructure& nested : moved.further)
                 nested.range *= times;
             const PredictionErrors with_moved = errors_with(moved);
             const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
-            if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
+            if (!(std::abs(elementary::log(with_range)) < std::abs(elementary::log(scale))) ||
                 (*square_of_)(with_moved.errors) > kHardlyWorse * square) {
                 reach /= 2;
                 continue;
@@ -184,7 +186,7 @@ private:
         double open = 0, powers = 0;
         const auto add = [&](VariogramModel model, double range, double sill) {
             const double power = growth(model);
-            const double part = sill * std::pow(distance / range, power);
+            const double part = sill * elementary::pow(distance / range, power);
             open += part;
             powers += part * power;
         };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "realmodel/base/elementary.hpp"
+
 namespace realmodel::interpolation {
 
 namespace {
@@ -74,7 +76,7 @@ constexpr double kMostRough = 0.6;  // share of the rougher part
 }  // namespace
 
 bool Candidate::contradicts() const {
-    return !(std::abs(std::log(sill / fit.sill())) < std::log(kContradicting));
+    return !(std::abs(elementary::log(sill / fit.sill())) < elementary::log(kContradicting));
 }
 
 void keep_agreeing(std::vector<Candidate>& candidates) {

@@ -2,7 +2,8 @@
 #include "interpolation/variogram/weighted_fit.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
 
@@ -73,11 +74,11 @@ CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nug
 /// The best range: tried on a geometric scale, then narrowed by golden sections.
 CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool with_nugget) {
     const double shortest = 0.5 * e.lags.front(), longest = 4 * e.lags.back();
-    const double step = std::pow(longest / shortest, 1.0 / kRangesTried);
+    const double step = elementary::pow(longest / shortest, 1.0 / kRangesTried);
     const auto at = [&](double range) { return fit_for_range(e, model, range, with_nugget); };
     CurveFit best;
     for (int i = 0; i <= kRangesTried; ++i) {
-        const CurveFit fit = at(shortest * std::pow(step, i));
+        const CurveFit fit = at(shortest * elementary::pow(step, i));
         if (fit.misfit < best.misfit) best = fit;
     }
     constexpr double kGolden = 0.6180339887498949;

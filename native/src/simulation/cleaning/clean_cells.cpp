@@ -33,7 +33,7 @@ public:
         const ComplexCounts before = complex_.counts();
         for (int round = 0; round < kRounds; ++round) {
             changes_ = 0;
-            queue_all_edges();
+            list_all_edges();
             join_short_edges();
             give_up_thin_faces();
             join_short_edges();
@@ -63,21 +63,44 @@ private:
         auto operator<=>(const ThinCell&) const = default;
     };
 
-    void queue_edges_of(std::span<const std::int32_t> loop, std::int32_t only) {
+    /// Adds the short edges of a loop, or only those at one of its corners.
+    void list_edges_of(std::span<const std::int32_t> loop, std::int32_t only,
+                       std::vector<Edge>& listed) const {
         std::int32_t from = loop.back();
         for (const std::int32_t to : loop) {
             const std::int32_t low = std::min(from, to), high = std::max(from, to);
             from = to;
             if (only >= 0 && low != only && high != only) continue;
             const double length = complex_.distance(low, high);
-            if (length < tolerance_) queue_.push({length, low, high});
+            if (length < tolerance_) listed.push_back({length, low, high});
         }
     }
 
-    void queue_all_edges() {
+    static void sort_once(std::vector<Edge>& edges) {
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    }
+
+    void list_all_edges() {
+        edges_.clear();
+        next_edge_ = 0;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
-            if (complex_.has_face(f)) queue_edges_of(complex_.corners(f), -1);
+            if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, edges_);
         }
+        sort_once(edges_);
+    }
+
+    /// The next of the listed edges and of those that came since, by length; false: there is none.
+    bool take_edge(Edge& edge) {
+        const bool is_listed = next_edge_ < edges_.size();
+        if (!is_listed && queue_.empty()) return false;
+        if (is_listed && (queue_.empty() || edges_[next_edge_] < queue_.top())) {
+            edge = edges_[next_edge_++];
+        } else {
+            edge = queue_.top();
+            queue_.pop();
+        }
+        return true;
     }
 
     bool is_edge(std::int32_t from, std::int32_t to) const {
@@ -100,11 +123,9 @@ private:
 
     void join_short_edges() {
         std::size_t round = 0;
-        Edge last{-1, -1, -1};
-        while (!queue_.empty()) {
+        Edge edge{}, last{-1, -1, -1};
+        while (take_edge(edge)) {
             poll(progress_, round++);
-            const Edge edge = queue_.top();
-            queue_.pop();
             if (edge == last) continue;
             last = edge;
             if (is_edge(edge.from, edge.to)) join(edge);
@@ -168,8 +189,12 @@ private:
         complex_.apply(change);
         ++changes_;
         if (vertex < 0) return;
+        fresh_edges_.clear();
         for (const std::int32_t f : complex_.vertex_faces(vertex))
-            queue_edges_of(complex_.corners(f), vertex);
+            list_edges_of(complex_.corners(f), vertex, fresh_edges_);
+        sort_once(fresh_edges_);
+        for (const Edge& edge : fresh_edges_)
+            queue_.push(edge);
     }
 
     void give_up_thin_faces() {
@@ -366,14 +391,8 @@ private:
     }
 
     std::size_t left_short_edges() {
-        queue_all_edges();
-        std::size_t count = 0;
-        Edge last{-1, -1, -1};
-        for (; !queue_.empty(); queue_.pop()) {
-            count += queue_.top() != last;
-            last = queue_.top();
-        }
-        return count;
+        list_all_edges();
+        return edges_.size();
     }
 
     EditableComplex complex_;
@@ -381,6 +400,9 @@ private:
     double tolerance_;
     Progress* progress_;
     std::vector<double> moved_;  // how far what was joined in each vertex has moved
+    std::vector<Edge> edges_;    // each once, in ascending order
+    std::size_t next_edge_ = 0;  // of these
+    std::vector<Edge> fresh_edges_;
     std::priority_queue<Edge, std::vector<Edge>, std::greater<>> queue_;
     Change change_, other_;
     std::vector<std::int32_t> loop_, beside_edge_, kept_cells_;

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {
@@ -48,18 +50,21 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
 
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
                      const Progress* progress) {
-    const auto sides = bucketize<std::int64_t>(cells, [&](const auto& put) {
-        for (std::size_t f = 0; f < face_cells.size(); ++f) {
-            poll(progress, f);
+    constexpr std::size_t kFaces = 8192;  // at a time
+    check_total(face_cells.size(), UINT32_MAX / 2);
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(face_cells.size(), (chunk + 1) * kFaces);
+        for (std::size_t f = chunk * kFaces; f < end; ++f) {
             check_cells(face_cells[f], f, cells);
             for (std::size_t second = 0; second < 2; ++second) {
                 const std::int32_t cell = face_cells[f][second];
-                if (cell >= 0) put(index(cell), static_cast<std::int64_t>(2 * f + second));
+                if (cell >= 0) put(index(cell), static_cast<std::uint32_t>(2 * f + second));
             }
         }
-    });
-    return {{sides.offsets.begin(), sides.offsets.end()},
-            {sides.values.begin(), sides.values.end()}};
+    };
+    auto sides = sorted_in_buckets<std::uint32_t>(cells, (face_cells.size() + kFaces - 1) / kFaces,
+                                                  produce, 0, progress);
+    return {std::move(sides.offsets), std::move(sides.values)};
 }
 
 }  // namespace realmodel::strata

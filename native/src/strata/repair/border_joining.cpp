@@ -14,6 +14,7 @@
 #include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/elementary.hpp"
 #include "spatial/point_bins.hpp"
 #include "strata/limits.hpp"
 
@@ -107,7 +108,7 @@ std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
 std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::PointBins& vertices,
                                          double reach) {
     const PlanPosition &p = edge.first, &q = edge.second;
-    const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
+    const double dx = q[0] - p[0], dy = q[1] - p[1], length = elementary::hypot(dx, dy);
     std::vector<std::pair<double, PlanPosition>> found;
     bool beside = false;
     const spatial::PlanBox box = spatial::box_around(std::array{p, q}).widened(2 * reach);

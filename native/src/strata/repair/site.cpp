@@ -68,7 +68,8 @@ Frame enter_frame(PlanArrangement& geometry) {
     const double extent = std::max({high[0] - low[0], high[1] - low[1], std::abs(high[0]) * 0x1p-30,
                                     std::abs(high[1]) * 0x1p-30, std::abs(low[0]) * 0x1p-30,
                                     std::abs(low[1]) * 0x1p-30, 1e-30});
-    const double step = std::exp2(std::ceil(std::log2(extent)));
+    double step = std::ldexp(1.0, std::ilogb(extent));
+    if (step < extent) step *= 2;
     const auto down = [&](double v) { return (std::floor(v / step) - 1.0) * step; };
     const auto up = [&](double v) { return (std::ceil(v / step) + 1.0) * step; };
     const double x0 = down(low[0]), y0 = down(low[1]), x1 = up(high[0]), y1 = up(high[1]);
@@ -77,7 +78,7 @@ Frame enter_frame(PlanArrangement& geometry) {
     // What fills the frame around long borders would all run to its corners and be near everything
     // there, were there not more vertices along its sides. Halves of halves are exact.
     const double wanted = std::sqrt(static_cast<double>(geometry.point_count())) / 8;
-    const double parts = std::exp2(std::floor(std::log2(std::clamp(wanted, 1.0, 256.0))));
+    const double parts = std::ldexp(1.0, std::ilogb(std::clamp(wanted, 1.0, 256.0)));
     for (double i = 1; i < parts; ++i) {
         const double x = x0 + (x1 - x0) * (i / parts), y = y0 + (y1 - y0) * (i / parts);
         for (const auto& p : {std::array{x, y0}, {x1, y}, {x, y1}, {x0, y}})
@@ -92,6 +93,8 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
     EnteredRock rock;
     rock.first_surface = first_surface;
     rock.rules = input.rules;
+    rock.emptied = input.emptied;
+    if (!rock.emptied.empty()) rock.rules.resize(input.surfaces.size(), Rule::kErosional);
     if (input.base_elevation && !is_within_limits(*input.base_elevation)) {
         throw InputError("not_finite", "the base elevation is not a number or is beyond 1e50",
                          first_surface);

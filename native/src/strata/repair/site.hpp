@@ -17,6 +17,7 @@ struct EnteredRock {
     std::vector<EnteredSurface> surfaces;
     std::vector<SurfacePlan> plans;  ///< of the surfaces
     std::vector<Rule> rules;
+    std::vector<std::size_t> emptied;  ///< surfaces before which all that is there becomes air
     std::optional<std::vector<PlanTriangle>> region;
     std::vector<BorderEdge> region_border;
     FrameTriangles region_filling;  ///< the frame around the region

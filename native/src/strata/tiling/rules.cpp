@@ -135,6 +135,31 @@ SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& old
     return uncovered;
 }
 
+SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, SurfaceTiling other,
+                           int threads, const Progress* progress) {
+    other.index(geometry, threads, progress);
+    const auto found = over_facets(
+        geometry, one, other, threads, progress,
+        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+            const PlaneId plane = one.plane[f];
+            if (!plane.has_value()) {
+                out.add(one.polygons[f], kVoid, -1);
+                return;
+            }
+            const Pieces& pieces = finder.find(one.polygons[f], plane);
+            for (const Piece& piece : pieces.list) {
+                const PlaneId below = other.plane[static_cast<std::size_t>(piece.polygon)];
+                out.add(pieces.outline(piece), piece.side == Side::kNotBelow ? plane : below, -1);
+            }
+        });
+    SurfaceTiling lower;
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
+            append(*chunk, i, lower);
+    }
+    return lower;
+}
+
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
     SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, threads_, progress_);
     raised.index(geometry_, threads_, progress_);

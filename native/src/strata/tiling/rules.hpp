@@ -18,7 +18,7 @@ namespace realmodel::strata {
 ///
 /// `Raising` says how: raise(surface, bound) is the higher of the two where there is a surface,
 /// first(e) a bound that has nothing but e, and cover(bound, e, surface) a bound with e where there
-/// is a surface.
+/// is a surface. One that can empty the rock also has lower(bound, bound), where there are both.
 template <class Raising>
 class RuleReplay {
 public:
@@ -32,10 +32,13 @@ public:
     /// The next surface, oldest first; returns its e_k.
     Tiling add(Tiling surface) {
         const Rule rule = rules_[next_++];
-        const std::optional<Bound>& bound = meaning(rule).cuts ? floor_ : top_;
         raising_.begin(surface);
         std::optional<Tiling> raised;
-        if (bound) raised = raising_.raise(surface, *bound);
+        if (const std::optional<Bound> low = bound_after_emptying(rule)) {
+            raised = raising_.raise(surface, *low);
+        } else if (const auto& bound = meaning(rule).cuts ? floor_ : top_; bound && !is_emptied_) {
+            raised = raising_.raise(surface, *bound);
+        }
         const Tiling& e = raised ? *raised : surface;
         const auto renew = [&](std::optional<Bound>& kept) {
             kept = kept ? raising_.cover(*kept, e, surface) : raising_.first(e);
@@ -48,22 +51,44 @@ public:
         if (!is_needed_later(true)) {
             floor_.reset();
         } else if (meaning(rule).protects) {
-            renew(floor_);
+            if (is_emptied_ && floor_) {  // what is protected may be higher than the rock
+                floor_ = raising_.cover(*floor_, raising_.raise(e, *floor_), surface);
+            } else {
+                renew(floor_);
+            }
         }
         return raised ? std::move(*raised) : std::move(surface);
     }
 
+    /// All that is there becomes air; what is protected stays so. From now on the floor may be
+    /// above the top: then nothing below the top may be cut.
+    void empty() {
+        top_.reset();
+        is_emptied_ = true;
+    }
+
 private:
+    /// What a surface must be raised to once the rock was emptied.
+    std::optional<Bound> bound_after_emptying(Rule rule) {
+        if constexpr (requires { raising_.lower(*top_, *floor_); }) {
+            if (!is_emptied_ || !top_) return std::nullopt;
+            if (!meaning(rule).cuts) return top_;
+            if (floor_) return raising_.lower(*top_, *floor_);
+        }
+        return std::nullopt;
+    }
     /// The floor only matters to surfaces that cut: the top, which bounds the others, is never
-    /// below it.
+    /// below it, but after the rock was emptied.
     bool is_needed_later(bool by_cutting) const {
-        return std::any_of(rules_.begin() + static_cast<std::ptrdiff_t>(next_), rules_.end(),
-                           [&](Rule r) { return meaning(r).cuts == by_cutting; });
+        return std::any_of(
+            rules_.begin() + static_cast<std::ptrdiff_t>(next_), rules_.end(),
+            [&](Rule r) { return meaning(r).cuts == by_cutting || (is_emptied_ && !by_cutting); });
     }
 
     Raising raising_;
     std::vector<Rule> rules_;
     std::size_t next_ = 0;
+    bool is_emptied_ = false;
     std::optional<Bound> top_, floor_;
 };
 
@@ -79,6 +104,10 @@ SurfaceTiling raise_tiling(exact::PlanArrangement& geometry, const SurfaceTiling
 SurfaceTiling uncovered_part(exact::PlanArrangement& geometry, const SurfaceTiling& older,
                              const SurfaceTiling& surface, int threads, const Progress* progress);
 
+/// The lower one of two bounds where there are both.
+SurfaceTiling lower_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
+                           SurfaceTiling other, int threads, const Progress* progress);
+
 /// Rules on whole tilings.
 class TilingRaising {
 public:
@@ -91,6 +120,9 @@ public:
     void begin(const SurfaceTiling&) const {}
     SurfaceTiling raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const;
     SurfaceTiling first(const SurfaceTiling& e) const { return e; }
+    SurfaceTiling lower(const SurfaceTiling& one, const SurfaceTiling& other) const {
+        return lower_tiling(geometry_, one, other, threads_, progress_);
+    }
     SurfaceTiling cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                         const SurfaceTiling& surface) const;
 

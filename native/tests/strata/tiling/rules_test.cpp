@@ -69,6 +69,44 @@ TEST(Rules, APartialSurfaceRaisesTheTopWhereItIs) {
     EXPECT_DOUBLE_EQ(c.volumes[2], 0.75);
 }
 
+/// Volumes where z = x protects, all becomes air, and others come upon a level at -1.
+std::vector<double> upon_emptied(const std::vector<double>& heights, std::vector<Rule> rules) {
+    std::vector<OwnedSurface> surfaces{rising(0, 1), flat(-1, true)};
+    for (const double z : heights)
+        surfaces.push_back(flat(z, surfaces.size() % 2 == 0));
+    StackInput input;
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.rules = {Rule::kBase, Rule::kConformable};
+    input.rules.insert(input.rules.end(), rules.begin(), rules.end());
+    input.emptied = {1};
+    const auto c = build_stack(input, 2, nullptr, CellKind::kColumns);
+    expect_valid(c);
+    EXPECT_EQ(c.volumes[0], 0);
+    EXPECT_EQ(c.volumes[1], 0);
+    return {c.volumes.begin() + 2, c.volumes.end()};
+}
+
+TEST(Rules, WhereRockWasEmptiedWhatWasProtectedIsNotCut) {
+    const auto erosional = [](std::size_t count) {
+        return std::vector<Rule>(count, Rule::kErosional);
+    };
+    const auto filled = upon_emptied({2, 0.5}, erosional(2));
+    EXPECT_DOUBLE_EQ(filled[0], 1.625);
+    EXPECT_DOUBLE_EQ(filled[1], 0);
+    // what was protected is higher than some of what came since
+    const auto low = upon_emptied({0.25, 0.75, 0.5}, erosional(3));
+    EXPECT_DOUBLE_EQ(low[0], 1.25);
+    EXPECT_DOUBLE_EQ(low[1], 0.34375);
+    EXPECT_DOUBLE_EQ(low[2], 0);
+    // a lower one that protects takes nothing from it
+    const auto both =
+        upon_emptied({0.25, 0.75, 0}, {Rule::kBase, Rule::kErosional, Rule::kErosional});
+    EXPECT_DOUBLE_EQ(both[0], 1.25);
+    EXPECT_DOUBLE_EQ(both[1], 0.25);
+    EXPECT_DOUBLE_EQ(both[2], 0);
+}
+
 /// Block k at one plan point by the recurrence of docs/dev/geometry.md.
 std::vector<double> thickness(const std::vector<double>& heights, const std::vector<Rule>& rules) {
     std::vector<double> e, before;

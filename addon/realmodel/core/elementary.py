@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Elementary functions for what reaches a model: the same bytes on every system.
+
+Those of `math` and NumPy are of the C library or of the processor, and differ in the last digit. Arguments
+are numbers or arrays, angles in radians. Raise BuildFailed where the compiled part is missing.
+"""
+
+from __future__ import annotations
+
+from .work import native_module
+
+
+def sin(x):
+    return native_module().sin(x)
+
+
+def cos(x):
+    return native_module().cos(x)
+
+
+def exp(x):
+    return native_module().exp(x)
+
+
+def atan2(y, x):
+    return native_module().atan2(y, x)
+
+
+def hypot(x, y):
+    return native_module().hypot(x, y)

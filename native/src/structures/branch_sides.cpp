@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a fault is divided by one that it ends at.
+#include "structures/branch_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "arrangement/triangle_arrangement.hpp"
+#include "cutting/nearest_side.hpp"
+#include "cutting/triangulate.hpp"
+
+namespace realmodel::structures {
+
+using arrangement::TriangleArrangement;
+using cutting::dot;
+using cutting::polygon_normal;
+using cutting::Position;
+using exact::SpacePointId;
+using spatial::Box;
+
+namespace {
+
+double size_of(const Position& normal) {
+    return std::sqrt(dot(normal, normal));
+}
+
+/// The area of a region, twice, and a place well inside of it: the middle of the largest of its
+/// triangles.
+std::pair<double, Position> measured(const exact::SpacePoints& points,
+                                     const arrangement::Loops<SpacePointId>& loops,
+                                     const Position& normal) {
+    const arrangement::View view(normal);
+    std::vector<Position> corners;
+    std::vector<cutting::Loop> seen;
+    for (const auto& loop : loops) {
+        cutting::Loop& own = seen.emplace_back();
+        for (const SpacePointId p : loop) {
+            own.push_back({static_cast<cutting::NodeId>(corners.size()), view(points.rounded(p))});
+            corners.push_back(points.rounded(p));
+        }
+    }
+    std::vector<std::array<cutting::LoopCorner, 3>> triangles;
+    cutting::triangulate(seen, view.rounding(corners), triangles);
+    double area = 0, largest = -1;
+    Position middle{0, 0, 0};
+    for (const auto& t : triangles) {
+        const std::array at{corners[index(t[0].node)], corners[index(t[1].node)],
+                            corners[index(t[2].node)]};
+        const double size = size_of(polygon_normal(at));
+        area += size;
+        if (size <= largest) continue;
+        largest = size;
+        for (std::size_t k = 0; k < 3; ++k)
+            middle[k] = (at[0][k] + at[1][k] + at[2][k]) / 3;
+    }
+    return {area, middle};
+}
+
+}  // namespace
+
+BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, std::int32_t other) {
+    exact::SpacePoints points;
+    TriangleArrangement arrangement(points);
+    std::vector<std::size_t> triangles;  // of the surface: the branch itself, then the other
+    const auto add = [&](std::int32_t structure, bool with_continuation) {
+        for (std::size_t t = 0; t < surface.structure.size(); ++t) {
+            if (surface.structure[t] != structure ||
+                (surface.is_continuation[t] != 0 && !with_continuation))
+                continue;
+            std::array<SpacePointId, 3> corners;
+            for (std::size_t i = 0; i < 3; ++i)
+                corners[i] =
+                    points.add(surface.surface.vertices[index(surface.surface.triangles[t][i])]);
+            arrangement.add(corners);
+            triangles.push_back(t);
+        }
+    };
+    add(branch, false);
+    const std::size_t own = triangles.size();
+    add(other, true);
+    std::vector<Box> boxes;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        Box& box = boxes.emplace_back();
+        for (const SpacePointId p : arrangement.corners(static_cast<std::int32_t>(t)))
+            box.include(points.rounded(p));
+    }
+    const spatial::BoxTree tree({boxes.begin() + static_cast<std::ptrdiff_t>(own), boxes.end()});
+    BranchSides found;
+    std::vector<TriangleArrangement::Intersection> meetings;
+    for (std::size_t t = 0; t < own; ++t) {
+        std::vector<std::int32_t> near;
+        tree.find(boxes[t], [&near](std::int32_t at) { near.push_back(at); });
+        std::ranges::sort(near);
+        for (const std::int32_t at : near) {
+            const auto with = static_cast<std::int32_t>(own) + at;
+            const auto& corners = arrangement.corners(static_cast<std::int32_t>(t));
+            const auto& others = arrangement.corners(with);
+            const auto met = arrangement.intersection(static_cast<std::int32_t>(t), with);
+            if (surface.is_continuation[triangles[index(with)]] == 0)
+                found.meets = found.meets || met ||
+                              std::ranges::find_first_of(corners, others) != corners.end();
+            if (met) meetings.push_back(*met);
+        }
+    }
+    for (const auto& met : meetings)
+        arrangement.insert(met);
+    arrangement.divide(1, nullptr);
+    const cutting::NearestSide nearest(surface.single[index(other)]);
+    const auto& regions = arrangement.regions();
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        const arrangement::Region region = regions[r];
+        if (index(region.triangle) >= own) continue;
+        std::array<Position, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = points.rounded(arrangement.corners(region.triangle)[i]);
+        const auto [area, middle] = measured(points, region.loops, polygon_normal(corners));
+        (nearest(middle) == cutting::kBelow ? found.below : found.above) += area;
+    }
+    return found;
+}
+
+}  // namespace realmodel::structures

@@ -1,0 +1,48 @@
+GOCAD TSurf 1 
+HEADER {
+*solid*color: #ffa500
+ivolmap: false
+imap: false
+name: Top Chalk
+}
+GOCAD_ORIGINAL_COORDINATE_SYSTEM
+NAME Default
+PROJECTION Unknown
+DATUM Unknown
+AXIS_NAME X Y Z
+AXIS_UNIT m m m
+ZPOSITIVE Elevation
+END_ORIGINAL_COORDINATE_SYSTEM
+GEOLOGICAL_FEATURE Top Chalk
+GEOLOGICAL_TYPE fault
+PROPERTIES val
+NO_DATA_VALUES -99999
+PROPERTY_CLASSES val
+        
+PROPERTY_CLASS_HEADER X {
+kind: X
+unit: m
+}
+PROPERTY_CLASS_HEADER Y {
+kind: Y
+unit: m
+}
+PROPERTY_CLASS_HEADER Z {
+kind: Z
+unit: m
+is_z: on
+}
+PROPERTY_CLASS_HEADER vector3d {
+kind: Length
+unit: m
+}
+TFACE
+VRTX 1 0.5 0.0 1.0 0.0
+VRTX 2 1.5 0.0 2.0 1.0
+VRTX 3 1.5 1.0 3.0 2.0
+VRTX 4 0.5 1.0 4.0 3.0
+VRTX 5 2.5 0.5 0.25 4.0
+TRGL 1 2 3 
+TRGL 1 3 4 
+TRGL 2 5 3 
+END
