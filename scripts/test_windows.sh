@@ -5,6 +5,7 @@
 #
 #   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
+#     digests     what the native part makes of a fixed set of stacks, meshes and interpolations: the same bytes as on Linux
 #     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C
 #     4.5 5.0     tests/blender in this version of Blender
 #
@@ -13,15 +14,15 @@ set -uo pipefail # and not -e: a step that fails does not keep the others from b
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
 results=$windows/results
-all=(files 4.5 5.0)
+all=(digests files 4.5 5.0)
 
 zip="" steps=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
-        files | 4.5 | 5.0) steps+=("$1") ;;
+        digests | files | 4.5 | 5.0) steps+=("$1") ;;
         *)
-            echo "usage: test_windows.sh [--zip FILE] [files|4.5|5.0]..." >&2
+            echo "usage: test_windows.sh [--zip FILE] [digests|files|4.5|5.0]..." >&2
             exit 2
             ;;
     esac
@@ -75,6 +76,21 @@ stage() {
     find "$tree" -name __pycache__ -prune -exec rm -rf {} +
 }
 
+digests() {
+    local preset threads
+    "$root/scripts/windows_tools.sh" tests || return 1
+    for preset in release windows-x64; do
+        (cd "$root" && cmake --preset "$preset" -DREALMODEL_BUILD_TESTS=ON --log-level=WARNING) || return 1
+        cmake --build "$root/build/$preset" --target build_digests -j "$("$root/scripts/build_jobs.sh")" || return 1
+    done
+    for threads in 1 3; do
+        "$root/build/release/native/build_digests" "$threads" >"$results/digests_linux.txt" || return 1
+        windows_run "$root/build/windows-x64/native/build_digests.exe" "$threads" | tr -d '\r' >"$results/digests_windows.txt"
+        diff "$results/digests_linux.txt" "$results/digests_windows.txt" || return 1
+    done
+    echo "$(wc -l <"$results/digests_linux.txt") results, the same bytes with 1 and 3 threads"
+}
+
 files() {
     local made=$results/linux sample
     blender 4.5 || return 1
@@ -112,7 +128,7 @@ stage >"$results/stage.log" 2>&1 || {
 for step in "${steps[@]}"; do
     case $step in
         4.5 | 5.0) run "$step" suite "$step" ;;
-        files) run files files ;;
+        digests | files) run "$step" "$step" ;;
     esac
 done
 ((failed == 0))
