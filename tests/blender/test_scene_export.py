@@ -142,6 +142,17 @@ class SceneExport(PanelCase):
         self.assertEqual({block["picture"] for block in seen.values()}, {None})
         self.assertGreater(seen["S2 block"]["low"][1], seen["S1 block"]["high"][1])  # y is up in glTF
 
+    def test_weathered_blocks_have_a_picture_for_each_material(self):
+        """Grass lies on the ground of the upper block, whose walls are coal."""
+        ops.weathering(strength=0.2, detail=2, grass_slope=0.5, scree_slope=0.0)
+        found = {seen["material"]: seen["picture"] for seen in self.exported("glb").values()}
+        self.assertEqual(sorted(found), ["Coal seam", "Grass", "Grès d'été"])
+        red, green, blue = found["Grass"]["mean"]
+        self.assertGreater(green, 1.2 * max(red, blue))
+        for name, color in (("Grès d'été", SAND), ("Coal seam", COAL)):
+            color = linear_color(hex_color(color))
+            np.testing.assert_allclose(found[name]["mean"], color, rtol=0.35, atol=0.015)
+
     def test_where_it_fails_the_scene_is_as_it_was(self):
         before = inventory()
         path = str(self.folder / "nowhere" / "m.glb")

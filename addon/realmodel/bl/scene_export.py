@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from ..core import InputRefused
 from ..core.atomic import Outputs, writable_target
@@ -51,8 +52,6 @@ def write(context, items, path, size):
     path = writable_target(path)
     ending = path.suffix.lower()
     export = {".glb": _write_gltf, ".obj": _write_obj}.get(ending, _write_usd)
-    if size and any(map(_baked_material, items)) and not versions.cycles_available(context.scene):
-        raise InputRefused("this Blender has no Cycles, which bakes looks", advice="switch Bake Looks off")
     with tempfile.TemporaryDirectory() as place, Outputs() as outputs:
         target = Path(place) / path.name
         with _copies(context, items, target if size else None, size):
@@ -151,25 +150,37 @@ def _copy(current, item, mesh, names):
     return copy
 
 
-def _baked_material(item):
-    """The material of an object where it is a look to bake, or None."""
-    found = item.data.materials
-    material = found[0] if len(found) == 1 else None
-    return material if material is not None and material.get(looks.KEY, "FLAT") != "FLAT" else None
+def _baked_slots(item):
+    """The slots of an object whose material is a look to bake, where polygons have it."""
+    found = np.empty(len(item.data.polygons), np.int32)
+    item.data.polygons.foreach_get("material_index", found)
+    slots = [int(slot) for slot in np.unique(found) if slot < len(item.data.materials)]
+    return [slot for slot in slots if _is_baked(item.data.materials[slot])]
+
+
+def _is_baked(material):
+    return material is not None and material.get(looks.KEY, "FLAT") != "FLAT"
 
 
 def _bake(context, copies, beside, size, names, made):
     """Gives copies materials of their own with pictures of the looks. What was made is appended to `made`."""
     by_material = {}
     for copy in copies:
-        material = _baked_material(copy)
-        if material is not None:
-            by_material.setdefault(material, []).append(copy)
+        for slot in _baked_slots(copy):
+            by_material.setdefault(copy.data.materials[slot], []).append((copy, slot))
     if not by_material:
         return
+    if not versions.cycles_available(context.scene):
+        raise InputRefused("this Blender has no Cycles, which bakes looks", advice="switch Bake Looks off")
+    baked = [copy for copy in copies if _baked_slots(copy)]
+    for copy in baked:
+        uvs = copy.data.uv_layers
+        while len(uvs):
+            uvs.remove(uvs[0])
+        uvs.new(name="UVMap")
     pictures = {}
     for material, users in by_material.items():
-        _unwrap(context.view_layer, users)
+        _unwrap(context, users)
         own = material.copy()
         made.append(own)
         own.name = _take_name(material, names)
@@ -179,9 +190,9 @@ def _bake(context, copies, beside, size, names, made):
         node = own.node_tree.nodes.new("ShaderNodeTexImage")
         node.image = image
         own.node_tree.nodes.active = node
-        for copy in users:
-            copy.data.materials[0] = own
-    _select(context.view_layer, [copy for users in by_material.values() for copy in users])
+        for copy, slot in users:
+            copy.data.materials[slot] = own
+    _select(context.view_layer, baked)
     with _renderer(context.scene):
         bpy.ops.object.bake(
             type="DIFFUSE",
@@ -189,6 +200,7 @@ def _bake(context, copies, beside, size, names, made):
             target="IMAGE_TEXTURES",
             save_mode="INTERNAL",
             margin=max(1, int(size * _GAP / 2)),
+            margin_type="EXTEND",  # what is beside a part may be in another picture
             use_clear=True,
             use_selected_to_active=False,
         )
@@ -200,21 +212,25 @@ def _bake(context, copies, beside, size, names, made):
         looks.show_picture(material, image)
 
 
-def _unwrap(layer, items):
-    """Gives some objects places in one picture that they share."""
-    for item in items:
-        uvs = item.data.uv_layers
-        while len(uvs):
-            uvs.remove(uvs[0])
-        uvs.new(name="UVMap")
-    _select(layer, items)
+def _unwrap(context, users):
+    """Gives the polygons of some slots of objects places in one picture that they share. users: (object,
+    slot)."""
+    settings = context.scene.tool_settings
+    before = tuple(settings.mesh_select_mode)
+    settings.mesh_select_mode = (False, False, True)
+    _select(context.view_layer, [item for item, _ in users])
+    for item, slot in users:
+        polygons = item.data.polygons
+        found = np.empty(len(polygons), np.int32)
+        polygons.foreach_get("material_index", found)
+        polygons.foreach_set("hide", np.zeros(len(polygons), bool))
+        polygons.foreach_set("select", found == slot)
     bpy.ops.object.mode_set(mode="EDIT")
     try:
-        bpy.ops.mesh.reveal(select=False)
-        bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.uv.smart_project(angle_limit=_STEEPEST, island_margin=_GAP)
     finally:
         bpy.ops.object.mode_set(mode="OBJECT")
+        settings.mesh_select_mode = before
 
 
 @contextlib.contextmanager
