@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -45,16 +46,26 @@ struct MemoryGivenBack {
     ~MemoryGivenBack() { give_back_memory(); }
 };
 
-py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
-                           int threads, Progress* control,
-                           const std::vector<std::vector<std::size_t>>& emptied) {
-    if (cells != "columns" && cells != "blocks") {
-        throw py::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
-    }
+std::vector<strata::StackInput> views_of(const std::vector<RockArrays>& rocks) {
     std::vector<strata::StackInput> input;
     for (const RockArrays& rock : rocks)
         input.push_back(view_of(rock));
-    if (!emptied.empty() && (emptied.size() != rocks.size() || cells != "columns"))
+    return input;
+}
+
+CellKind kind_of(const std::string& cells) {
+    if (cells != "columns" && cells != "blocks") {
+        throw py::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
+    }
+    return cells == "blocks" ? CellKind::kBlocks : CellKind::kColumns;
+}
+
+py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
+                           int threads, Progress* control,
+                           const std::vector<std::vector<std::size_t>>& emptied) {
+    const CellKind kind = kind_of(cells);
+    auto input = views_of(rocks);
+    if (!emptied.empty() && (emptied.size() != rocks.size() || kind != CellKind::kColumns))
         throw py::value_error("emptied: one for each rock mass, of columns alone");
     for (std::size_t r = 0; r < emptied.size(); ++r) {
         input[r].emptied = emptied[r];
@@ -66,11 +77,49 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(
-            input, threads, control,
-            cells == "blocks" ? strata::CellKind::kBlocks : strata::CellKind::kColumns);
+        complex = strata::build_rock_masses(input, threads, control, kind);
     }
     return to_dict(std::move(complex));
+}
+
+py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<double, 4>& window,
+                    const std::string& cells, int threads, Progress* control) {
+    const CellKind kind = kind_of(cells);
+    const auto input = views_of(rocks);
+    CellComplex complex;
+    {
+        const py::gil_scoped_release release;
+        const MemoryGivenBack at_the_end;
+        complex = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
+                                     control, kind);
+    }
+    return to_dict(std::move(complex));
+}
+
+py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
+    const auto input = views_of(rocks);
+    strata::JoinedInput joined;
+    {
+        const py::gil_scoped_release release;
+        joined = strata::join_rock_masses(input, threads, control);
+    }
+    if (!joined.warning) return py::none();
+    std::size_t next = 0;
+    const auto mesh = [&](std::size_t columns) {
+        auto& m = joined.meshes[next++];
+        return py::make_tuple(to_array(std::move(m.vertices), columns),
+                              to_array(std::move(m.triangles), 3));
+    };
+    py::list result;
+    for (const auto& [surfaces, region, base_elevation, rules] : rocks) {
+        py::list meshes;
+        for (std::size_t k = 0; k < surfaces.size(); ++k)
+            meshes.append(mesh(3));
+        py::object in_plan = py::none();
+        if (region) in_plan = mesh(2);
+        result.append(py::make_tuple(meshes, in_plan, base_elevation, rules));
+    }
+    return py::make_tuple(result, joined.warning->text);
 }
 
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
@@ -121,6 +170,17 @@ float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,
 surface, items, text); decisions, exact_decisions: int. Raises InputError and Cancelled.)");
+    module.def("build_tile", &build_tile, py::arg("rocks"), py::arg("window"),
+               py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(build_rock_masses of what lies in a window (low x, low y, high x, high y).
+
+Borders are taken as they are: join_rock_masses is to be called before, with all of the model.)");
+    module.def("join_rock_masses", &join_rock_masses, py::arg("rocks"), py::arg("threads") = 0,
+               py::arg("control") = nullptr,
+               R"(What build_rock_masses does to its input before it builds.
+
+Returns None where that is nothing; else (rocks as they were given, with new arrays, and the text of
+the warning). Triangles that are not divided keep their numbers. Raises InputError and Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
                py::arg("threads") = 0, py::arg("control") = nullptr,

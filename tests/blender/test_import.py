@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl import data_objects, library_rows, notices, origin, project_settings
+from realmodel.bl.display import shown_models
 from realmodel.core.build_warning import BuildWarning
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
@@ -66,6 +67,18 @@ class Files(Imported):
         self.refused(ops.surface_add, r"bad\.csv:2", directory=str(self.folder), files=files)
         self.assertEqual((len(self.model.rocks), len(self.model.library)), (0, 0))
         self.assertEqual(self.clouds(), {})
+
+    def test_a_mesh_is_one_whatever_its_name(self):
+        head = "GOCAD TSurf 1\nHEADER {\nname:a\n}\nTFACE\n"
+        for name, height in (("low.txt", 0), ("high.dat", 5)):
+            corners = enumerate([(0, 0), (9, 0), (9, 9), (0, 9)], 1)
+            rows = "".join(f"VRTX {k} {x} {y} {height}\n" for k, (x, y) in corners)
+            (self.folder / name).write_text(f"{head}{rows}TRGL 1 2 3\nTRGL 1 3 4\nEND\n")
+        files = [{"name": "low.txt"}, {"name": "high.dat"}]
+        ops.surface_add(directory=str(self.folder), files=files)
+        self.assertEqual([s.source for s in self.model.rocks[0].surfaces], ["MESH_FILE", "MESH_FILE"])
+        ops.build()
+        self.assertAlmostEqual(shown_models.whole(self.scene).blocks[0].volume, 9 * 9 * 5)
 
     def test_one_surface_for_each_horizon(self):
         path = self.horizons()

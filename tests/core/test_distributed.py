@@ -144,7 +144,7 @@ def test_the_command_line(client, tmp_path):
     ("arguments", "said"),
     [
         (["--ensemble", 3], "--ensemble needs --out"),
-        (["--out", "e"], "--out goes with --ensemble"),
+        (["--out", "e"], "--out goes with --ensemble or --tiles"),
         (["--ensemble", 3, "--out", "e", "--export", "m.npz"], "--ensemble goes without --export"),
         (["--ensemble", 3, "--out", "e", "--correlation", 2], "from -1 to 1"),
         (["--ensemble", 0, "--out", "e"], "at least one realization"),

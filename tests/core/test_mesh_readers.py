@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, MeshFile, Project, Rock, Surface, build
-from realmodel.core.readers import read_mesh
+from realmodel.core.readers import is_mesh_file, read_mesh
 
 WHY = "is not installed: scripts/test.sh installs it"
 VERTICES = np.array([[0.5, 0, 1], [1.5, 0, 2], [1.5, 1, 3], [0.5, 1, 4], [2.5, 0.5, 0.25]])
@@ -244,6 +244,8 @@ def test_tsurf_of_loopstructural():
     ],
 )
 def test_what_a_mesh_is_is_told_from_its_content(write, name, content):
+    assert is_mesh_file(write(f"{name}.txt", content))
+    assert not is_mesh_file(write("p.txt", "x y z\n0 0 1\n1 0 1\n"))
     assert len(read_mesh(write(f"{name}.txt", content)).triangles) == 1
 
 

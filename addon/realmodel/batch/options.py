@@ -120,7 +120,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         type=_whole,
         help="build N realizations on several processes by Dask, and write their volumes to the folder --out",
     )
-    parser.add_argument("--out", metavar="FOLDER", type=Path, help="the folder of --ensemble")
+    parser.add_argument(
+        "--tiles",
+        metavar="W,H",
+        type=_tile_size,
+        help="build the model in tiles of this width and height by Dask, and write it to the folder --out",
+    )
+    parser.add_argument("--out", metavar="FOLDER", type=Path, help="the folder of --ensemble or --tiles")
     parser.add_argument("--seed", metavar="S", type=_whole, help="of the random numbers (default: 0)")
     parser.add_argument(
         "--correlation",
@@ -205,21 +211,33 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
     outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut", "--mesh")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
-    of_ensemble = ("out", "seed", "correlation", "scheduler")
-    if options.ensemble is None:
-        for name in of_ensemble:
-            if getattr(options, name) is not None:
-                parser.error(f"--{name} goes with --ensemble")
-    elif options.out is None:
-        parser.error("--ensemble needs --out FOLDER")
-    elif IN_BLENDER:
-        parser.error("--ensemble needs plain Python; run it as: python3 build_model.py PROJECT ...")
-    elif others := _set_beside(parser, options, {"ensemble", *of_ensemble, "quiet"}):
-        parser.error(f"--ensemble goes without {', '.join(others)}")
+    _check_dask(parser, options)
     of_mesh = ("edge", "thickness", "layers", "layer_thickness", "elements")
     for name in of_mesh:
         if getattr(options, f"mesh_{name}") is not None and options.mesh is None:
             parser.error(f"--mesh-{name.replace('_', '-')} goes with --mesh")
+
+
+_OF_DASK = {
+    "ensemble": ("out", "scheduler", "seed", "correlation"),
+    "tiles": ("out", "scheduler", "cells"),
+}
+
+
+def _check_dask(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
+    """The options of what Dask does, --ensemble and --tiles."""
+    asked = [name for name in _OF_DASK if getattr(options, name) is not None]
+    for name in dict.fromkeys(name for names in _OF_DASK.values() for name in names if name != "cells"):
+        takes = [f"--{option}" for option, names in _OF_DASK.items() if name in names]
+        if getattr(options, name) is not None and not any(f"--{option}" in takes for option in asked):
+            parser.error(f"--{name} goes with {' or '.join(takes)}")
+    for name in asked:
+        if options.out is None:
+            parser.error(f"--{name} needs --out FOLDER")
+        if IN_BLENDER:
+            parser.error(f"--{name} needs plain Python; run it as: python3 build_model.py PROJECT ...")
+        if others := _set_beside(parser, options, {name, *_OF_DASK[name], "quiet"}):
+            parser.error(f"--{name} goes without {', '.join(others)}")
 
 
 def _set_beside(parser: argparse.ArgumentParser, options: argparse.Namespace, names: set[str]) -> list[str]:
@@ -255,6 +273,14 @@ def _sizes(text: str) -> list[float]:
     if len(words) > 3:
         raise argparse.ArgumentTypeError(f"'{text}' is not one to three numbers above 0")
     return [_number(word, lambda value: 0.0 < value < 1e300, "a number above 0") for word in words]
+
+
+def _tile_size(text: str) -> list[float]:
+    what = "two lengths above 0"
+    sizes = [_number(word, lambda value: 0.0 < value < math.inf, what) for word in text.split(",")]
+    if len(sizes) != 2:
+        raise argparse.ArgumentTypeError(f"'{text}' is not {what}: W,H")
+    return sizes
 
 
 def _number(text: str, is_valid, what: str) -> float:

@@ -27,7 +27,7 @@ from ..core.simulation.mesh_request import MeshRequest, cleaned_line
 from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from .cuts import CutRequest, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
-from .table import ensemble_table, surface_table, volume_table
+from .table import ensemble_table, surface_table, tiles_table, volume_table
 from .terminal import TerminalProgress
 
 
@@ -47,6 +47,9 @@ def run(options: argparse.Namespace) -> None:
         return
     if options.ensemble is not None:
         _ensemble(options, project, progress)
+        return
+    if options.tiles is not None:
+        _tiles(options, project, progress)
         return
     with Outputs(project.input_files()) as outputs, Interruptible(outputs):
         try:
@@ -120,12 +123,34 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
         print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
 
 
-def _ensemble(options: argparse.Namespace, project, progress) -> None:
-    from ..distributed import ensemble
+@contextlib.contextmanager
+def _client(options: argparse.Namespace, progress):
+    """The client that --scheduler asks for, or None."""
     from ..distributed.workers import connected
 
     client = None if options.scheduler is None else connected(options.scheduler)
     try:
+        yield client
+    finally:
+        progress.close()
+        if client is not None:
+            client.close()
+
+
+def _tiles(options: argparse.Namespace, project, progress) -> None:
+    from ..distributed import build as build_tiles
+
+    with _client(options, progress) as client:
+        found = build_tiles(
+            project, options.out, options.tiles, client, cells=options.cells, progress=progress
+        )
+    _print(options, found.warnings, [tiles_table(found)])
+
+
+def _ensemble(options: argparse.Namespace, project, progress) -> None:
+    from ..distributed import ensemble
+
+    with _client(options, progress) as client:
         found = ensemble(
             project,
             options.ensemble,
@@ -135,10 +160,6 @@ def _ensemble(options: argparse.Namespace, project, progress) -> None:
             correlation=options.correlation or 0.0,
             progress=progress,
         )
-    finally:
-        progress.close()
-        if client is not None:
-            client.close()
     _print(options, found.model.warnings, [ensemble_table(found)])
 
 

@@ -131,6 +131,35 @@ def ensemble_table(ensemble) -> str:
     return "\n".join([_line(headings, widths), rule, *(_line(row, widths) for row in rows)])
 
 
+_HEADINGS_OF_TILES = ("block", "property", "rock", "volume", "share", "cells", "components")
+
+
+def tiles_table(model) -> str:
+    """A line for each block of a model in tiles, youngest first, and the sum; then the tiles."""
+    rows = [
+        [
+            block.name,
+            _property(model.project.library, block),
+            model.project.rocks[block.rock].name,
+            _figure(block.volume),
+            _share(block.volume, model.volume),
+            f"{block.cells}",
+            f"{block.components}",
+        ]
+        for block in reversed(model.blocks)
+    ]
+    counts = [f"{sum(getattr(block, name) for block in model.blocks)}" for name in ("cells", "components")]
+    sums = ["total", "", "", _figure(model.volume), _share(model.volume, model.volume), *counts]
+    widths = [max(len(row[i]) for row in (_HEADINGS_OF_TILES, *rows, sums)) for i in range(len(sums))]
+    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
+    lines = [_line(_HEADINGS_OF_TILES, widths), rule, *(_line(row, widths) for row in rows), rule]
+    told = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
+    told += "equal on both sides"
+    if model.rounded or model.unequal:
+        told += f" but for {model.rounded} up to rounding and {model.unequal} beyond it"
+    return "\n".join([*lines, _line(sums, widths), told])
+
+
 def _property(library, block) -> str:
     entry = library.get(block.property) if library else None
     return entry.name if entry else str(block.property) if block.property else "none"

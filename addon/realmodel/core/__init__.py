@@ -32,6 +32,7 @@ from .section import Fence, Section
 from .simulation import SimulationMesh
 from .structures.entries import Body, Fault
 from .surface_set import SurfaceSet, build_surfaces
+from .tiles import Tile, TiledModel, open_tiles
 from .validation import ValidationReport
 from .variogram import Structure, Variogram
 
@@ -69,6 +70,8 @@ __all__ = [
     "Structure",
     "Surface",
     "SurfaceSet",
+    "Tile",
+    "TiledModel",
     "UsageError",
     "ValidationReport",
     "Variogram",
@@ -82,5 +85,6 @@ __all__ = [
     "load_library",
     "load_project",
     "mesh_region",
+    "open_tiles",
     "triangulate_polygon",
 ]

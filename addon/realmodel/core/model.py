@@ -22,6 +22,7 @@ from .exporters import save_model
 from .exporters.surfaces import save_surfaces
 from .geological_map import geological_map
 from .heights import Interpolation
+from .model_boreholes import borehole
 from .project import Project
 from .rock_input import RockInput
 from .simulation import cleaned_cells, simulation_mesh
@@ -198,6 +199,7 @@ class Model:
     cut_by_block = cutting.cut_by_block
     section = cutting.section
     fence = cutting.fence
+    borehole = borehole
 
     @cached_property
     def face_blocks(self) -> np.ndarray:

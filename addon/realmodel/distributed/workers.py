@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import contextlib
 import os
 import time
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ..core import Cancelled, UsageError
 
 _POLL_SECONDS = 0.2
-_RETRIES = 3  # of a task whose worker was lost
+_LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
 
 
 def connected(address: str):
@@ -46,9 +47,7 @@ def in_any_order(client, function: Callable, shared, tasks: Sequence, cancel=Non
     """
     distributed = _distributed()
     everywhere = client.scatter(shared, broadcast=True, hash=False)
-    waiting = {
-        client.submit(function, everywhere, task, pure=False, retries=_RETRIES): task for task in tasks
-    }
+    waiting = {client.submit(function, everywhere, task, pure=False): task for task in tasks}
     try:
         while waiting:
             if cancel is not None and cancel():
@@ -67,7 +66,12 @@ def _result(distributed, future):
     try:
         return future.result()
     except distributed.KilledWorker as error:
-        text = f"workers were lost {_RETRIES + 1} times at the same task: they may lack memory"
+        text = f"workers were lost {_LOST} times at the same task: they may lack memory"
+        raise UsageError(text) from error
+    except (concurrent.futures.CancelledError, distributed.client.FutureCancelledError, OSError) as error:
+        if isinstance(error, OSError) and future.status == "error":
+            raise
+        text = "the scheduler or its workers went away; start again: what is done stays"
         raise UsageError(text) from error
 
 

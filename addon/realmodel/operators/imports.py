@@ -30,6 +30,7 @@ from ..core.readers import (
     MESH_ENDINGS,
     RASTER_ENDINGS,
     TABLE_ENDINGS,
+    is_mesh_file,
     preview_table,
     read_mesh,
     read_point_file,
@@ -187,7 +188,8 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         for path in self._paths():
             if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
                 with contextlib.suppress(InputRefused):  # what is no table of text says so when it is read
-                    yield preview_table(path)
+                    if not is_mesh_file(path):
+                        yield preview_table(path)
 
     def _given(self, context):
         """The surfaces to add, the lowest first, and what to tell about them. Raises InputRefused."""
@@ -215,7 +217,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
         require_file(path)
-        if path.suffix.lower() in MESH_ENDINGS:
+        if is_mesh_file(path):
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}
         if self.columns.strip() and path.suffix.lower() in TABLE_ENDINGS:

@@ -11,7 +11,7 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
 from ..core import InputRefused, MeshFile
 from ..core.point_file import PointFile
-from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, read_mesh
+from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.structures.triangles import open_edges
 from .reporting import (
@@ -181,7 +181,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
     def _looked_at(self, path, units):
         """(kind, source, path, vertices or points) of a file. Raises InputRefused."""
         require_file(path)
-        if path.suffix.lower() not in MESH_ENDINGS:
+        if not is_mesh_file(path):
             if self.kind == "BODY":
                 raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
             points, _ = read_fault_points(PointFile(path), None, units)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -12,7 +13,9 @@
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
+#include "simulation/column_fronts.hpp"
 #include "simulation/column_heights.hpp"
+#include "simulation/element_quality.hpp"
 #include "simulation/narrow_strips.hpp"
 #include "simulation/plan_topology.hpp"
 #include "simulation/post_columns.hpp"
@@ -23,17 +26,16 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
-constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
-constexpr double kSteepFace = 0.5;           ///< cosine: of 60 degrees
-constexpr double kNoDeterminant = 1e-8;      ///< inner faces in two directions only
-constexpr double kThickEnd = 3;  ///< minimum thicknesses: no block gives up an end as thick
 constexpr int kRepairs = 30;
-constexpr double kEasedFace = 0.8;  ///< cosine: flatter faces are not what makes lines lean
-constexpr double kEasedShare = 0.1;
 constexpr int kEasings = 40;
+constexpr int kVainMoves = 10;         ///< rounds of moving that leave no less than the best
+constexpr int kVainRepairs = 40;       ///< and with those that only give up
+constexpr double kMostFailing = 0.01;  ///< heights given up, a share of elements
+constexpr double kMostMended = 0.002;  ///< how much blocks may change for that, of all volumes
+constexpr double kFarthest = 8;  ///< minimum thicknesses: how far heights move at what still fails
 
-using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
+/// What is mended: thin ends of layers, then steep faces, then what checkMesh would fail.
+enum class Stage { kWeak, kSteep, kFailing, kDone };
 
 /// Fills the columns of all triangles from the bottom up. A front, one height at each corner, moves
 /// up step by step; what lies between two fronts is an element. All three corners move by one
@@ -41,44 +43,19 @@ using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a
 class ColumnFiller {
 public:
     ColumnFiller(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
-                 const PostLevels& levels, double minimum_thickness, LayeredMesh& mesh)
+                 const PostLevels& levels, LayeredMesh& mesh, const Progress* progress)
         : plan_(plan),
           blocks_(blocks),
           columns_(columns),
           levels_(levels),
-          minimum_thickness_(minimum_thickness),
           mesh_(mesh),
-          elements_(plan.triangles(), 0),
           is_parted_(levels.level_count(), 0) {
         find_parted();
-    }
-
-    /// @return whether anything stands on the triangle
-    bool fill(std::size_t t) {
-        if (!load(t)) return false;
-        const auto layer_blocks = levels_.layer_blocks(rock_);
-        for (std::size_t i = 0; i < 3; ++i)
-            front_[i] = own_[i][0];
-        last_block_ = -1;
-        fronts_.assign(1, front_);
-        front_blocks_.clear();
-        for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
-            block_ = layer_blocks[l];
-            layer_ = static_cast<std::int32_t>(l);
-            const Front top{own_[0][l + 1], own_[1][l + 1], own_[2][l + 1]};
-            if (top == front_) continue;
-            Front parted = front_;
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (is_parted_[levels_.level_offset(post_[i]) + l] != 0) parted[i] = top[i];
-            }
-            if (has_step_ && parted != front_) pass_lines(parted);
-            move(parted);
-            move(top);
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            poll(progress, t);
+            fill(t);
+            made_.offset.push_back(made_.fronts.size());
         }
-        if (last_block_ >= 0) add_flat_face(-1);
-        elements_[t] = static_cast<std::int32_t>(fronts_.size()) - 1;
-        find_weak();
-        return true;
     }
 
     /// Faces on steps that only one side has belong to the outside; those that both have are told
@@ -104,59 +81,31 @@ public:
             add_side(face->corners, face->surface);
     }
 
-    /// Of each steep face that the line between the centers of its elements crosses at too small an
-    /// angle: by how much its corners would move to make it less steep. @pre fill(t) was the last
-    void find_steep(std::vector<PostLevels::Move>& moves) const {
-        for (std::size_t e = 0; e + 2 < fronts_.size(); ++e) {
-            if (!leans_at(e, kEasedFace, true)) continue;
-            const Front& face = fronts_[e + 1];
-            double mean = 0;
-            for (std::size_t i = 0; i < 3; ++i)
-                mean += position(i, face[i])[2] / 3;
-            for (std::size_t i = 0; i < 3; ++i)
-                moves.push_back(
-                    {node_[i], face[i], kEasedShare * (mean - position(i, face[i])[2])});
-        }
-    }
-
-    /// How many elements each column has.
-    std::span<const std::int32_t> elements() const { return elements_; }
-
-    /// Heights to give up, so that no element is left that solvers call under-determined.
-    /// @param is_narrow  narrow_strips()
-    std::vector<PostLevels::Removal>& weak(std::span<const std::uint8_t> is_narrow) {
-        for (const auto& [t, removal] : weak_alone_) {
-            if (is_narrow[t] != 0) weak_.push_back(removal);
-        }
-        if (weak_.empty()) add_spare();
-        return weak_;
-    }
+    const ColumnFronts& columns() const { return made_; }
 
 private:
-    /// Heights of weak_last_ as long as no column around them has less than two elements then: one
-    /// alone in its column would have no neighbor above, which is worse.
-    void add_spare() {
-        if (weak_last_.empty()) return;
-        const auto around = bucketize<std::int32_t>(plan_.nodes(), [&](const auto& put) {
-            for (std::size_t t = 0; t < plan_.triangles(); ++t) {
-                for (const std::int32_t n : plan_.mesh().triangles[t])
-                    put(index(n), static_cast<std::int32_t>(t));
+    void fill(std::size_t t) {
+        if (!load(t)) return;
+        const auto layer_blocks = levels_.layer_blocks(rock_);
+        for (std::size_t i = 0; i < 3; ++i)
+            front_[i] = own_[i][0];
+        last_block_ = -1;
+        made_.fronts.push_back(front_);
+        for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
+            block_ = layer_blocks[l];
+            layer_ = static_cast<std::int32_t>(l);
+            const Front top{own_[0][l + 1], own_[1][l + 1], own_[2][l + 1]};
+            if (top == front_) continue;
+            Front parted = front_;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (is_parted_[levels_.level_offset(post_[i]) + l] != 0) parted[i] = top[i];
             }
-        });
-        std::sort(weak_last_.begin(), weak_last_.end());
-        std::int32_t done = -1;
-        for (const PostLevels::Removal& removal : weak_last_) {
-            const auto triangles = around[index(removal.node)];
-            if (removal.node == done ||
-                std::any_of(triangles.begin(), triangles.end(), [&](std::int32_t t) {
-                    return elements_[index(t)] == 1 || elements_[index(t)] == 2;
-                }))
-                continue;
-            done = removal.node;
-            for (const std::int32_t t : triangles)
-                --elements_[index(t)];
-            weak_.push_back(removal);
+            if (has_step_ && parted != front_) pass_lines(parted);
+            move(parted);
+            move(top);
         }
+        made_.blocks.push_back(-1);
+        if (last_block_ >= 0) add_flat_face(-1);
     }
 
     struct SideFace {
@@ -338,164 +287,13 @@ private:
             }
         }
         front_ = to;
-        fronts_.push_back(to);
-        front_blocks_.push_back(block_);
-    }
-
-    /// The elements of a column that solvers do badly with, as OpenFOAM's checkMesh measures it:
-    /// inner faces in too few directions to compute a gradient with (its cell determinant), or a
-    /// line to the center of the next element that hardly crosses the face between the two. These
-    /// are thin ends of layers. Their upright edges are given up.
-    void find_weak() {
-        const bool at_border =
-            plan_.neighbor(t_, 0) < 0 || plan_.neighbor(t_, 1) < 0 || plan_.neighbor(t_, 2) < 0;
-        const std::size_t count = fronts_.size() - 1;
-        for (std::size_t e = 0; e < count; ++e) {
-            const bool is_first = e == 0, is_last = e + 1 == count;
-            const Front &low = fronts_[e], &high = fronts_[e + 1];
-            if (moved_corners(e) == 3) {
-                // a prism may become one with the next layer of its block, no more
-                if (!at_border && !is_first && !is_last) continue;
-                if (is_first == is_last || count < 3 ||
-                    front_blocks_[e] != front_blocks_[is_first ? e + 1 : e - 1])
-                    continue;
-            }
-            const double independence = determinant(low, high, is_first, is_last);
-            const bool is_weak = independence < kWeakDeterminant,
-                       leans = moved_corners(e) < 3 &&
-                               ((!is_first && leans_at(e - 1, kSteepFace, false)) ||
-                                (!is_last && leans_at(e, kSteepFace, false)));
-            if (!is_weak && !leans) continue;
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (low[i] == high[i]) continue;
-                const bool upper = is_first && !is_last;  // which of its heights goes
-                const std::int32_t gone = upper ? high[i] : low[i];
-                const double rise = position(i, high[i])[2] - position(i, low[i])[2];
-                // one alone in its column would only make its neighbor the end
-                if ((independence > kNoDeterminant || (is_first && is_last)) &&
-                    divides_blocks(i, gone) && rise >= kThickEnd * minimum_thickness_)
-                    continue;
-                const PostLevels::Removal removal{node_[i], gone, upper ? low[i] : high[i]};
-                if (is_first && is_last)
-                    weak_alone_.emplace_back(t_, removal);
-                else if (!is_weak && own_[i].back() - own_[i].front() == 2)
-                    weak_last_.push_back(removal);
-                else
-                    weak_.push_back(removal);
-            }
-        }
-    }
-
-    /// Whether a height is not just one between layers of one block: without it a block would lose
-    /// volume.
-    bool divides_blocks(std::size_t corner, std::int32_t height) const {
-        const auto own = own_[corner];
-        const auto blocks = levels_.layer_blocks(rock_);
-        std::int32_t below = -1, above = -1;
-        for (std::size_t l = 0; l + 1 < own.size(); ++l) {
-            if (own[l] == own[l + 1]) continue;
-            if (own[l + 1] == height) below = blocks[l];
-            if (own[l] == height) above = blocks[l];
-        }
-        return below != above;
-    }
-
-    std::size_t moved_corners(std::size_t e) const {
-        std::size_t moved = 0;
-        for (std::size_t i = 0; i < 3; ++i)
-            moved += fronts_[e][i] != fronts_[e + 1][i];
-        return moved;
-    }
-
-    /// Whether the line between the centers of an element and the next one leans by more than
-    /// kMostLean from the direction across the face between them. Asked of faces that are steeper,
-    /// or flatter, than an angle of this cosine.
-    bool leans_at(std::size_t e, double cosine, bool steeper) const {
-        const auto below = center(e), above = center(e + 1), area = flat_area(fronts_[e + 1]);
-        double dot = 0, line = 0, across = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            dot += (above[k] - below[k]) * area[k];
-            line += (above[k] - below[k]) * (above[k] - below[k]);
-            across += area[k] * area[k];
-        }
-        if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
-        return dot < kMostLean * std::sqrt(line * across);
-    }
-
-    /// The center of an element's volume: its upright edges weigh as they are long.
-    std::array<double, 3> center(std::size_t e) const {
-        const Front &low = fronts_[e], &high = fronts_[e + 1];
-        std::array<std::array<double, 3>, 3> from;
-        std::array<double, 3> rise;
-        double total = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            from[i] = position(i, low[i]);
-            rise[i] = position(i, high[i])[2] - from[i][2];
-            total += rise[i];
-        }
-        // integrals over a triangle of two linear functions: 1/12 of their products at different
-        // corners, 1/6 at the same
-        std::array<double, 3> made{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
-                made[0] += weight * from[i][0];
-                made[1] += weight * from[i][1];
-                made[2] += weight * (from[i][2] + rise[i] / 2);
-            }
-        }
-        return made;
-    }
-
-    std::array<double, 3> flat_area(const Front& front) const {
-        const auto a = position(0, front[0]), b = position(1, front[1]), c = position(2, front[2]);
-        std::array<double, 3> u, v;
-        for (std::size_t k = 0; k < 3; ++k) {
-            u[k] = b[k] - a[k];
-            v[k] = c[k] - a[k];
-        }
-        return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
-                (u[0] * v[1] - u[1] * v[0]) / 2};
+        made_.fronts.push_back(to);
+        made_.blocks.push_back(block_);
     }
 
     std::array<double, 3> position(std::size_t corner, std::int32_t at) const {
         const PlanPoint& p = plan_.mesh().vertices[index(node_[corner])];
         return {p[0], p[1], levels_.heights(node_[corner])[index(at)]};
-    }
-
-    double determinant(const Front& low, const Front& high, bool is_first, bool is_last) const {
-        std::array<std::array<double, 3>, 5> areas;
-        std::size_t count = 0;
-        const auto add_flat = [&](const Front& front) { areas[count++] = flat_area(front); };
-        if (!is_first) add_flat(low);
-        if (!is_last) add_flat(high);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            if (plan_.neighbor(t_, i) < 0 || (low[i] == high[i] && low[j] == high[j])) continue;
-            const auto a = position(i, low[i]), b = position(j, low[j]);
-            const double rise =
-                (position(i, high[i])[2] - a[2] + position(j, high[j])[2] - b[2]) / 2;
-            areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
-        }
-        double mean = 0;
-        for (std::size_t f = 0; f < count; ++f)
-            mean += std::sqrt(areas[f][0] * areas[f][0] + areas[f][1] * areas[f][1] +
-                              areas[f][2] * areas[f][2]);
-        if (!(mean > 0)) return 0;
-        mean /= static_cast<double>(count);
-        double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-        for (std::size_t f = 0; f < count; ++f) {
-            const double x = areas[f][0] / mean, y = areas[f][1] / mean, z = areas[f][2] / mean;
-            xx += x * x;
-            xy += x * y;
-            xz += x * z;
-            yy += y * y;
-            yz += y * z;
-            zz += z * z;
-        }
-        return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
-                        xz * (xy * yz - yy * xz)) /
-               8;
     }
 
     template <std::size_t N>
@@ -555,7 +353,6 @@ private:
     const RockBlocks& blocks_;
     const ColumnHeights& columns_;
     const PostLevels& levels_;
-    const double minimum_thickness_;
     LayeredMesh& mesh_;
 
     std::size_t t_ = 0;
@@ -564,11 +361,7 @@ private:
     std::array<std::int32_t, 3> node_{};
     std::array<std::span<const std::int32_t>, 3> own_;
     Front front_{};
-    std::vector<Front> fronts_;               ///< of the column, upward
-    std::vector<std::int32_t> front_blocks_;  ///< of what lies above each
-    std::vector<PostLevels::Removal> weak_, weak_last_;
-    std::vector<std::pair<std::size_t, PostLevels::Removal>> weak_alone_;  ///< with their triangles
-    std::vector<std::int32_t> elements_;                                   ///< of each column
+    ColumnFronts made_;
     bool has_step_ = false;
     std::array<std::size_t, 2> step_{};
     std::vector<std::array<std::int32_t, 2>> lines_;
@@ -577,34 +370,29 @@ private:
 };
 
 /// Faces that are steep, so that the centers of neighbors lie far from the direction across them,
-/// are made less steep, by moves of less than the minimum thickness. @return whether there were any
-bool ease_steep(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
-                double minimum_thickness, PostLevels& levels, Progress* progress) {
-    const PostLevels before = levels;
-    std::vector<std::uint8_t> is_moved(plan.nodes(), 1), has_flat_base(plan.nodes(), 0);
+/// are made less steep: at first all heights of a node move, then each for itself.
+/// @param reach  minimum thicknesses: how far heights move at most  @return whether any did
+bool ease_steep(const PlanTopology& plan, const ColumnHeights& columns,
+                const ElementQuality& quality, double minimum_thickness, double reach,
+                PostLevels& levels) {
+    std::vector<std::uint8_t> is_moved, has_flat_base(plan.nodes(), 0);
     for (std::size_t p = 0; p < plan.post_count(); ++p) {
         if (columns.rock(p) >= 0 && columns.surfaces(p)[0] == kBase)
             has_flat_base[index(plan.post_node(p))] = 1;
     }
-    LayeredMesh scratch;
-    for (int round = 0; round < kEasings; ++round) {
-        std::vector<PostLevels::Move> moves;
-        scratch = {};
-        scratch.volumes.assign(blocks.rock.size(), 0);
-        ColumnFiller filler(plan, blocks, columns, levels, minimum_thickness, scratch);
-        for (std::size_t t = 0; t < plan.triangles(); ++t) {
-            const auto& nodes = plan.mesh().triangles[t];
-            poll(progress, t);
-            if (std::none_of(nodes.begin(), nodes.end(),
-                             [&](std::int32_t n) { return is_moved[index(n)] != 0; }))
-                continue;
-            if (filler.fill(t)) filler.find_steep(moves);
+    bool any = false;
+    for (const bool alone : {false, true}) {
+        is_moved.assign(plan.nodes(), 1);
+        for (int round = 0; round < kEasings; ++round) {
+            const auto moves = quality.steep(is_moved);
+            is_moved.assign(plan.nodes(), 0);
+            if (!levels.ease(moves, reach * minimum_thickness, minimum_thickness, alone,
+                             has_flat_base, is_moved))
+                break;
+            any = true;
         }
-        is_moved.assign(plan.nodes(), 0);
-        if (!levels.ease(moves, before, minimum_thickness, has_flat_base, is_moved))
-            return round > 0;
     }
-    return true;
+    return any;
 }
 
 /// Calls visit(corner) for the corners of all elements and faces.
@@ -634,8 +422,12 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
     PostLevels levels(plan, lines, blocks, columns, layering);
     LayeredMesh made;
     std::vector<std::uint8_t> is_narrow;
-    bool is_eased = false;
-    for (int repair = 0;; ++repair) {
+    std::optional<PostLevels> best;
+    std::vector<double> volumes;  // before the last stage
+    std::size_t least = SIZE_MAX;
+    double reach = 1;
+    int round = 0, vain = 0;
+    for (auto stage = Stage::kWeak;;) {
         check_total(levels.height_count(), INT32_MAX);
         made = {};
         made.volumes.assign(blocks.rock.size(), 0);
@@ -644,18 +436,52 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
                                    static_cast<std::int32_t>(
                                        levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
         }
-        ColumnFiller filler(plan, blocks, columns, levels, layering.minimum_thickness, made);
-        for (std::size_t t = 0; t < plan.triangles(); ++t) {
-            poll(progress, t);
-            filler.fill(t);
+        ColumnFiller filler(plan, blocks, columns, levels, made, progress);
+        const ElementQuality quality(plan, levels, filler.columns(), layering.minimum_thickness,
+                                     progress);
+        if (is_narrow.empty()) is_narrow = narrow_strips(plan, filler.columns());
+        if (stage == Stage::kWeak) {
+            auto weak = quality.weak(is_narrow);
+            if (round++ < kRepairs && levels.remove(plan, weak) > 0) continue;
+            stage = Stage::kSteep;
         }
-        if (repair == 0) is_narrow = narrow_strips(plan, filler.elements());
-        if (repair < kRepairs && !is_eased && levels.remove(plan, filler.weak(is_narrow)) > 0)
-            continue;
-        if (!is_eased &&
-            ease_steep(plan, blocks, columns, layering.minimum_thickness, levels, progress)) {
-            is_eased = true;
-            continue;
+        if (stage == Stage::kSteep) {
+            stage = Stage::kFailing;
+            if (ease_steep(plan, columns, quality, layering.minimum_thickness, reach, levels))
+                continue;
+        }
+        if (stage == Stage::kFailing) {
+            auto failing = quality.failing(is_narrow);
+            if (!best && failing.size() > kMostFailing * quality.elements()) failing.clear();
+            if (!best) volumes = made.volumes;
+            double changed = 0, total = 0;
+            for (std::size_t b = 0; b < volumes.size(); ++b) {
+                changed += std::abs(made.volumes[b] - volumes[b]);
+                total += volumes[b];
+            }
+            if (changed > kMostMended * total) vain = kVainRepairs;
+            if (!failing.empty() && vain < kVainRepairs) {
+                if (failing.size() < least) {
+                    least = failing.size();
+                    best = levels;
+                    vain = 0;
+                } else {
+                    ++vain;
+                }
+                // what moving farther does not mend is given up; at last nothing moves any more
+                if (vain == kVainMoves)
+                    levels = *best;
+                else if (reach > 1)
+                    levels.remove(plan, failing);
+                reach = kFarthest;
+                if (vain < kVainMoves) stage = Stage::kSteep;
+                continue;
+            }
+            if (best && (!failing.empty() || changed > kMostMended * total)) {
+                levels = *best;
+                stage = Stage::kDone;
+                continue;
+            }
         }
         filler.finish_steps(VerticalFaults(model, lines.steps));
         break;

@@ -14,20 +14,19 @@ constexpr std::int32_t kMostSteps = 4;  ///< across edges, from columns of more 
 
 }  // namespace
 
-std::vector<std::uint8_t> narrow_strips(const PlanTopology& plan,
-                                        std::span<const std::int32_t> elements) {
+std::vector<std::uint8_t> narrow_strips(const PlanTopology& plan, const ColumnFronts& columns) {
     const std::size_t count = plan.triangles();
     std::vector<std::int32_t> steps(count, -1);  // to columns of more elements
     std::vector<std::size_t> found;
     for (std::size_t t = 0; t < count; ++t) {
-        if (elements[t] < 2) continue;
+        if (columns.elements(t) < 2) continue;
         steps[t] = 0;
         found.push_back(t);
     }
     const auto for_neighbors = [&](std::size_t t, const auto& visit) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t n = plan.neighbor(t, i);
-            if (n >= 0 && elements[index(n)] == 1 && plan.rock(index(n)) == plan.rock(t))
+            if (n >= 0 && columns.elements(index(n)) == 1 && plan.rock(index(n)) == plan.rock(t))
                 visit(index(n));
         }
     };
@@ -40,8 +39,8 @@ std::vector<std::uint8_t> narrow_strips(const PlanTopology& plan,
     }
     std::vector<std::uint8_t> is_narrow(count, 0), is_seen(count, 0);
     for (std::size_t start = 0; start < count; ++start) {
-        if (elements[start] > 1) is_narrow[start] = 1;
-        if (elements[start] != 1 || is_seen[start] != 0) continue;
+        if (columns.elements(start) > 1) is_narrow[start] = 1;
+        if (columns.elements(start) != 1 || is_seen[start] != 0) continue;
         std::vector<std::size_t> strip{start};
         is_seen[start] = 1;
         bool is_wide = false;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "simulation/column_fronts.hpp"
 #include "simulation/plan_topology.hpp"
 
 namespace realmodel::simulation {
@@ -14,8 +14,6 @@ namespace realmodel::simulation {
 /// everywhere, giving them up at its border would only make their neighbors the border, until
 /// nothing is left of them. So they may go where they form strips no wider than a few triangles
 /// beside columns of more elements.
-/// @param elements  of each triangle's column
-std::vector<std::uint8_t> narrow_strips(const PlanTopology& plan,
-                                        std::span<const std::int32_t> elements);
+std::vector<std::uint8_t> narrow_strips(const PlanTopology& plan, const ColumnFronts& columns);
 
 }  // namespace realmodel::simulation

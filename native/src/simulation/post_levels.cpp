@@ -226,6 +226,7 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
         }
         node_offset_.push_back(height_.size());
     }
+    first_height_ = height_;
 }
 
 std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals) {
@@ -252,15 +253,18 @@ std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& r
         const std::size_t begin = node_offset_[n];
         node_offset_[n] = to;
         for (std::size_t h = begin; h < node_offset_[n + 1]; ++h) {
-            if (static_cast<std::int32_t>(h - begin) != gone[n]) height_[to++] = height_[h];
+            if (static_cast<std::int32_t>(h - begin) == gone[n]) continue;
+            first_height_[to] = first_height_[h];
+            height_[to++] = height_[h];
         }
     }
     node_offset_.back() = to;
     height_.resize(to);
+    first_height_.resize(to);
     return count;
 }
 
-bool PostLevels::ease(const std::vector<Move>& moves, const PostLevels& before, double most,
+bool PostLevels::ease(const std::vector<Move>& moves, double most, double gap, bool alone,
                       std::span<const std::uint8_t> has_flat_base,
                       std::span<std::uint8_t> is_moved) {
     constexpr double kLeast = 1e-3;  // of `most`: what is worth another round
@@ -268,40 +272,47 @@ bool PostLevels::ease(const std::vector<Move>& moves, const PostLevels& before, 
         double by = 0;
         std::int32_t count = 0, lowest = INT32_MAX;
     };
-    std::vector<Asked> asked(node_offset_.size() - 1);
+    std::vector<Asked> asked(alone ? height_.size() : node_offset_.size() - 1);
     for (const Move& move : moves) {
-        Asked& own = asked[index(move.node)];
+        const auto n = index(move.node);
+        Asked& own = asked[alone ? node_offset_[n] + index(move.height) : n];
         own.by += move.by;
         ++own.count;
         own.lowest = std::min(own.lowest, move.height);
     }
     bool any = false;
-    for (std::size_t n = 0; n < asked.size(); ++n) {
-        if (asked[n].count == 0) continue;
+    for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
         const std::size_t first = node_offset_[n], end = node_offset_[n + 1];
-        const double by = asked[n].by / asked[n].count, bottom = height_[first],
-                     span = height_[first + index(asked[n].lowest)] - bottom;
-        const auto move = [&](std::size_t at) {
+        const auto move = [&](std::size_t at, double by) {
             const double own = height_[at];
-            double share = 1;
-            if (has_flat_base[n] != 0 && own - bottom < span) share = (own - bottom) / span;
-            if (has_flat_base[n] != 0 && at == first) share = 0;
-            double to =
-                std::clamp(own + share * by, before.height_[at] - most, before.height_[at] + most);
-            if (at > first) to = std::max(to, std::min(own, height_[at - 1] + most));
-            if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - most));
-            if (std::abs(to - own) < kLeast * most) return;
+            if (has_flat_base[n] != 0 && at == first) return;
+            double to = std::clamp(own + by, first_height_[at] - most, first_height_[at] + most);
+            if (at > first) to = std::max(to, std::min(own, height_[at - 1] + gap));
+            if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - gap));
+            if (std::abs(to - own) < kLeast * gap) return;
             height_[at] = to;
             is_moved[n] = 1;
             any = true;
         };
+        if (alone) {
+            for (std::size_t at = first; at < end; ++at) {
+                if (asked[at].count > 0) move(at, asked[at].by / asked[at].count);
+            }
+            continue;
+        }
+        if (asked[n].count == 0) continue;
+        const double by = asked[n].by / asked[n].count, bottom = height_[first],
+                     span = height_[first + index(asked[n].lowest)] - bottom;
+        const auto share = [&](std::size_t at) {
+            return has_flat_base[n] == 0 ? 1 : std::min(1.0, (height_[at] - bottom) / span);
+        };
         // what moves first makes room for the next
         if (by < 0) {
             for (std::size_t at = first; at < end; ++at)
-                move(at);
+                move(at, share(at) * by);
         } else {
             for (std::size_t at = end; at-- > first;)
-                move(at);
+                move(at, share(at) * by);
         }
     }
     return any;

@@ -50,11 +50,12 @@ public:
         std::int32_t node, height;
         double by;
     };
-    /// Moves heights by the means of what is asked, those between in proportion, but no farther
-    /// than `most` from `before`, and no nearer to others than `most` or than they are. The lowest
-    /// stay.
+    /// Moves heights by the means of what is asked, but no farther than `most` from where they
+    /// were at first, and no nearer to others than `gap` or than they are. Flat bases stay.
+    /// @param alone  whether other heights of the same node stay; else those above move likewise,
+    ///   and those below in proportion
     /// @param is_moved  set for the nodes where a height moved  @return whether any did
-    bool ease(const std::vector<Move>& moves, const PostLevels& before, double most,
+    bool ease(const std::vector<Move>& moves, double most, double gap, bool alone,
               std::span<const std::uint8_t> has_flat_base, std::span<std::uint8_t> is_moved);
 
 private:
@@ -69,7 +70,7 @@ private:
     std::vector<std::vector<std::int32_t>> layer_block_;  ///< of each rock mass
     std::vector<std::size_t> offset_, node_offset_;
     std::vector<std::int32_t> level_;
-    std::vector<double> height_;
+    std::vector<double> height_, first_height_;  ///< as they are, and before ease()
 };
 
 }  // namespace realmodel::simulation

@@ -9,6 +9,7 @@
 #include "strata/cells/whole_faces.hpp"
 #include "strata/overlay/block_envelope.hpp"
 #include "strata/overlay/rock_footprints.hpp"
+#include "strata/overlay/windowed_region.hpp"
 #include "strata/steps.hpp"
 #include "strata/tiling/block_raising.hpp"
 
@@ -28,6 +29,7 @@ PlanBox around(const PlanBox& a, const PlanBox& b) {
 struct Surfaces {
     TriangleLinks links;
     std::vector<std::vector<BlockTiling>> of_rock;  ///< oldest first
+    std::vector<Envelope> in_window;                ///< of the rock masses that have a window
     PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     double largest_height = 0;
     std::size_t tiles = 1;
@@ -86,6 +88,10 @@ Surfaces make_surfaces(Site& site, int threads, const Progress* progress) {
         }
         for (const BorderEdge& edge : rock.region_border)
             surfaces.links.border.emplace_back(edge.low, edge.high);
+        for (const BorderEdge& edge : rock.window_plan.links.border)
+            surfaces.links.border.emplace_back(edge.low, edge.high);
+        if (rock.window)
+            surfaces.in_window.push_back(region_envelope(site, rock, threads, progress));
     }
     surfaces.links.neighbor.resize(site.geometry.plane_count(), {kNone, kNone, kNone});
     surfaces.measure(site.geometry, threads, progress);
@@ -115,6 +121,7 @@ CellComplex build_blocks(Site& site, int threads, Progress* progress) {
     WholeTriangles wholes(site.geometry.plane_count());
     RockFootprints footprints;
     double start = kInputDone;
+    std::size_t window = 0;
     for (std::size_t r = 0; r < site.rocks.size(); ++r) {
         EnteredRock& rock = site.rocks[r];
         std::vector<BlockTiling>& tilings = surfaces.of_rock[r];
@@ -125,7 +132,12 @@ CellComplex build_blocks(Site& site, int threads, Progress* progress) {
             replay_rules(site, rock, surfaces, borders, tilings, threads, progress);
         BlockEnvelope envelope(site.geometry, surfaces.links, borders, surfaces.largest_height,
                                construction, wholes, threads, progress);
-        if (rock.region) envelope.start_region(rock.region_filling);
+        if (rock.window) {
+            envelope.start_window(rock.region_filling, rock.window_plan.filling.value(),
+                                  std::move(surfaces.in_window[window++]));
+        } else if (rock.region) {
+            envelope.start_region(rock.region_filling);
+        }
         for (std::size_t k = tilings.size(); k-- > 0;) {
             begin_step(progress, start, share, "intersecting the surfaces");
             envelope.add(tilings[k], static_cast<std::int32_t>(k));

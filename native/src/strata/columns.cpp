@@ -7,6 +7,7 @@
 #include "strata/cells/cell_building.hpp"
 #include "strata/overlay/facet_overlay.hpp"
 #include "strata/overlay/rock_footprints.hpp"
+#include "strata/overlay/windowed_region.hpp"
 #include "strata/steps.hpp"
 #include "strata/tiling/rules.hpp"
 
@@ -83,10 +84,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
     const auto count = static_cast<std::int32_t>(rock.surfaces.size()),
                first = static_cast<std::int32_t>(rock.emptied.empty() ? 0 : rock.emptied.back());
     Envelope envelope;
-    if (rock.region) {
-        envelope = initial_envelope(
-            make_region_tiling(site.geometry, *rock.region, rock.region_filling), -1);
-    }
+    if (rock.region) envelope = region_envelope(site, rock, threads, progress);
     TilingSequence tilings(site, rock, threads, progress);
     for (std::int32_t k = count - 1; k >= first; --k) {
         begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,

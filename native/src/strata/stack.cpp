@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/stack.hpp"
 
+#include <array>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "realmodel/base/page_store.hpp"
 #include "strata/blocks.hpp"
@@ -16,35 +19,57 @@ namespace realmodel::strata {
 
 namespace {
 
-/// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
-std::unique_ptr<Site> enter_joined(std::span<const StackInput> rocks,
-                                   std::vector<Warning>& warnings, int threads,
-                                   Progress* progress) {
-    const auto enter = [&](std::span<const StackInput> input, const PlanSnapping& snapping) {
-        begin_step(progress, kBordersDone, kInputDone - kBordersDone, "checking the surfaces");
-        warnings.clear();
-        return enter_site(input, snapping, warnings, threads, progress);
-    };
-    if (share_one_plan(rocks)) return enter(rocks, {});
-    begin_step(progress, 0.0, kBordersDone, "comparing the borders");
-    const PlanSnapping snapping = find_snapping(rocks, threads, progress);
-    const JoinedBorders joined = join_borders(rocks, snapping, threads, progress);
-    if (snapping.empty() && joined.divided == 0) return enter(rocks, {});
-    auto site = joined.divided > 0 ? enter(joined.rocks, {}) : enter(rocks, snapping);
-    // Whatever is wrong, what the user hears is about the input as given.
-    if (!site->is_single_valued) return enter(rocks, {});
-    warnings.push_back(joined_by_rounding(snapping, joined));
-    return site;
+/// Input that is entered, as given or with its borders joined.
+struct Entered {
+    std::unique_ptr<Site> site;
+    std::vector<Warning> warnings;
+    PlanSnapping snapping;
+    JoinedBorders joined;
+    bool is_joined = false;
+};
+
+std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
+                                     const PlanSnapping& snapping, std::vector<Warning>& warnings,
+                                     int threads, Progress* progress) {
+    begin_step(progress, kBordersDone, kInputDone - kBordersDone, "checking the surfaces");
+    warnings.clear();
+    return enter_site(rocks, snapping, warnings, threads, progress);
 }
 
-}  // namespace
+/// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
+Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
+    Entered entered;
+    const auto enter = [&](std::span<const StackInput> input, const PlanSnapping& snapping) {
+        entered.site = enter_as_given(input, snapping, entered.warnings, threads, progress);
+    };
+    if (share_one_plan(rocks)) {
+        enter(rocks, {});
+        return entered;
+    }
+    begin_step(progress, 0.0, kBordersDone, "comparing the borders");
+    entered.snapping = find_snapping(rocks, threads, progress);
+    entered.joined = join_borders(rocks, entered.snapping, threads, progress);
+    if (entered.snapping.empty() && entered.joined.divided == 0) {
+        enter(rocks, {});
+        return entered;
+    }
+    if (entered.joined.divided > 0) {
+        enter(entered.joined.rocks, {});
+    } else {
+        enter(rocks, entered.snapping);
+    }
+    if (!entered.site->is_single_valued) {
+        // Whatever is wrong, what the user hears is about the input as given.
+        enter(rocks, {});
+        return entered;
+    }
+    entered.is_joined = true;
+    entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.joined));
+    return entered;
+}
 
-CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
-                              CellKind cells) {
-    const page_store::Keeper keeper;
-    std::vector<Warning> warnings;
-    const std::unique_ptr<Site> entered = enter_joined(rocks, warnings, threads, progress);
-    Site& site = *entered;
+CellComplex build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells,
+                       int threads, Progress* progress) {
     site.check_regions();
     CellComplex result;
     if (site.is_empty()) {
@@ -60,6 +85,63 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Pr
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
     begin_step(progress, 1.0, 0.0, "done");
+    return result;
+}
+
+}  // namespace
+
+CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
+                              CellKind cells) {
+    const page_store::Keeper keeper;
+    const Entered entered = enter_joined(rocks, threads, progress);
+    return build_site(*entered.site, entered.warnings, cells, threads, progress);
+}
+
+CellComplex build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
+                       Progress* progress, CellKind cells) {
+    const page_store::Keeper keeper;
+    const std::array corners{window.low_x,  window.low_y,  window.high_x, window.low_y,
+                             window.high_x, window.high_y, window.low_x,  window.high_y};
+    constexpr std::array<std::int32_t, 6> kTriangles{0, 1, 2, 0, 2, 3};
+    std::vector<StackInput> in_window(rocks.begin(), rocks.end());
+    for (StackInput& rock : in_window) {
+        if (rock.region) {
+            rock.window = window;
+        } else {
+            rock.region = {corners, kTriangles};
+        }
+    }
+    std::vector<Warning> warnings;
+    const auto site = enter_as_given(in_window, {}, warnings, threads, progress);
+    return build_site(*site, warnings, cells, threads, progress);
+}
+
+JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress) {
+    const Entered entered = enter_joined(rocks, threads, progress);
+    JoinedInput result;
+    if (!entered.is_joined) return result;
+    result.warning = entered.warnings.back();
+    const auto& joined = entered.joined;
+    if (joined.divided > 0) {
+        for (std::size_t m = 0; m < joined.vertices.size(); ++m)
+            result.meshes.push_back({joined.vertices[m], joined.triangles[m]});
+        return result;
+    }
+    const auto add = [&](std::span<const double> vertices, std::span<const std::int32_t> triangles,
+                         std::size_t columns) {
+        auto& mesh = result.meshes.emplace_back();
+        mesh.vertices.assign(vertices.begin(), vertices.end());
+        mesh.triangles.assign(triangles.begin(), triangles.end());
+        for (std::size_t row = 0; row + 1 < mesh.vertices.size(); row += columns) {
+            mesh.vertices[row] = entered.snapping.x(mesh.vertices[row]);
+            mesh.vertices[row + 1] = entered.snapping.y(mesh.vertices[row + 1]);
+        }
+    };
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& surface : rock.surfaces)
+            add(surface.vertices, surface.triangles, 3);
+        if (rock.region) add(rock.region->vertices, rock.region->triangles, 2);
+    }
     return result;
 }
 

@@ -22,6 +22,7 @@ _STEPS = 64  # samples of a process in a range
 _ENDS = 4.0  # ranges, at which all covariances have ended
 _MOST_SAMPLES = 1 << 16
 _LINES_AT_ONCE = 64
+_MOST_KEPT = 1 << 13  # numbers of a line that are kept for a younger surface: 20 MB for all lines
 
 # Covariance on a line, C1(t) = d/dt (t C3(t)) with t = h / range, of 1 - f(t) in variogram.py.
 _A, _B = 4.743864518390579, 5.918649346310188
@@ -41,9 +42,22 @@ class Noise:
 
     def __init__(self, seed: tuple[int, ...], older: Noise | None = None, correlation: float = 0.0):
         self._seed, self._older, self._correlation = seed, older, correlation
+        self._drawn: dict[int, np.ndarray] | None = None  # by part, for a younger surface
+        if older is not None and correlation:
+            older._drawn = {}
 
     def normal(self, part: int, count: int) -> np.ndarray:
         """(count,) float64 of one part, from -1; a longer draw begins with the same numbers."""
+        if self._drawn is None:
+            return self._normal(part, count)
+        kept = self._drawn.get(part)
+        if kept is None or len(kept) < count:
+            kept = self._normal(part, count)
+            if count <= _MOST_KEPT:
+                self._drawn[part] = kept
+        return kept[:count].copy()
+
+    def _normal(self, part: int, count: int) -> np.ndarray:
         own = np.random.Generator(np.random.Philox(np.random.SeedSequence((*self._seed, part + 1))))
         drawn = own.standard_normal(count)
         if self._older is None or not self._correlation:

@@ -63,6 +63,25 @@ _""".encode("ascii")
     )
 
 
+def write_pieces(file: BinaryIO, pieces: Sequence[str]) -> None:
+    """Writes an index (.pvtu) of grids that write_vtu wrote, by their paths beside it."""
+    arrays = "".join(
+        f'<PDataArray type="Int32" Name="{name}"/>' for name in ("block", "property", "compartment")
+    )
+    sources = "\n".join(f'<Piece Source="{piece}"/>' for piece in pieces)
+    file.write(
+        f"""<?xml version="1.0"?>
+<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<PUnstructuredGrid GhostLevel="0">
+<PPoints><PDataArray type="Float64" Name="Points" NumberOfComponents="3"/></PPoints>
+<PCellData Scalars="block">{arrays}</PCellData>
+{sources}
+</PUnstructuredGrid>
+</VTKFile>
+""".encode("ascii")
+    )
+
+
 def write_length(file: BinaryIO, size: int) -> None:
     """Writes what precedes an array of so many bytes."""
     file.write(np.array([size], "<u8").tobytes())

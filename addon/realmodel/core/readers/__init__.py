@@ -3,7 +3,7 @@
 
 from .boreholes import Picks, read_boreholes
 from .map_input import MAP_ENDINGS, read_region, read_shapes
-from .mesh_file import MESH_ENDINGS, read_mesh
+from .mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
 from .off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .points import TABLE_ENDINGS, read_points
@@ -16,6 +16,7 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
+    "is_mesh_file",
     "preview_table",
     "read_boreholes",
     "read_mesh",

@@ -51,9 +51,24 @@ MESH_FORMATS = (
 MESH_ENDINGS = tuple(ending for known in MESH_FORMATS for ending in known.endings)
 
 
+def is_mesh_file(file: str | Path) -> bool:
+    """Whether a file is one of a mesh, by its content or else by its ending. Raises InputRefused where it
+    cannot be read."""
+    return bool(_formats_of(Path(file)))
+
+
 def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads a mesh in any format that is known. Raises InputRefused naming file and line."""
     file = Path(file)
+    found = _formats_of(file)
+    if not found:
+        names = ", ".join(known.name for known in MESH_FORMATS)
+        raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
+    return found[0].read(file, step)
+
+
+def _formats_of(file: Path) -> list[MeshFormat]:
+    """Those that its content says, then the one of its ending."""
     try:
         with file.open("rb") as opened:
             head = opened.read(_HEAD)
@@ -61,8 +76,4 @@ def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     by_ending = [known for known in MESH_FORMATS if file.suffix.lower() in known.endings]
-    found = [*(known for known in MESH_FORMATS if known.begins(head, size)), *by_ending]
-    if not found:
-        names = ", ".join(known.name for known in MESH_FORMATS)
-        raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
-    return found[0].read(file, step)
+    return [*(known for known in MESH_FORMATS if known.begins(head, size)), *by_ending]

@@ -58,6 +58,11 @@ constexpr std::optional<Rule> rule_named(std::string_view name) {
     return std::nullopt;
 }
 
+/// A rectangle in plan.
+struct Window {
+    double low_x, low_y, high_x, high_y;
+};
+
 /// One rock mass.
 struct StackInput {
     std::vector<SurfaceView> surfaces;  ///< oldest first
@@ -67,6 +72,8 @@ struct StackInput {
     /// Surfaces, ascending: before each of them all that is there becomes air, and only what was
     /// protected stays so. Of models of columns without a base elevation.
     std::vector<std::size_t> emptied;
+    /// What lies beyond it is left out, as beyond the region.
+    std::optional<Window> window = {};
 };
 
 using realmodel::CellComplex;
@@ -88,7 +95,29 @@ using realmodel::Warning;
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
                               CellKind cells = CellKind::kColumns);
 
-/// The same of one rock mass.
+/// What of rock masses lies in a window. Borders are taken as they are: whoever divides a model has
+/// joined them in all of it (join_rock_masses), so that all its tiles have the same.
+/// @throws as build_rock_masses
+CellComplex build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
+                       Progress* progress, CellKind cells = CellKind::kColumns);
+
+/// Rock masses whose plan coordinates and borders differ nowhere by rounding alone.
+struct JoinedInput {
+    /// A mesh, three coordinates a vertex; of a region two.
+    struct Mesh {
+        std::vector<double> vertices;
+        std::vector<std::int32_t> triangles;
+    };
+    std::vector<Mesh>
+        meshes;  ///< for each rock mass its surfaces, then its region where it has one
+    std::optional<Warning> warning;  ///< nothing where nothing changed; then there are no meshes
+};
+
+/// What build_rock_masses does to its input before it builds.
+/// @throws InputError not_finite, bad_index, vertical_triangle
+JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress);
+
+/// build_rock_masses of one.
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress,
                         CellKind cells = CellKind::kColumns);
 

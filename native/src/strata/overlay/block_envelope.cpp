@@ -27,6 +27,10 @@ BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& lin
 
 void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
     parts_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
+    cover_tiles(triangle, cover);
+}
+
+void BlockEnvelope::cover_tiles(const PlanTriangle& triangle, Cover cover) {
     tiles().for_each_center_in(corners_of(geometry_, triangle),
                                [&](std::size_t tile) { cover_[tile] = cover; });
 }
@@ -38,6 +42,18 @@ void BlockEnvelope::start_region(const FrameTriangles& filling) {
             if ((filling.covered[t] != 0) != inside) continue;
             add_sky(filling.triangles[t], inside ? kSky : kOutside,
                     inside ? Cover::kSkyOnly : Cover::kNothing);
+        }
+    }
+}
+
+void BlockEnvelope::start_window(const FrameTriangles& region, const FrameTriangles& window,
+                                 Envelope parts) {
+    is_started_ = true;
+    parts_ = std::move(parts);
+    std::fill(cover_.begin(), cover_.end(), Cover::kSkyOnly);
+    for (const FrameTriangles* filling : {&region, &window}) {
+        for (std::size_t t = 0; t < filling->triangles.size(); ++t) {
+            if (filling->covered[t] == 0) cover_tiles(filling->triangles[t], Cover::kNothing);
         }
     }
 }

@@ -20,6 +20,8 @@ public:
 
     /// Begins under the sky over a region (what is covered), with the outside around it.
     void start_region(const FrameTriangles& filling);
+    /// Begins under the sky over what a region and a window have in common, which `parts` are.
+    void start_window(const FrameTriangles& region, const FrameTriangles& window, Envelope parts);
     /// Lays the next older surface under the envelope; the first one, without a region, is it.
     void add(const BlockTiling& tiling, std::int32_t number);
     /// The lowest position of the envelope.
@@ -40,6 +42,7 @@ private:
                 cover_};
     }
     void add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover);
+    void cover_tiles(const PlanTriangle& triangle, Cover cover);
     void start(const BlockTiling& tiling, std::int32_t number);
     void enter(PlaneId plane, std::int32_t number, std::int32_t node_above, const TileSpan& span);
     Overlaid overlay_exactly(const FacetView& facets, const SurfaceTiling& part,

@@ -87,6 +87,20 @@ Frame enter_frame(PlanArrangement& geometry) {
     return frame;
 }
 
+EnteredSurface enter_window(PlanArrangement& geometry, const Window& window) {
+    const std::array<std::array<double, 2>, 4> corner{{{window.low_x, window.low_y},
+                                                       {window.high_x, window.low_y},
+                                                       {window.high_x, window.high_y},
+                                                       {window.low_x, window.high_y}}};
+    std::array<exact::SpaceId, 4> v;
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (!is_within_limits(corner[i][0]) || !is_within_limits(corner[i][1]))
+            throw InputError("not_finite", "a corner of the window is not a number or beyond 1e50");
+        v[i] = geometry.add_space_vertex(geometry.add_vertex(corner[i][0], corner[i][1]), 0.0);
+    }
+    return {{{0, {v[0], v[1], v[2]}}, {1, {v[0], v[2], v[3]}}}, {}};
+}
+
 EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
                        std::int32_t first_surface, const PlanSnapping& snapping,
                        std::vector<Warning>& warnings, int threads, const Progress* progress) {
@@ -103,7 +117,20 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
     rock.surfaces = enter_surfaces(geometry, input.surfaces, first_surface, snapping, warnings,
                                    threads, progress);
     if (input.region) rock.region = enter_region(geometry, *input.region, first_surface, snapping);
+    if (input.window) rock.window = enter_window(geometry, *input.window);
     return rock;
+}
+
+SurfacePlan plan_window(const Site& site, const EnteredSurface& window, const Progress* progress) {
+    std::vector<PlanTriangle> triangles;
+    for (const UsedTriangle& triangle : window.triangles) {
+        PlanTriangle& plan = triangles.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            plan[i] = site.geometry.space(triangle.corner[i]).plan;
+    }
+    SurfacePlan result{link_triangles(triangles, progress), {}};
+    result.filling = fill_frame(site.geometry, result.links.border, site.frame);
+    return result;
 }
 
 /// The base of a rock mass; its heights must be there before the vertices are frozen.
@@ -157,6 +184,7 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
             site.is_single_valued &= filling.has_value();
             if (filling) rock.region_filling = std::move(*filling);
         }
+        if (rock.window) rock.window_plan = plan_window(site, *rock.window, progress);
     }
     return entered;
 }

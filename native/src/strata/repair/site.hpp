@@ -20,7 +20,9 @@ struct EnteredRock {
     std::vector<std::size_t> emptied;  ///< surfaces before which all that is there becomes air
     std::optional<std::vector<PlanTriangle>> region;
     std::vector<BorderEdge> region_border;
-    FrameTriangles region_filling;  ///< the frame around the region
+    FrameTriangles region_filling;         ///< the frame around the region
+    std::optional<EnteredSurface> window;  ///< two triangles at height 0
+    SurfacePlan window_plan;
     std::optional<double> base_elevation;
     std::optional<PlaneId> base;  ///< a plane over the frame
 

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a vertical borehole meets in a finished model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_WALL = -1  # face_surface
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A stretch of a borehole in one block (its number), between two heights, model units."""
+
+    block: int
+    top: float
+    bottom: float
+
+
+def borehole(model, x: float, y: float) -> list[Interval]:
+    """The blocks along the vertical line at a position in plan, from above downward; nothing where there is
+    no rock. On the border of two faces one of them counts."""
+    faces = _faces_at(model, x, y)
+    height, is_up = _heights(model, faces, x, y)
+    cells = model.face_cells[faces]
+    cells[~is_up] = cells[~is_up, ::-1]
+    below, above = np.append(model.cell_block, np.int32(-1))[cells].T  # the first cell is below
+    found: list[Interval] = []
+    for k in np.lexsort((above, -height)).tolist():
+        z = float(height[k])
+        if found and found[-1].bottom == -np.inf:
+            found[-1] = Interval(found[-1].block, found[-1].top, z)
+        if below[k] >= 0:
+            found.append(Interval(int(below[k]), z, -np.inf))
+    return _merged(found)
+
+
+def _merged(found: list[Interval]) -> list[Interval]:
+    """Without stretches of no length, and with those of one block that follow one another as one."""
+    merged: list[Interval] = []
+    for each in found:
+        if not each.top > each.bottom:
+            continue
+        if merged and merged[-1].block == each.block and merged[-1].bottom == each.top:
+            merged[-1] = Interval(each.block, merged[-1].top, each.bottom)
+        else:
+            merged.append(each)
+    return merged
+
+
+def _faces_at(model, x: float, y: float) -> np.ndarray:
+    """The faces over and under a position that are no walls: a ray to the right leaves them."""
+    offsets = model.face_offsets
+    corners = model.vertices[model.face_vertices, :2]
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    at_edge = np.flatnonzero((corners[:, 1] <= y) != (corners[following, 1] <= y))
+    low, high = corners[at_edge], corners[following[at_edge]]
+    turned = low[:, 1] > high[:, 1]  # both faces at an edge see it the same way
+    low[turned], high[turned] = high[turned], low[turned].copy()
+    share = (y - low[:, 1]) / (high[:, 1] - low[:, 1])
+    right = at_edge[low[:, 0] + share * (high[:, 0] - low[:, 0]) > x]
+    face, times = np.unique(np.searchsorted(offsets, right, "right") - 1, return_counts=True)
+    return face[(times % 2 == 1) & (model.face_surface[face] != _WALL)]
+
+
+def _heights(model, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+    """Of faces their heights at a position, and whether they are seen from above as from outside of their
+    first cell."""
+    begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
+    first = np.repeat(begin, size)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)
+    here = model.vertices[model.face_vertices[first + step]]
+    origin = model.vertices[model.face_vertices[begin]]
+    here = here - np.repeat(origin, size, axis=0)
+    following = np.where(
+        step + 1 == np.repeat(size, size), np.arange(len(step)) - step, np.arange(1, len(step) + 1)
+    )
+    doubled = np.cross(here, here[following]) if len(here) else np.empty((0, 3))
+    normal = np.add.reduceat(doubled, np.cumsum(size) - size, axis=0) if len(faces) else np.empty((0, 3))
+    slope = normal[:, 0] * (x - origin[:, 0]) + normal[:, 1] * (y - origin[:, 1])
+    return origin[:, 2] - slope / normal[:, 2], normal[:, 2] > 0

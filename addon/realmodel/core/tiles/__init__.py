@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model in tiles of the plan (docs/dev/tiles.md).
+
+grid          the lines that divide the plan, and which triangles each tile needs
+tile_model    one tile: built, written, read
+borders       what two tiles have on the line between them: vertices exchanged, blocks matched
+catalog       tiles.toml, the table of the whole
+tiled_model   the whole, opened from its folder
+"""
+
+from .tiled_model import Tile, TiledModel, open_tiles
+
+__all__ = ["Tile", "TiledModel", "open_tiles"]

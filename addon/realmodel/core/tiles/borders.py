@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What two tiles have on the line between them.
+
+Both see the same surfaces on the line, so their interfaces are the same broken lines there. But a tile may
+have vertices on a straight stretch that its neighbor has not (where it divided a facet). So tiles exchange
+these vertices; then, between two neighboring vertices of the line, a block is one quadrilateral that both
+tiles have with the same doubles, whatever cells it is divided into on either side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+_BASE = -2  # face_surface of the flat base
+_MOVED = 16  # units in the last place that rounding may have moved a vertex off the line (geometry.md)
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of the four sides of a tile: on the line where coordinate `axis` is `line`."""
+
+    name: str
+    axis: int
+    line: float
+    step: tuple[int, int]  # to the neighbor: columns, rows
+
+    @property
+    def along(self) -> int:
+        return 1 - self.axis
+
+
+OPPOSITE = {"west": "east", "east": "west", "south": "north", "north": "south"}
+
+
+def sides_of(box: tuple[float, float, float, float]) -> list[Side]:
+    low_x, low_y, high_x, high_y = box
+    return [
+        Side("west", 0, low_x, (-1, 0)),
+        Side("east", 0, high_x, (1, 0)),
+        Side("south", 1, low_y, (0, -1)),
+        Side("north", 1, high_y, (0, 1)),
+    ]
+
+
+@dataclass(frozen=True)
+class Interfaces:
+    """The edges of interfaces on a side: what each lies on (E,) int64, a surface or below -1 the base of a
+    block; and its ends (E, 6): of each the position along the line, the height, and the coordinate across the
+    line, which is the line's but where rounding moved a vertex; the lesser position first."""
+
+    on: np.ndarray
+    ends: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """The edges of all faces that lie on a side and are not vertical: their face, the place of their first
+    corner in face_vertices, and both vertices."""
+
+    face: np.ndarray
+    at: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+
+
+def _edges_on(model, side: Side) -> _Edges:
+    vertices = model.vertices
+    across = vertices[:, side.axis]
+    reach = _MOVED * np.spacing(np.abs(across).max(initial=abs(side.line)))
+    on = np.abs(across - side.line) <= reach
+    corners = model.face_vertices
+    at = np.flatnonzero(on[corners])
+    face = np.searchsorted(model.face_offsets, at, "right") - 1
+    following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
+    first, second = corners[at], corners[following]
+    along = vertices[:, side.along]
+    kept = on[second] & (along[first] != along[second])
+    return _Edges(face[kept], at[kept], first[kept], second[kept])
+
+
+def _pairs(edges: _Edges) -> np.ndarray:
+    """(E,) int64: a number for each edge's two vertices, whichever comes first."""
+    low = np.minimum(edges.first, edges.second).astype(np.int64)
+    return low << 32 | np.maximum(edges.first, edges.second)
+
+
+def _interfaces_of(model, edges: _Edges) -> tuple[np.ndarray, np.ndarray]:
+    """Of the edges that lie on interfaces: their pairs of vertices, each once, and what they lie on."""
+    surface = model.face_surface[edges.face].astype(np.int64)
+    block = model.cell_block[model.face_cells[edges.face, 0]]
+    on = np.where(surface == _BASE, _BASE - block, surface)
+    of_interface = surface != -1
+    pairs, first = np.unique(_pairs(edges)[of_interface], return_index=True)
+    return pairs, on[of_interface][first]
+
+
+def interfaces_on(model, side: Side) -> Interfaces:
+    """The interfaces of a model on one side of it."""
+    pairs, on = _interfaces_of(model, _edges_on(model, side))
+    ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
+    turned = model.vertices[ends[:, 0], side.along] > model.vertices[ends[:, 1], side.along]
+    ends[turned] = ends[turned, ::-1]
+    coordinates = [side.along, 2, side.axis]
+    return Interfaces(on, model.vertices[ends][:, :, coordinates].reshape(-1, 6))
+
+
+def with_vertices_of(model, side: Side, other: Interfaces):
+    """The model with the vertices that a neighbor has on its interfaces on a side, in all faces there; the
+    model itself where there are none.
+
+    Points that differ may be rounded to one position, and each tile may have another of them there: then
+    those of the tile in the west or south count."""
+    edges = _edges_on(model, side)
+    pairs, on = _interfaces_of(model, edges)
+    if not len(pairs):
+        return model
+    ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
+    if side.name in ("west", "south"):
+        model = _with_heights_of(model, side, ends, on, other)
+    along = np.sort(model.vertices[ends, side.along], axis=1)
+    begin, count = np.zeros((2, len(pairs)), np.int64)
+    points = []
+    for number in np.unique(on):
+        theirs = other.ends[other.on == number].reshape(-1, 3)
+        theirs = theirs[np.unique(theirs[:, 0], return_index=True)[1]]  # and ascending
+        own = on == number
+        theirs = theirs[~_among(theirs, model.vertices[ends[own].ravel()][:, [side.along, 2, side.axis]])]
+        start = np.searchsorted(theirs[:, 0], along[own, 0], "right")
+        stop = np.searchsorted(theirs[:, 0], along[own, 1], "left")
+        begin[own], count[own] = start + sum(map(len, points)), np.maximum(stop - start, 0)
+        points.append(theirs)
+    if not count.any():
+        return model
+    theirs = np.concatenate(points)
+    new = _spread(begin, count)
+    added = np.empty((len(new), 3))
+    added[:, [side.along, 2, side.axis]] = theirs[new]
+    added, numbers = _numbered(model, side, added)
+    first_new = np.cumsum(count) - count
+    # of each edge of a face the new vertices in its direction
+    place = np.searchsorted(pairs, _pairs(edges))
+    place[place == len(pairs)] = 0
+    known = pairs[place] == _pairs(edges)
+    at, place = edges.at[known], place[known]
+    backward = (
+        model.vertices[edges.first, side.along][known] > model.vertices[edges.second, side.along][known]
+    )
+    size = count[place]
+    inserted = _spread(first_new[place], size)
+    step = np.arange(len(inserted)) - np.repeat(np.cumsum(size) - size, size)
+    inserted = np.where(
+        np.repeat(backward, size), np.repeat(first_new[place] + size - 1, size) - step, inserted
+    )
+    inserted = numbers[inserted]
+    after = np.zeros(len(model.face_vertices), np.int64)
+    after[at] = size
+    grown = np.cumsum(after + 1)
+    corners = np.empty(len(model.face_vertices) + int(after.sum()), model.face_vertices.dtype)
+    corners[grown - after - 1] = model.face_vertices
+    corners[np.repeat(grown[at] - size, size) + step] = inserted
+    offsets = np.concatenate([[0], grown])[model.face_offsets]
+    return replace(
+        model,
+        vertices=np.concatenate([model.vertices, added]),
+        face_vertices=corners,
+        face_offsets=offsets.astype(np.int64),
+    )
+
+
+def _with_heights_of(model, side: Side, ends: np.ndarray, on: np.ndarray, other: Interfaces):
+    """The model with the heights that a neighbor's vertices have in the same positions on the same
+    interfaces, where they differ by a rounding. ends: (E, 2) vertices of its edges, on what they lie."""
+    vertices = model.vertices.copy()
+    for number in np.unique(on):
+        theirs = other.ends[other.on == number].reshape(-1, 3)
+        theirs = theirs[np.unique(theirs[:, 0], return_index=True)[1]]
+        if not len(theirs):
+            continue
+        own = np.unique(ends[on == number])
+        at = np.searchsorted(theirs[:, 0], vertices[own, side.along]).clip(0, len(theirs) - 1)
+        apart = np.abs(theirs[at, 1] - vertices[own, 2])
+        reach = _MOVED * np.spacing(np.maximum(np.abs(theirs[at, 1]), np.abs(vertices[own, 2])))
+        same = (theirs[at, 0] == vertices[own, side.along]) & (apart <= reach)
+        vertices[own[same], 2] = theirs[at[same], 1]
+    return replace(model, vertices=vertices)
+
+
+def _among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(N,) bool: which rows (N, 3) are among others."""
+    _, same = np.unique(np.concatenate([others, rows]), axis=0, return_inverse=True)
+    same = same.reshape(-1)
+    return np.isin(same[len(others) :], same[: len(others)])
+
+
+def _numbered(model, side: Side, added: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
+    one: edges may meet in a vertex that one of them passes."""
+    there = np.flatnonzero(np.isin(model.vertices[:, side.along], added[:, side.along]))
+    both = np.concatenate([model.vertices[there], added])
+    _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
+    first = first[same.reshape(-1)[len(there) :]]  # the first of the equal ones: one that is there
+    new, number = np.unique(first[first >= len(there)], return_inverse=True)
+    numbers = np.empty(len(added), np.int64)
+    numbers[first < len(there)] = there[first[first < len(there)]]
+    numbers[first >= len(there)] = len(model.vertices) + number
+    return both[new], numbers
+
+
+def _spread(begin: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """begin[0], begin[0] + 1, ... count[0] of them, then those of the next."""
+    before = np.cumsum(count) - count
+    return np.repeat(begin - before, count) + np.arange(int(count.sum()))
+
+
+@dataclass(frozen=True)
+class Patches:
+    """The blocks of a tile on one of its sides, in order: between two neighboring vertices of the line each
+    is a quadrilateral. shape: (P, 6), the positions along the line, the lower edge's heights there and the
+    upper edge's; block (P,), and cell (P,) of the tile. open: how often a wall had an edge above or
+    below alone."""
+
+    shape: np.ndarray
+    block: np.ndarray
+    cell: np.ndarray
+    open: int = 0
+
+
+def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
+    """The patches of a model on one side of it. positions: where on the line either tile has vertices,
+    ascending. An edge that passes one without a vertex is divided there for the patches alone."""
+    edges = _edges_on(model, side)
+    cells = model.face_cells[edges.face]
+    wall = (model.face_surface[edges.face] == -1) & (cells[:, 1] == -1)
+    face, cell = edges.face[wall], cells[wall, 0]
+    along, height = _ends(model, side, np.column_stack([edges.first[wall], edges.second[wall]]))
+    first = np.searchsorted(positions, along[:, 0])
+    count = np.searchsorted(positions, along[:, 1]) - first
+    part = _spread(first, count)
+    face, cell = np.repeat(face, count), np.repeat(cell, count)
+    along, height = np.repeat(along, count, axis=0), np.repeat(height, count, axis=0)
+    divided = np.column_stack([positions[part], positions[part + 1]])
+    share = (divided - along[:, :1]) / (along[:, 1:] - along[:, :1])
+    between = height[:, :1] + share * (height[:, 1:] - height[:, :1])
+    height = np.where(share == 0, height[:, :1], np.where(share == 1, height[:, 1:], between))
+    order = np.lexsort((height.sum(axis=1), part, face))
+    face, part, cell, height, divided = (each[order] for each in (face, part, cell, height, divided))
+    start = np.ones(len(face), bool)
+    start[1:] = (face[1:] != face[:-1]) | (part[1:] != part[:-1])
+    begin = np.flatnonzero(start)
+    size = np.diff([*begin, len(face)])
+    # More than two are where rounding moved a vertex past another: both tiles have them.
+    lowest, highest = begin[size > 1], (begin + size - 1)[size > 1]
+    shape = np.column_stack([divided[lowest], height[lowest], height[highest]]).reshape(-1, 6)
+    cell = cell[lowest]
+    order = np.lexsort((*shape.T[::-1], model.cell_block[cell]))
+    alone = int((size == 1).sum())
+    return Patches(shape[order], model.cell_block[cell[order]], cell[order], alone)
+
+
+def positions_on(model, side: Side, other: Interfaces | None = None) -> np.ndarray:
+    """Where on a side a model has vertices, or its neighbor, ascending."""
+    edges = _edges_on(model, side)
+    own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
+    theirs = np.empty(0) if other is None else other.ends[:, ::3].ravel()
+    return np.unique(np.concatenate([own, theirs]))
+
+
+def _ends(model, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(E, 2) positions along the line and heights of edges' ends (E, 2), the lesser position first."""
+    along, height = model.vertices[ends, side.along], model.vertices[ends, 2]
+    turned = along[:, 0] > along[:, 1]
+    along[turned], height[turned] = along[turned, ::-1], height[turned, ::-1]
+    return along, height
+
+
+@dataclass(frozen=True)
+class Matched:
+    """Two tiles at their line. cells: (N, 2) of both tiles, which one block connects. patches: how many
+    quadrilaterals there are; rounded: those that are equal on both sides up to rounding only, or have no
+    extent beyond it; unequal: those that one side alone has. place: of the first of these."""
+
+    cells: np.ndarray
+    patches: int
+    rounded: int = 0
+    unequal: int = 0
+    place: tuple[float, float, float] | None = None
+
+
+def matched(one: Patches, other: Patches, side: Side) -> Matched:
+    """Compares the patches of two tiles on their line, double for double. side: of the first tile."""
+    same = np.array_equal(one.shape, other.shape) and np.array_equal(one.block, other.block)
+    if same and one.open == other.open == 0:
+        cells = np.unique(np.column_stack([one.cell, other.cell]), axis=0)
+        return Matched(cells, len(one.cell))
+    return _matched_up_to_rounding(one, other, side)
+
+
+def _matched_up_to_rounding(one: Patches, other: Patches, side: Side) -> Matched:
+    rows = {row: k for k, row in enumerate(_rows(other))}
+    found = [rows.get(row, -1) for row in _rows(one)]
+    pairs = [(k, m) for k, m in enumerate(found) if m >= 0]
+    alone = [k for k, m in enumerate(found) if m < 0]
+    left = sorted(set(range(len(other.cell))).difference(found))
+    columns = np.abs(np.concatenate([one.shape, other.shape, np.zeros((1, 6))]))
+    reach = _MOVED * np.spacing(np.array([columns[:, :2].max(), columns[:, 2:].max()]))
+    limit = reach[[0, 0, 1, 1, 1, 1]]
+    rounded = 0
+    for k in alone[:]:
+        near = [
+            m
+            for m in left
+            if one.block[k] == other.block[m] and (np.abs(one.shape[k] - other.shape[m]) <= limit).all()
+        ]
+        if near:
+            pairs.append((k, near[0]))
+            alone.remove(k)
+            left.remove(near[0])
+            rounded += 1
+    pairs += [(k, m) for k in alone for m in left if _overlap(one, k, other, m)]
+    wrong = [(one, k) for k in alone] + [(other, m) for m in left]
+    wide = [(patches, k) for patches, k in wrong if _has_extent(patches.shape[k], reach)]
+    place = None
+    if wide:
+        patches, k = wide[0]
+        at = (side.line, float(patches.shape[k, 0]))
+        place = (*(at if side.axis == 0 else at[::-1]), float(patches.shape[k, 2]))
+    cells = [(one.cell[k], other.cell[m]) for k, m in pairs]
+    return Matched(
+        np.unique(np.array(cells, np.int64).reshape(-1, 2), axis=0),
+        max(len(one.cell), len(other.cell)),
+        rounded + len(wrong) - len(wide),
+        len(wide) + one.open + other.open,
+        place,
+    )
+
+
+def _has_extent(shape: np.ndarray, reach: np.ndarray) -> bool:
+    """Whether a patch is wider and higher than rounding is."""
+    return bool(shape[1] - shape[0] > reach[0] and (shape[4:] - shape[2:4]).max() > reach[1])
+
+
+def _rows(patches: Patches) -> Sequence[tuple]:
+    return list(zip(patches.block.tolist(), *patches.shape.T.tolist(), strict=True))
+
+
+def _overlap(one: Patches, k: int, other: Patches, m: int) -> bool:
+    """Whether patches of one block share an area, as doubles tell."""
+    if one.block[k] != other.block[m]:
+        return False
+    a, b = one.shape[k], other.shape[m]
+    low, high = max(a[0], b[0]), min(a[1], b[1])
+    if not low < high:
+        return False
+    middle = (low + high) / 2
+    bottom = max(np.interp(middle, each[:2], each[2:4]) for each in (a, b))
+    return bottom < min(np.interp(middle, each[:2], each[4:6]) for each in (a, b))

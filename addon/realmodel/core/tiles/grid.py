@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lines that divide the plan into tiles, and what of a rock mass each tile needs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import UsageError
+from ..surface_heights import Triangulation
+
+_SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
+_IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions
+_BEYOND = 1 / 64  # of the model's extent: how far the outermost tiles reach beyond it
+_MOST_TILES = 100_000
+
+
+@dataclass(frozen=True)
+class TileGrid:
+    """x: (C + 1,) float64 ascending, y: (R + 1,): tile (column, row) lies between lines column and
+    column + 1, and row and row + 1. No vertex lies on a line."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+    @property
+    def columns(self) -> int:
+        return len(self.x) - 1
+
+    @property
+    def rows(self) -> int:
+        return len(self.y) - 1
+
+    def __iter__(self) -> Iterator[tuple[int, int]]:
+        return ((column, row) for row in range(self.rows) for column in range(self.columns))
+
+    def box(self, column: int, row: int) -> tuple[float, float, float, float]:
+        """Low x, low y, high x, high y."""
+        return tuple(
+            float(line) for line in (self.x[column], self.y[row], self.x[column + 1], self.y[row + 1])
+        )
+
+
+def checked_size(tile_size) -> tuple[float, float]:
+    """Width and height of tiles. Raises UsageError."""
+    try:
+        width, height = (float(side) for side in tile_size)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"tile_size must be two lengths above 0, not {tile_size!r}") from error
+    if not (0 < width < math.inf and 0 < height < math.inf):
+        raise UsageError(f"tile_size must be two lengths above 0, not {tile_size!r}")
+    return width, height
+
+
+def tile_grid(meshes: Sequence[np.ndarray], tile_size: tuple[float, float]) -> TileGrid:
+    """A grid over all meshes' vertices, (V, 2) or (V, 3) each, with lines off all of them.
+
+    A line stands in the widest gap between vertices near where it was asked for. Raises UsageError where
+    there are too many tiles.
+    """
+    lines = []
+    for axis, size in enumerate(tile_size):
+        values = [mesh[:, axis] for mesh in meshes if len(mesh)]
+        if not values:
+            lines.append(np.array([0.0, size]))
+            continue
+        low, high = min(each.min() for each in values), max(each.max() for each in values)
+        count = max(1, math.ceil((high - low) / size * (1 - 1e-9)))
+        if count > _MOST_TILES:
+            raise UsageError(f"{count} tiles along one axis are too many; make them larger")
+        beyond = max((high - low) * _BEYOND, abs(low) * 2.0**-20, abs(high) * 2.0**-20, 2.0**-20)
+        inner = [_line_near(values, low + k * size, size * _SEARCHED) for k in range(1, count)]
+        lines.append(np.array([low - beyond, *inner, high + beyond]))
+    if len(lines[0]) * len(lines[1]) > _MOST_TILES:
+        raise UsageError(f"more than {_MOST_TILES} tiles are too many; make them larger")
+    return TileGrid(*lines)
+
+
+def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
+    """In the widest gap between values within `reach` of a position. Not in its middle: there edges of
+    regular meshes would cross each other on the line."""
+    near = [each[(each > wanted - reach) & (each < wanted + reach)] for each in values]
+    ends = np.unique(np.concatenate([[wanted - reach, wanted + reach], *near]))
+    widest = int(np.diff(ends).argmax())
+    return float(ends[widest] + (ends[widest + 1] - ends[widest]) * _IN_GAP)
+
+
+@dataclass(frozen=True)
+class Part:
+    """What of a mesh a tile needs: vertices (V, 2 or 3), triangles (T, 3) int32, and the number that each of
+    these has in the mesh, (T,) int32."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    numbers: np.ndarray
+
+
+class MeshBins:
+    """The triangles of a mesh by the tiles that their boxes meet."""
+
+    def __init__(self, mesh: Triangulation, grid: TileGrid):
+        self._mesh = mesh
+        self._grid = grid
+        vertices, triangles = mesh
+        self._first, self._last = [], []
+        for axis, lines in enumerate((grid.x, grid.y)):
+            corners = vertices[:, axis][triangles]
+            count = len(lines) - 2
+            low = np.searchsorted(lines, corners.min(axis=1), "left") - 1
+            high = np.searchsorted(lines, corners.max(axis=1), "right") - 1
+            self._first.append(low.clip(0, count))
+            self._last.append(high.clip(0, count))
+        self._column = -1
+        self._of_column = np.empty(0, np.int64)
+
+    def part(self, column: int, row: int) -> Part:
+        """The triangles whose boxes meet a tile; quickest one column after another."""
+        if column != self._column:
+            self._column = column
+            self._of_column = np.flatnonzero((self._first[0] <= column) & (self._last[0] >= column))
+        own = self._of_column
+        numbers = own[(self._first[1][own] <= row) & (self._last[1][own] >= row)]
+        vertices, triangles = self._mesh
+        used, corners = np.unique(triangles[numbers], return_inverse=True)
+        return Part(
+            np.ascontiguousarray(vertices[used]),
+            corners.reshape(-1, 3).astype(np.int32),
+            numbers.astype(np.int32),
+        )
+
+
+def clipped_region(region: Triangulation, box: tuple[float, float, float, float]) -> Triangulation:
+    """A triangulation ((V, 2), (T, 3)) of what of a region lies in a box; where an edge meets the box is
+    rounded, equally for both triangles at it. For questions about positions, not for building."""
+    low_x, low_y, high_x, high_y = box
+    vertices: dict[tuple[float, float], int] = {}
+    triangles = []
+    for corners in region[0][region[1]].tolist():
+        polygon = [tuple(corner) for corner in corners]
+        for axis, line, sign in ((0, low_x, 1), (0, high_x, -1), (1, low_y, 1), (1, high_y, -1)):
+            polygon = _half(polygon, axis, line, sign)
+        numbers = [vertices.setdefault(corner, len(vertices)) for corner in polygon]
+        triangles += [(numbers[0], numbers[k], numbers[k + 1]) for k in range(1, len(numbers) - 1)]
+    return (
+        np.array(list(vertices), np.float64).reshape(-1, 2),
+        np.array(triangles, np.int32).reshape(-1, 3),
+    )
+
+
+def _half(polygon: list, axis: int, line: float, sign: int) -> list:
+    """The part of a convex polygon where sign * (coordinate - line) is not negative."""
+    kept = []
+    for start, end in zip(polygon, polygon[1:] + polygon[:1], strict=True):
+        inside, beyond = sign * (start[axis] - line) >= 0, sign * (end[axis] - line) >= 0
+        if inside:
+            kept.append(start)
+        if inside != beyond:
+            first, second = sorted((start, end))
+            share = (line - first[axis]) / (second[axis] - first[axis])
+            other = first[1 - axis] + share * (second[1 - axis] - first[1 - axis])
+            kept.append((line, other) if axis == 0 else (other, line))
+    return kept
+
+
+def box_triangles(box: tuple[float, float, float, float]) -> Triangulation:
+    """A box as two triangles."""
+    low_x, low_y, high_x, high_y = box
+    corners = [[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]]
+    return np.array(corners), np.array([[0, 1, 2], [0, 2, 3]], np.int32)

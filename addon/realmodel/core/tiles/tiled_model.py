@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model in tiles, opened from its folder: the whole, of which only the tiles asked for are read."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..blocks import Block
+from ..build_warning import BuildWarning
+from ..errors import InputRefused, UsageError
+from ..model import Model
+from ..model_boreholes import Interval
+from ..project import Project
+from ..section import Fence, Section
+from .catalog import TILES, Catalog, TileEntry, read_catalog
+from .tile_model import read_model
+
+_KEPT = 4  # models of tiles in memory
+_OFF = 64  # units in the last place beside a border, farther than rounding moves vertices
+
+
+@dataclass(eq=False)
+class Tile:
+    """One tile of a model. column, row: its place, from 0 in the southwest. box: low x, low y, high x,
+    high y. cells, faces, vertices: how many it has. extent: (2, 3), the corners of the box around its
+    vertices. volumes: (B,), of its part of each block. file: its .npz; beside it the same as .vtu."""
+
+    column: int
+    row: int
+    name: str
+    box: tuple[float, float, float, float]
+    file: Path
+    cells: int
+    faces: int
+    vertices: int
+    extent: np.ndarray
+    volumes: np.ndarray
+    _entry: TileEntry = field(repr=False)
+    _project: Project = field(repr=False)
+
+    def model(self) -> Model:
+        """The tile as a model, read anew. Raises InputRefused where its file is not the one that was
+        written."""
+        try:
+            digest = file_digest(self.file)
+        except OSError as error:
+            raise InputRefused(f"cannot be read: {error.strerror}", file=self.file) from error
+        if digest != self._entry.sha256:
+            raise InputRefused("it has changed since it was written; build the model again", file=self.file)
+        return read_model(self._project, self.file)
+
+
+@dataclass(eq=False)
+class TiledModel:
+    """A model in tiles, over all tiles: its blocks as of Model. cells of columns count those of the tiles,
+    which borders divide. project: without shapes. patches, rounded, unequal: as of Catalog."""
+
+    name: str
+    folder: Path
+    cell_kind: str
+    blocks: list[Block]
+    tiles: list[Tile]
+    x: np.ndarray
+    y: np.ndarray
+    project: Project
+    patches: int
+    rounded: int
+    unequal: int
+    warnings: list[BuildWarning]
+
+    def __post_init__(self):
+        self._model = functools.lru_cache(_KEPT)(lambda number: self.tiles[number].model())
+
+    @property
+    def volume(self) -> float:
+        """The volume of all blocks, model units cubed."""
+        return float(sum(block.volume for block in self.blocks))
+
+    @property
+    def surface_names(self) -> list[str]:
+        return [surface.name for rock in self.project.rocks for surface in rock.surfaces]
+
+    def section(self, point, normal, threads: int = 0) -> Section:
+        """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
+        is moved off it by a rounding."""
+        point, normal = (np.asarray(each, np.float64) for each in (point, normal))
+        if point.shape != (3,) or normal.shape != (3,) or not normal.any():
+            raise UsageError("a plane is a point and a normal that is not zero, three numbers each")
+        if np.count_nonzero(normal) == 1:
+            point = self._off_borders(point[None])[0]
+
+        def meets(tile: Tile) -> bool:
+            away = (self._corners(tile) - point) @ normal
+            return away.min() <= 0 <= away.max()
+
+        return self._joined(meets, lambda model: model.section(point, normal, threads))
+
+    def fence(self, polyline, threads: int = 0) -> Fence:
+        """As Model.fence; polygons come by tile."""
+        line = np.asarray(polyline, np.float64)
+        if line.ndim != 2 or line.shape[1:] != (2,) or len(line) < 2:
+            raise UsageError(f"polyline must be an array (N, 2) with N > 1, not {line.shape}")
+        line = self._off_borders(line)
+
+        def meets(tile: Tile) -> bool:
+            low = np.minimum(line[:-1], line[1:])
+            high = np.maximum(line[:-1], line[1:])
+            at = tile.extent[:, :2]
+            return bool(((low <= at[1]) & (high >= at[0])).all(axis=1).any())
+
+        return self._joined(meets, lambda model: model.fence(line, threads))
+
+    def borehole(self, x: float, y: float) -> list[Interval]:
+        """As Model.borehole."""
+        column, row = (
+            int(np.searchsorted(lines, at, "right")) - 1 for lines, at in ((self.x, x), (self.y, y))
+        )
+        for number, tile in enumerate(self.tiles):
+            if (tile.column, tile.row) == (column, row):
+                return self._model(number).borehole(x, y)
+        return []
+
+    def _corners(self, tile: Tile) -> np.ndarray:
+        """(8, 3) of the box around a tile's vertices."""
+        choice = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T
+        return tile.extent[choice, [0, 1, 2]]
+
+    def _off_borders(self, places: np.ndarray) -> np.ndarray:
+        """Places (N, 2 or 3) with coordinates on no border between tiles: moved from there by a rounding."""
+        places = places.copy()
+        for axis, lines in enumerate((self.x, self.y)):
+            on = np.isin(places[:, axis], lines)
+            places[on, axis] += _OFF * np.spacing(np.abs(lines).max())
+        return places
+
+    def _joined(self, meets, cut):
+        """The sections of the tiles that a cutter meets as one."""
+        numbers = [number for number, tile in enumerate(self.tiles) if meets(tile)]
+        if not self.tiles:
+            raise UsageError("the model has no cells")
+        first_cell = np.cumsum([0, *(tile.cells for tile in self.tiles)])
+        sections = []
+        for number in numbers or [0]:
+            found = cut(self._model(number))
+            cells = np.where(found.cells >= 0, found.cells + np.int32(first_cell[number]), -1)
+            sections.append(replace(found, cells=cells.astype(np.int32)))
+        return joined_sections(sections)
+
+
+def joined_sections(sections: list[Section]) -> Section:
+    """Sections of parts of a model as one; equal vertices become one."""
+    first = np.cumsum([0, *(len(each.vertices) for each in sections)])
+    vertices, number = np.unique(
+        np.concatenate([each.vertices for each in sections]), axis=0, return_inverse=True
+    )
+    corners = [each.polygon_vertices + start for each, start in zip(sections, first[:-1], strict=True)]
+    starts = np.cumsum([0, *(len(each.polygon_vertices) for each in sections)])
+    offsets = [each.offsets[:-1] + start for each, start in zip(sections, starts[:-1], strict=True)]
+    by_polygon = ["cells", "blocks", "block", "property", "compartment"]
+    if isinstance(sections[0], Fence):
+        by_polygon.append("panel")
+    return replace(
+        sections[0],
+        vertices=vertices,
+        offsets=np.concatenate([*offsets, starts[-1:]]).astype(np.int64),
+        polygon_vertices=number.reshape(-1)[np.concatenate(corners)].astype(np.int32),
+        **{name: np.concatenate([getattr(each, name) for each in sections]) for name in by_polygon},
+    )
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def open_tiles(folder: str | Path) -> TiledModel:
+    """Opens the folder of a model in tiles (realmodel.distributed.build); only its table is read.
+
+    Raises InputRefused where it holds none, or one that is not finished.
+    """
+    folder = Path(folder)
+    return tiled_model(read_catalog(folder), folder)
+
+
+def tiled_model(catalog: Catalog, folder: Path) -> TiledModel:
+    """The model that a table is of."""
+    tiles = [
+        Tile(
+            entry.column,
+            entry.row,
+            entry.name,
+            catalog.grid.box(entry.column, entry.row),
+            folder / TILES / f"{entry.name}.npz",
+            entry.cells,
+            entry.faces,
+            entry.vertices,
+            np.array([entry.low, entry.high], np.float64),
+            np.array(entry.volumes, np.float64),
+            entry,
+            catalog.project,
+        )
+        for entry in catalog.tiles
+    ]
+    return TiledModel(
+        catalog.project.name,
+        folder,
+        catalog.cell_kind,
+        catalog.blocks,
+        tiles,
+        catalog.grid.x,
+        catalog.grid.y,
+        catalog.project,
+        catalog.patches,
+        catalog.rounded,
+        catalog.unequal,
+        catalog.warnings,
+    )

@@ -1,0 +1,444 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model built tile by tile into a folder (docs/dev/tiles.md): resumed where a run ended."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..core import BuildFailed, BuildWarning, OutputFailed, UsageError, build_surfaces
+from ..core.atomic import Outputs
+from ..core.blocks import Block
+from ..core.build_options import check_cells
+from ..core.errors import place_text
+from ..core.exporters.npz import write_arrays
+from ..core.exporters.vtk_xml import write_pieces
+from ..core.exporters.vtu import write_vtu
+from ..core.simulation import PolyhedralMesh
+from ..core.tiles import TiledModel
+from ..core.tiles.borders import (
+    OPPOSITE,
+    Interfaces,
+    Patches,
+    interfaces_on,
+    matched,
+    patches_on,
+    positions_on,
+    sides_of,
+    with_vertices_of,
+)
+from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
+from ..core.tiles.grid import checked_size, tile_grid
+from ..core.tiles.tile_model import (
+    Frame,
+    TileParts,
+    build_tile,
+    read_arrays,
+    read_model,
+    without_shapes,
+    write_model,
+)
+from ..core.tiles.tiled_model import file_digest, tiled_model
+from ..core.validation import PLACES_OF_REPORT
+from ..core.work import Work, native_module, run
+from .workers import client_of, in_any_order
+
+_RUN = "run"  # what only a run needs, in the folder
+_PREPARED, _BUILT, _JOINED = 0.25, 0.75, 0.97  # of the time
+Name = tuple[int, int]  # column and row of a tile
+
+
+def build(
+    project,
+    folder: str | Path,
+    tile_size: tuple[float, float],
+    client=None,
+    *,
+    cells: str = "columns",
+    progress=None,
+    cancel=None,
+) -> TiledModel:
+    """Builds a model in tiles on workers of Dask, and leaves it in a folder that core.open_tiles opens.
+
+    tile_size: width and height in plan, model units; a line between tiles may be off by a sixteenth of this.
+    client: of distributed; None: a LocalCluster with a process for each processor. All workers have to see
+    the folder under the same path. cells: as of core.build. A run that was stopped goes on where it was when
+    it is started again with the same arguments; a folder that is finished is opened.
+
+    Each tile is validated, and its borders compared with its neighbors', before the result is there. Raises
+    as core.build; UsageError where Dask is missing, or the folder holds another model; OutputFailed.
+    """
+    check_cells(cells)
+    size = checked_size(tile_size)
+    if project.faults or project.bodies:
+        raise UsageError("models with faults or bodies are not built in tiles; build them as a whole")
+    folder = Path(folder)
+    told = progress or (lambda _share, _text: None)
+    prepared = _prepared(project, size, cells, lambda share, text: told(_PREPARED * share, text), cancel)
+    if (folder / CATALOG).exists():
+        return _finished(folder, prepared.digest)
+    store = _Store(folder, prepared.digest)
+    names = store.write_parts(prepared)
+    with client_of(client) as workers:
+        shared = (store, prepared.frame, frozenset(names))
+        done = sum(store.has("built", name) for name in names)
+        todo = [name for name in names if not store.has("built", name)]
+        for _ in in_any_order(workers, _build, shared, todo, cancel):
+            done += 1
+            share = _PREPARED + (_BUILT - _PREPARED) * done / len(names)
+            told(share, f"{done} of {len(names)} tiles built")
+        done = sum(store.has("joined", name) for name in names)
+        todo = [name for name in names if not store.has("joined", name)]
+        for _ in in_any_order(workers, _join, shared, todo, cancel):
+            done += 1
+            told(_BUILT + (_JOINED - _BUILT) * done / len(names), f"{done} of {len(names)} tiles joined")
+    catalog = _catalog(prepared, store, names)
+    write_index(store, [f"{TILES}/{_stem(name)}.vtu" for name in names])
+    write_catalog(catalog, folder)
+    store.remove()
+    return tiled_model(catalog, folder)
+
+
+@dataclass(frozen=True)
+class _Prepared:
+    """frame: what tiles share. rocks: as the stack builder takes them, all of them. blocks: of the whole,
+    empty. digest: of all that the result depends on."""
+
+    frame: Frame
+    rocks: list[tuple]
+    warnings: list[BuildWarning]
+    digest: str
+
+
+def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
+    surfaces = build_surfaces(
+        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel
+    )
+    inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
+    rocks = [
+        (
+            entry.surfaces,
+            entry.region,
+            entry.rock.base_elevation,
+            [surface.rule for surface in entry.rock.surfaces],
+        )
+        for entry in inputs
+    ]
+    joined = run(lambda work: _joined(work, rocks), cancel=cancel)
+    if joined is not None:
+        rocks, text = joined
+        warnings.append(BuildWarning(text, "joined"))
+    # surfaces on the region's own mesh end where it ends
+    clips = tuple(
+        region is not None and not all(surface.interpolated for surface in entry.rock.surfaces)
+        for (_, region, _, _), entry in zip(rocks, inputs, strict=True)
+    )
+    meshes = [vertices for shapes, *_ in rocks for vertices, _ in shapes]
+    meshes += [rocks[r][1][0] for r in np.flatnonzero(clips)]
+    grid = tile_grid(meshes, size)
+    frame = Frame(without_shapes(project, inputs), cells, grid, clips)
+    return _Prepared(frame, rocks, warnings, _digest(frame, rocks))
+
+
+def _joined(work: Work, rocks: list[tuple]):
+    native = native_module()
+    with work.phase(0.0, 1.0, "comparing the borders"):
+        try:
+            return work.native(native.join_rock_masses, rocks)
+        except native.InputError:
+            return None  # the tile where it is tells of it in the user's names
+
+
+def _digest(frame: Frame, rocks: list[tuple]) -> str:
+    digest = hashlib.sha256(repr((frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode())
+    digest.update(repr((frame.grid.y.tolist(), frame.project)).encode())
+    for shapes, region, base, rules in rocks:
+        digest.update(repr((base, rules)).encode())
+        for array in (*(each for shape in shapes for each in shape), *(region or ())):
+            digest.update(np.ascontiguousarray(array))
+    return digest.hexdigest()
+
+
+def _stem(name: Name) -> str:
+    return f"{name[0]:04d}-{name[1]:04d}"
+
+
+class _Store:
+    """The files of a run, in the folder of the result; each is whole or not there."""
+
+    def __init__(self, folder: Path, digest: str):
+        self.folder = folder
+        try:
+            self._run.mkdir(parents=True, exist_ok=True)
+            (folder / TILES).mkdir(exist_ok=True)
+            of = self._run / "digest"
+            if of.exists() and of.read_text() != digest:
+                raise _another(folder)
+            if not of.exists() and any(each.name not in (_RUN, TILES) for each in folder.iterdir()):
+                raise UsageError(f"{folder}: a folder with other content; choose a new one")
+            with Outputs() as outputs, outputs.file(of) as file:
+                file.write(digest.encode())
+        except OSError as error:
+            raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+    @property
+    def _run(self) -> Path:
+        return self.folder / _RUN
+
+    def file(self, kind: str, name: Name) -> Path:
+        """kind: parts, what a tile needs; built, its model; sides, what its borders are; joined, its model
+        with its neighbors' vertices; patches, what its borders are then."""
+        folder = self.folder / TILES if kind == "joined" else self._run
+        prefix = "" if kind == "joined" else f"{kind}-"
+        return folder / f"{prefix}{_stem(name)}.npz"
+
+    def record(self, kind: str, name: Name) -> Path:
+        return self._run / f"{kind}-{_stem(name)}.json"
+
+    def has(self, kind: str, name: Name) -> bool:
+        """Whether a step is done: its record comes last."""
+        return self.record(kind, name).exists()
+
+    def done(self, kind: str, name: Name, **record) -> None:
+        with Outputs() as outputs, outputs.file(self.record(kind, name)) as file:
+            file.write(json.dumps(record).encode())
+
+    def told(self, kind: str, name: Name) -> dict:
+        try:
+            return json.loads(self.record(kind, name).read_text())
+        except (OSError, ValueError) as error:
+            text = f"{self.record(kind, name)}: cannot be read; delete {self._run} and start again"
+            raise BuildFailed(text) from error
+
+    def write_parts(self, prepared: _Prepared) -> list[Name]:
+        """Writes what each tile needs; the tiles that need something, in order of the grid."""
+        grid = prepared.frame.grid
+        listed = self._run / "parts.json"
+        if not listed.exists():
+            parts = TileParts(prepared.rocks, prepared.frame.clips, grid)
+            names = [
+                [column, row]
+                for column in range(grid.columns)
+                for row in range(grid.rows)
+                if parts.write(column, row, self.file("parts", (column, row)))
+            ]
+            with Outputs() as outputs, outputs.file(listed) as file:
+                file.write(json.dumps(names).encode())
+        return sorted((tuple(name) for name in json.loads(listed.read_text())), key=lambda n: n[::-1])
+
+    def write(self, path: Path, arrays: dict[str, np.ndarray]) -> None:
+        with Outputs() as outputs, outputs.file(path) as file:
+            write_arrays(arrays, file)
+
+    def remove(self) -> None:
+        shutil.rmtree(self._run, ignore_errors=True)
+
+
+def _another(folder: Path) -> UsageError:
+    return UsageError(
+        f"{folder}: it holds a model of another project, tile size or kind of cells; "
+        "choose another folder, or delete this one"
+    )
+
+
+def _finished(folder: Path, digest: str) -> TiledModel:
+    catalog = read_catalog(folder)
+    if catalog.digest != digest:
+        raise _another(folder)
+    return tiled_model(catalog, folder)
+
+
+def _neighbors(frame: Frame, name: Name, names: Iterable[Name]) -> list[tuple]:
+    """The sides of a tile that it shares: (side, the other tile)."""
+    shared = []
+    for side in sides_of(frame.grid.box(*name)):
+        other = (name[0] + side.step[0], name[1] + side.step[1])
+        if other in names:
+            shared.append((side, other))
+    return shared
+
+
+def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
+    """On a worker: builds a tile, and writes what its neighbors have to know of it."""
+    store, frame, names = shared
+    box = frame.grid.box(*name)
+    model = run(lambda work: build_tile(work, frame, box, store.file("parts", name), threads=1))
+    sides = {}
+    for side, _ in _neighbors(frame, name, names):
+        found = interfaces_on(model, side)
+        sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": found.ends}
+    write_model(model, store.file("built", name))
+    store.write(store.file("sides", name), sides)
+    store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
+
+
+def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
+    """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
+    store, frame, names = shared
+    model = read_model(frame.project, store.file("built", name))
+    theirs = {}
+    for side, other in _neighbors(frame, name, names):
+        arrays = read_arrays(store.file("sides", other))
+        theirs[side.name] = Interfaces(*(arrays[f"{OPPOSITE[side.name]}_{key}"] for key in ("on", "ends")))
+        model = with_vertices_of(model, side, theirs[side.name])
+    report = model.validate(PLACES_OF_REPORT, threads=1)
+    if not report.passed:
+        raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
+    patches = {}
+    for side, _ in _neighbors(frame, name, names):
+        found = patches_on(model, side, positions_on(model, side, theirs[side.name]))
+        part = model.cell_component[found.cell]
+        patches |= {
+            f"{side.name}_shape": found.shape,
+            f"{side.name}_block": found.block,
+            f"{side.name}_part": part,
+            f"{side.name}_open": np.array(found.open),
+        }
+    parts, first = np.unique(model.cell_component, return_index=True)
+    patches |= {"parts": parts, "block_of_part": model.cell_block[first]}
+    file = store.file("joined", name)
+    write_model(model, file)
+    mesh = PolyhedralMesh.of_model(model)
+    with Outputs() as outputs, outputs.file(file.with_suffix(".vtu")) as out:
+        write_vtu(mesh, out, lambda _share: None)
+    store.write(store.file("patches", name), patches)
+    empty = not len(model.vertices)
+    store.done(
+        "joined",
+        name,
+        sha256=file_digest(file),
+        cells=np.bincount(model.cell_block, minlength=len(model.blocks)).tolist(),
+        faces=len(model.face_surface),
+        vertices=len(model.vertices),
+        low=[0.0] * 3 if empty else model.vertices.min(axis=0).tolist(),
+        high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
+        blocks=[asdict(block) for block in model.blocks],
+    )
+
+
+def _patches(arrays: dict, side: str) -> Patches:
+    return Patches(
+        *(arrays[f"{side}_{key}"] for key in ("shape", "block", "part")), int(arrays[f"{side}_open"])
+    )
+
+
+class _Parts:
+    """The connected parts of blocks over all tiles, by sets that are joined."""
+
+    def __init__(self):
+        self._parent: dict[tuple, tuple] = {}
+        self._block: dict[tuple, int] = {}
+
+    def add(self, part: tuple, block: int) -> None:
+        self._parent[part], self._block[part] = part, block
+
+    def root(self, part: tuple) -> tuple:
+        while self._parent[part] != part:
+            self._parent[part] = part = self._parent[self._parent[part]]
+        return part
+
+    def join(self, one: tuple, other: tuple) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+    def count(self, blocks: int) -> np.ndarray:
+        """(B,) how many parts each block has."""
+        roots = [self._block[part] for part, parent in self._parent.items() if part == parent]
+        return np.bincount(np.array(roots, np.int64), minlength=blocks)
+
+
+def _catalog(prepared: _Prepared, store: _Store, names: list[Name]) -> Catalog:
+    """The table of the whole."""
+    frame = prepared.frame
+    parts, patches, warnings = _Parts(), np.zeros(3, np.int64), list(prepared.warnings)
+    for name in names:
+        arrays = read_arrays(store.file("patches", name))
+        for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
+            parts.add((*name, part), block)
+    for name in names:
+        own = read_arrays(store.file("patches", name))
+        for side, other in _neighbors(frame, name, names):
+            if side.name not in ("east", "north"):
+                continue
+            theirs = read_arrays(store.file("patches", other))
+            found = matched(_patches(own, side.name), _patches(theirs, OPPOSITE[side.name]), side)
+            if found.unequal:
+                near = "" if found.place is None else f" near {place_text(found.place)}"
+                text = (
+                    f"tiles {name} and {other} differ at {found.unequal} places on their border"
+                    f"{near}; the parts of blocks were joined by their areas there"
+                )
+                warnings.append(BuildWarning(text, "borders"))
+            patches += [found.patches, found.rounded, found.unequal]
+            for one, another in found.cells.tolist():
+                parts.join((*name, one), (*other, another))
+    told = [store.told("joined", name) for name in names]
+    return Catalog(
+        frame.project,
+        frame.cell_kind,
+        prepared.digest,
+        frame.grid,
+        _blocks(frame, told, parts),
+        [_entry(name, record) for name, record in zip(names, told, strict=True)],
+        *patches.tolist(),
+        [*warnings, *_warnings(store, names)],
+    )
+
+
+def _blocks(frame: Frame, told: list[dict], parts: _Parts) -> list[Block]:
+    if not told:
+        return []
+    of_tiles = [[Block(**block) for block in record["blocks"]] for record in told]
+    components = parts.count(len(of_tiles[0]))
+    blocks = []
+    for number, block in enumerate(of_tiles[0]):
+        volume = math.fsum(blocks_[number].volume for blocks_ in of_tiles)
+        cells = sum(record["cells"][number] for record in told)
+        if frame.cell_kind == "blocks":
+            cells = int(components[number])
+        blocks.append(replace(block, volume=volume, cells=cells, components=int(components[number])))
+    return blocks
+
+
+def _entry(name: Name, record: dict) -> TileEntry:
+    return TileEntry(
+        *name,
+        _stem(name),
+        record["sha256"],
+        sum(record["cells"]),
+        record["faces"],
+        record["vertices"],
+        record["low"],
+        record["high"],
+        [block["volume"] for block in record["blocks"]],
+    )
+
+
+def _warnings(store: _Store, names: list[Name]) -> list[BuildWarning]:
+    """Those of all tiles; what they say of triangles as one."""
+    items: dict[tuple, set] = {}
+    for name in names:
+        for told in store.told("built", name)["warnings"]:
+            key = (told["kind"], told["rock"], told["surface"])
+            if told["kind"] != "no_area":
+                key = (*key, told["text"])
+            items.setdefault(key, set()).update(told["items"])
+    found = []
+    for (kind, rock, surface, *text), numbers in items.items():
+        if kind == "no_area":
+            what = "triangle" if len(numbers) == 1 else "triangles"
+            text = [f"{len(numbers)} {what} without area left out"]
+        found.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
+    return found
+
+
+def write_index(store: _Store, pieces: list[str]) -> None:
+    """The file that opens all tiles in ParaView."""
+    with Outputs() as outputs, outputs.file(store.folder / INDEX) as file:
+        write_pieces(file, pieces)

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/element_quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+// checkMesh's limits, or a little within them
+constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
+constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
+constexpr double kMostSkewness = 3.8;        ///< its limit is 4
+constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
+constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
+
+constexpr double kSteepFace = 0.5;       ///< cosine: of 60 degrees
+constexpr double kNoDeterminant = 1e-8;  ///< inner faces in two directions only
+constexpr double kThickEnd = 3;          ///< minimum thicknesses: no block gives up an end as thick
+constexpr double kEasedFace = 0.8;       ///< cosine: flatter faces are not what makes lines lean
+constexpr double kEasedShare = 0.1;
+
+using Point = std::array<double, 3>;
+
+double dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Point difference(const Point& a, const Point& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// A face between two elements, of three or four corners (of three the last is twice there).
+struct Face {
+    std::array<Point, 4> corners;
+    Point area, center;
+};
+
+/// Whether checkMesh fails a face between two elements.
+bool is_bad(const Face& face, const Point& own, double own_volume, const Point& other,
+            double other_volume) {
+    const Point line = difference(other, own), way = difference(face.center, own);
+    const double along = dot(line, face.area), size = std::sqrt(dot(face.area, face.area)),
+                 length = std::sqrt(dot(line, line));
+    if (along < kMostLean * size * length) return true;
+    const double before = std::abs(dot(way, face.area)),
+                 behind = std::abs(dot(difference(other, face.center), face.area));
+    if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
+    if (std::min(own_volume, other_volume) < kLeastShare * std::max(own_volume, other_volume))
+        return true;
+    Point off;  // from where the line crosses the face to its center
+    for (std::size_t k = 0; k < 3; ++k)
+        off[k] = way[k] - dot(way, face.area) / along * line[k];
+    const double far = std::sqrt(dot(off, off));
+    if (far == 0) return false;
+    double reach = 0.2 * length;
+    for (const Point& corner : face.corners)
+        reach = std::max(reach, std::abs(dot(off, difference(corner, face.center))) / far);
+    return far > kMostSkewness * reach;
+}
+
+/// The side of a column between heights `low` and `high` at points a and b of the plan.
+Face side_face(const PlanPoint& a, const PlanPoint& b, const std::array<double, 2>& low,
+               const std::array<double, 2>& high) {
+    const double at_a = high[0] - low[0], at_b = high[1] - low[1], sum = at_a + at_b;
+    Face face{{{{a[0], a[1], low[0]},
+                {b[0], b[1], low[1]},
+                {b[0], b[1], high[1]},
+                {a[0], a[1], high[0]}}},
+              {(b[1] - a[1]) * sum / 2, -(b[0] - a[0]) * sum / 2, 0},
+              {}};
+    // of the two triangles at the diagonal from the first corner, the first is as large as at_b
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto& c = face.corners;
+        face.center[k] =
+            (at_b * (c[0][k] + c[1][k] + c[2][k]) + at_a * (c[0][k] + c[2][k] + c[3][k])) /
+            (3 * sum);
+    }
+    return face;
+}
+
+}  // namespace
+
+ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& levels,
+                               const ColumnFronts& columns, double minimum_thickness,
+                               const Progress* progress)
+    : plan_(plan),
+      levels_(levels),
+      columns_(columns),
+      minimum_thickness_(minimum_thickness),
+      progress_(progress),
+      open_sides_(columns.fronts.size(), 0) {
+    for (std::size_t t = 0; t < plan.triangles(); ++t) {
+        poll(progress, t);
+        for (std::size_t i = 0; i < 3; ++i) {
+            // elsewhere neighbors share all their sides
+            const std::int32_t n = plan.neighbor(t, i);
+            if (n >= 0 && !plan.is_step(t, i) && columns.elements(index(n)) > 0) continue;
+            for_sides(t, i, [&](std::size_t element, bool is_shared, std::size_t) {
+                if (!is_shared)
+                    open_sides_[element] =
+                        static_cast<std::uint8_t>(open_sides_[element] | 1U << i);
+            });
+        }
+    }
+}
+
+/// Both columns beside an edge have the heights of its ends in ascending order, so one pass over
+/// both finds the sides that they share.
+template <class Visit>
+void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& visit) const {
+    using Side = std::array<std::int32_t, 4>;
+    const std::size_t i = edge, j = (edge + 1) % 3;
+    const std::int32_t n = plan_.neighbor(t, i);
+    std::size_t at = 0, end = 0, u = 0, v = 0;
+    if (n >= 0) {
+        at = columns_.offset[index(n)];
+        end = at + columns_.elements(index(n));
+        const auto &own = plan_.mesh().triangles[t], &beyond = plan_.mesh().triangles[index(n)];
+        while (beyond[u] != own[i])
+            ++u;
+        while (beyond[v] != own[j])
+            ++v;
+    }
+    const auto side = [&](std::size_t e, std::size_t from, std::size_t to) {
+        const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+        return Side{low[from], low[to], high[from], high[to]};
+    };
+    const auto is_empty = [](const Side& s) { return s[0] == s[2] && s[1] == s[3]; };
+    const std::size_t first = columns_.offset[t];
+    for (std::size_t e = first; e < first + columns_.elements(t); ++e) {
+        const Side own = side(e, i, j);
+        if (is_empty(own)) continue;
+        while (at < end && (is_empty(side(at, u, v)) || side(at, u, v) < own))
+            ++at;
+        visit(e, at < end && side(at, u, v) == own, at);
+    }
+}
+
+ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_narrow) const {
+    Removals found, last;
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        // sides of walls that nothing stands behind are left to failing(), which gives up less
+        unsigned border = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            border |= plan_.neighbor(t, i) < 0 ? 1U << i : 0U;
+        const std::size_t first = columns_.offset[t], count = columns_.elements(t);
+        for (std::size_t e = first; e < first + count; ++e) {
+            const bool is_first = e == first, is_last = e + 1 == first + count;
+            const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+            if (moved_corners(e) == 3) {
+                // a prism may become one with the next layer of its block, no more
+                if (border == 0 && !is_first && !is_last) continue;
+                if (is_first == is_last || count < 3 ||
+                    columns_.blocks[e] != columns_.blocks[is_first ? e + 1 : e - 1])
+                    continue;
+            }
+            if (is_tall(t, e) && moved_corners(e) == 3) continue;
+            const double independence = determinant(t, e, is_first, is_last, border);
+            const bool is_weak = independence < kWeakDeterminant,
+                       leans = moved_corners(e) < 3 &&
+                               ((!is_first && leans_at(t, e - 1, kSteepFace, false)) ||
+                                (!is_last && leans_at(t, e, kSteepFace, false)));
+            if (!is_weak && !leans) continue;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (low[i] == high[i]) continue;
+                const bool upper = is_first && !is_last;  // which of its heights goes
+                const std::int32_t gone = upper ? high[i] : low[i];
+                const double rise = position(t, i, high[i])[2] - position(t, i, low[i])[2];
+                // one alone in its column would only make its neighbor the end
+                if ((independence > kNoDeterminant || (is_first && is_last)) &&
+                    divides_blocks(t, i, gone) && rise >= kThickEnd * minimum_thickness_)
+                    continue;
+                const PostLevels::Removal removal{plan_.mesh().triangles[t][i], gone,
+                                                  upper ? low[i] : high[i]};
+                const auto levels = levels_.levels(index(plan_.posts()[3 * t + i]));
+                if (is_first && is_last) {
+                    if (is_narrow[t] != 0) found.push_back(removal);
+                } else if (!is_weak && levels.back() - levels.front() == 2) {
+                    last.push_back(removal);
+                } else {
+                    found.push_back(removal);
+                }
+            }
+        }
+    }
+    if (found.empty()) add_spare(last, found);
+    return found;
+}
+
+ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
+    std::vector<Body> bodies(columns_.fronts.size());
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        for (std::size_t e = columns_.offset[t]; e < columns_.offset[t] + columns_.elements(t); ++e)
+            bodies[e] = body(t, e);
+    }
+    Removals found;
+    const auto give_up = [&](std::size_t t, std::size_t e, bool upper) {
+        const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+        if (columns_.elements(t) == 1) {
+            // a thick one alone in its column stays: without it its neighbor would be the end
+            double rise = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                rise = std::max(rise, position(t, i, high[i])[2] - position(t, i, low[i])[2]);
+            if (is_narrow[t] == 0 || rise >= kThickEnd * minimum_thickness_) return;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (low[i] == high[i]) continue;
+            found.push_back(
+                {plan_.mesh().triangles[t][i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
+        }
+    };
+    // the neighbor within takes the volume, but what stands out of the top goes
+    const auto upper = [&](std::size_t t, std::size_t e) {
+        const std::size_t first = columns_.offset[t], count = columns_.elements(t);
+        return count > 1 && (e == first || (e + 1 == first + count && is_tall(t, e)));
+    };
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
+        const auto& nodes = plan_.mesh().triangles[t];
+        for (std::size_t e = first; e < end; ++e) {
+            const bool is_first = e == first, is_last = e + 1 == end;
+            if (determinant(t, e, is_first, is_last, open_sides_[e]) < kWeakDeterminant)
+                give_up(t, e, upper(t, e));
+            if (is_last) continue;
+            const Front& front = columns_.fronts[e + 1];
+            Face face{{}, flat_area(t, front), {}};
+            for (std::size_t i = 0; i < 4; ++i)
+                face.corners[i] = position(t, i % 3, front[i % 3]);
+            for (std::size_t k = 0; k < 3; ++k)
+                face.center[k] = (face.corners[0][k] + face.corners[1][k] + face.corners[2][k]) / 3;
+            if (!is_bad(face, bodies[e].center, bodies[e].volume, bodies[e + 1].center,
+                        bodies[e + 1].volume))
+                continue;
+            // the face goes, and the smaller element with it
+            if (bodies[e].volume < bodies[e + 1].volume)
+                give_up(t, e, true);
+            else
+                give_up(t, e + 1, e + 2 == end && is_tall(t, e + 1));
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t n = plan_.neighbor(t, i);
+            if (n < 0 || index(n) < t) continue;
+            const std::size_t j = (i + 1) % 3;
+            const auto a = levels_.heights(nodes[i]), b = levels_.heights(nodes[j]);
+            for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
+                if (!is_shared) return;
+                const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+                const Face face = side_face(
+                    plan_.mesh().vertices[index(nodes[i])], plan_.mesh().vertices[index(nodes[j])],
+                    {a[index(low[i])], b[index(low[j])]}, {a[index(high[i])], b[index(high[j])]});
+                if (!is_bad(face, bodies[e].center, bodies[e].volume, bodies[beyond].center,
+                            bodies[beyond].volume))
+                    return;
+                const bool own = bodies[e].volume < bodies[beyond].volume;
+                const std::size_t column = own ? t : index(n), smaller = own ? e : beyond;
+                give_up(column, smaller, upper(column, smaller));
+            });
+        }
+    }
+    return found;
+}
+
+std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t> is_asked) const {
+    std::vector<PostLevels::Move> moves;
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        const auto& nodes = plan_.mesh().triangles[t];
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [&](std::int32_t n) { return is_asked[index(n)] != 0; }))
+            continue;
+        const std::size_t first = columns_.offset[t];
+        for (std::size_t e = first; e + 1 < first + columns_.elements(t); ++e) {
+            if (!leans_at(t, e, kEasedFace, true)) continue;
+            const Front& face = columns_.fronts[e + 1];
+            double mean = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                mean += position(t, i, face[i])[2] / 3;
+            for (std::size_t i = 0; i < 3; ++i)
+                moves.push_back(
+                    {nodes[i], face[i], kEasedShare * (mean - position(t, i, face[i])[2])});
+        }
+    }
+    return moves;
+}
+
+/// Adds heights as long as no column around them has less than two elements then: one alone in its
+/// column would have no neighbor above, which is worse.
+void ElementQuality::add_spare(Removals& last, Removals& found) const {
+    if (last.empty()) return;
+    std::vector<std::size_t> elements(plan_.triangles());
+    for (std::size_t t = 0; t < elements.size(); ++t)
+        elements[t] = columns_.elements(t);
+    const auto around = bucketize<std::int32_t>(plan_.nodes(), [&](const auto& put) {
+        for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+            for (const std::int32_t n : plan_.mesh().triangles[t])
+                put(index(n), static_cast<std::int32_t>(t));
+        }
+    });
+    std::sort(last.begin(), last.end());
+    std::int32_t done = -1;
+    for (const PostLevels::Removal& removal : last) {
+        const auto triangles = around[index(removal.node)];
+        if (removal.node == done ||
+            std::any_of(triangles.begin(), triangles.end(), [&](std::int32_t t) {
+                return elements[index(t)] == 1 || elements[index(t)] == 2;
+            }))
+            continue;
+        done = removal.node;
+        for (const std::int32_t t : triangles)
+            --elements[index(t)];
+        found.push_back(removal);
+    }
+}
+
+/// Whether an element is higher than its triangle is wide: it would only get worse if it became one
+/// with the next.
+bool ElementQuality::is_tall(std::size_t t, std::size_t element) const {
+    const Body own = body(t, element);
+    const double area = flat_area(t, columns_.fronts[element])[2];
+    return own.volume > area * std::sqrt(2 * area);
+}
+
+/// Whether a height is not just one between layers of one block: without it a block would lose
+/// volume.
+bool ElementQuality::divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const {
+    const auto own = levels_.levels(index(plan_.posts()[3 * t + corner]));
+    const auto blocks = levels_.layer_blocks(plan_.rock(t));
+    std::int32_t below = -1, above = -1;
+    for (std::size_t l = 0; l + 1 < own.size(); ++l) {
+        if (own[l] == own[l + 1]) continue;
+        if (own[l + 1] == height) below = blocks[l];
+        if (own[l] == height) above = blocks[l];
+    }
+    return below != above;
+}
+
+std::size_t ElementQuality::moved_corners(std::size_t element) const {
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        moved += columns_.fronts[element][i] != columns_.fronts[element + 1][i];
+    return moved;
+}
+
+/// Whether the line between the centers of an element and the next one leans by more than kMostLean
+/// from the direction across the face between them. Asked of faces that are steeper, or flatter,
+/// than an angle of this cosine.
+bool ElementQuality::leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const {
+    const Point area = flat_area(t, columns_.fronts[below + 1]);
+    const double across = dot(area, area);
+    if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
+    const Point line = difference(body(t, below + 1).center, body(t, below).center);
+    return dot(line, area) < kMostLean * std::sqrt(dot(line, line) * across);
+}
+
+/// The center of an element's volume: its upright edges weigh as they are long.
+ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) const {
+    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+    std::array<Point, 3> from;
+    std::array<double, 3> rise;
+    double total = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        from[i] = position(t, i, low[i]);
+        rise[i] = position(t, i, high[i])[2] - from[i][2];
+        total += rise[i];
+    }
+    // integrals over a triangle of two linear functions: 1/12 of their products at different
+    // corners, 1/6 at the same
+    Body made{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
+            made.center[0] += weight * from[i][0];
+            made.center[1] += weight * from[i][1];
+            made.center[2] += weight * (from[i][2] + rise[i] / 2);
+        }
+    }
+    const Point u = difference(from[1], from[0]), v = difference(from[2], from[0]);
+    made.volume = (u[0] * v[1] - u[1] * v[0]) * total / 6;
+    return made;
+}
+
+ElementQuality::Point ElementQuality::flat_area(std::size_t t, const Front& front) const {
+    const Point a = position(t, 0, front[0]), u = difference(position(t, 1, front[1]), a),
+                v = difference(position(t, 2, front[2]), a);
+    return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
+            (u[0] * v[1] - u[1] * v[0]) / 2};
+}
+
+ElementQuality::Point ElementQuality::position(std::size_t t, std::size_t corner,
+                                               std::int32_t at) const {
+    const std::int32_t node = plan_.mesh().triangles[t][corner];
+    const PlanPoint& p = plan_.mesh().vertices[index(node)];
+    return {p[0], p[1], levels_.heights(node)[index(at)]};
+}
+
+double ElementQuality::determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
+                                   unsigned open_sides) const {
+    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+    std::array<Point, 5> areas;
+    std::size_t count = 0;
+    if (!is_first) areas[count++] = flat_area(t, low);
+    if (!is_last) areas[count++] = flat_area(t, high);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        if ((open_sides >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
+        const Point a = position(t, i, low[i]), b = position(t, j, low[j]);
+        const double rise =
+            (position(t, i, high[i])[2] - a[2] + position(t, j, high[j])[2] - b[2]) / 2;
+        areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
+    }
+    double mean = 0;
+    for (std::size_t f = 0; f < count; ++f)
+        mean += std::sqrt(dot(areas[f], areas[f]));
+    if (!(mean > 0)) return 0;
+    mean /= static_cast<double>(count);
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    for (std::size_t f = 0; f < count; ++f) {
+        const double x = areas[f][0] / mean, y = areas[f][1] / mean, z = areas[f][2] / mean;
+        xx += x * x;
+        xy += x * y;
+        xz += x * z;
+        yy += y * y;
+        yz += y * z;
+        zz += z * z;
+    }
+    return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
+                    xz * (xy * yz - yy * xz)) /
+           8;
+}
+
+}  // namespace realmodel::simulation

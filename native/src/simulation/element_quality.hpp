@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "simulation/column_fronts.hpp"
+#include "simulation/plan_topology.hpp"
+#include "simulation/post_levels.hpp"
+
+namespace realmodel::simulation {
+
+/// Finds the elements that solvers do badly with, as OpenFOAM's checkMesh measures it, and what
+/// mends them. Heights are read anew each time; fronts must stay.
+class ElementQuality {
+public:
+    ElementQuality(const PlanTopology& plan, const PostLevels& levels, const ColumnFronts& columns,
+                   double minimum_thickness, const Progress* progress);
+
+    double elements() const { return static_cast<double>(columns_.fronts.size()); }
+
+    using Removals = std::vector<PostLevels::Removal>;
+
+    /// Elements with inner faces in too few directions to compute a gradient with (their cell
+    /// determinant), and those whose line to the center of the next element hardly crosses the face
+    /// between the two. These are thin ends of layers. Their upright edges are given up, unless a
+    /// block would lose much.
+    /// @param is_narrow  narrow_strips()
+    Removals weak(std::span<const std::uint8_t> is_narrow) const;
+
+    /// The elements that checkMesh fails, whatever their blocks lose: too small a determinant, and
+    /// one of two neighbors where the line between their centers crosses their face far from its
+    /// center, or at more than 70 degrees from the direction across, or if one is much smaller.
+    Removals failing(std::span<const std::uint8_t> is_narrow) const;
+
+    /// Of each steep face that the line between the centers of its elements crosses at too small an
+    /// angle: by how much its corners would move to make it less steep.
+    /// @param is_asked  of each node: triangles without one are passed over
+    std::vector<PostLevels::Move> steep(std::span<const std::uint8_t> is_asked) const;
+
+private:
+    using Point = std::array<double, 3>;
+    struct Body {
+        Point center;
+        double volume;
+    };
+
+    std::size_t moved_corners(std::size_t element) const;
+    Point position(std::size_t t, std::size_t corner, std::int32_t at) const;
+    Point flat_area(std::size_t t, const Front& front) const;
+    Body body(std::size_t t, std::size_t element) const;
+    bool leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const;
+    double determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
+                       unsigned open_sides) const;
+    bool is_tall(std::size_t t, std::size_t element) const;
+    bool divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const;
+    void add_spare(Removals& last, Removals& found) const;
+    /// Calls visit(element, is_shared, beyond) for each upright side at one edge of a triangle:
+    /// whether an element of the next column, `beyond`, has the same side.
+    template <class Visit>
+    void for_sides(std::size_t t, std::size_t edge, const Visit& visit) const;
+
+    const PlanTopology& plan_;
+    const PostLevels& levels_;
+    const ColumnFronts& columns_;
+    const double minimum_thickness_;
+    const Progress* progress_;
+    std::vector<std::uint8_t> open_sides_;  ///< of each element: a bit for each edge, if outside
+};
+
+}  // namespace realmodel::simulation

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "complex_checks.hpp"
+
+namespace realmodel::strata {
+namespace {
+
+class TileOf : public testing::TestWithParam<CellKind> {};
+
+OwnedSurface slope(int n, double z, double x, double y, bool other) {
+    return grid(
+        n, n, -1, -1, 7, 7, [=](double u, double v) { return z + x * u + y * v; }, other);
+}
+
+/// A triangle as region, on a base at -10.
+struct Input {
+    std::vector<OwnedSurface> surfaces{slope(3, 0, 0.1, 0.02, false), slope(5, 1, -0.2, 0.1, true),
+                                       slope(4, 2, 0.3, -0.3, false)};
+    std::vector<double> corners{0, 0, 6, 1, 1, 5};
+    std::vector<std::int32_t> triangle{0, 1, 2};
+
+    StackInput view(bool has_region) const {
+        StackInput input;
+        for (const OwnedSurface& s : surfaces)
+            input.surfaces.push_back(s.view());
+        if (has_region) input.region = {corners, triangle};
+        input.base_elevation = -10;
+        return input;
+    }
+};
+
+TEST_P(TileOf, FourTilesHaveTheVolumesOfTheWhole) {
+    const Input owned;
+    for (const bool has_region : {true, false}) {
+        const StackInput input = owned.view(has_region);
+        const CellComplex whole = build_stack(input, 1, nullptr, GetParam());
+        std::vector<double> sum(whole.volumes.size());
+        for (const auto& [x0, x1] : {std::pair{-2.0, 2.3}, std::pair{2.3, 8.0}}) {
+            for (const auto& [y0, y1] : {std::pair{-2.0, 1.7}, std::pair{1.7, 8.0}}) {
+                const CellComplex tile =
+                    build_tile({&input, 1}, {x0, y0, x1, y1}, 2, nullptr, GetParam());
+                expect_valid(tile, GetParam() == CellKind::kBlocks);
+                for (const auto& v : tile.vertices) {
+                    EXPECT_TRUE(v[0] >= x0 && v[0] <= x1 && v[1] >= y0 && v[1] <= y1);
+                }
+                for (std::size_t b = 0; b < sum.size(); ++b)
+                    sum[b] += tile.volumes[b];
+            }
+        }
+        for (std::size_t b = 0; b < sum.size(); ++b)
+            EXPECT_NEAR(sum[b], whole.volumes[b], 1e-12 * std::abs(whole.volumes[b]));
+    }
+}
+
+TEST_P(TileOf, AWindowBesideTheRegionIsEmpty) {
+    const Input owned;
+    const StackInput input = owned.view(true);
+    const CellComplex tile = build_tile({&input, 1}, {5, 5, 7, 7}, 1, nullptr, GetParam());
+    EXPECT_TRUE(tile.cell_block.empty());
+    EXPECT_EQ(tile.volumes, std::vector<double>(3, 0.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, TileOf, testing::Values(CellKind::kColumns, CellKind::kBlocks));
+
+TEST(JoinRockMasses, GivesWhatIsBuilt) {
+    const Input owned;
+    StackInput input = owned.view(true);
+    EXPECT_FALSE(join_rock_masses({&input, 1}, 1, nullptr).warning);
+
+    // a border written with other digits
+    OwnedSurface moved = owned.surfaces[1];
+    for (std::size_t i = 0; i < moved.vertices.size(); i += 3) {
+        if (moved.vertices[i] == 7.0) moved.vertices[i] = std::nextafter(7.0, 8.0);
+    }
+    input.surfaces[1] = moved.view();
+    const JoinedInput joined = join_rock_masses({&input, 1}, 1, nullptr);
+    ASSERT_TRUE(joined.warning);
+    ASSERT_EQ(joined.meshes.size(), 4U);  // three surfaces and the region
+    EXPECT_EQ(joined.meshes[1].vertices, owned.surfaces[1].vertices);
+    EXPECT_EQ(joined.meshes[1].triangles, moved.triangles);
+    EXPECT_EQ(joined.meshes[3].vertices, owned.corners);
+}
+
+}  // namespace
+}  // namespace realmodel::strata

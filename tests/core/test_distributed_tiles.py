@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tiles on workers of Dask: killed workers, another scheduler, the command line."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from realmodel.core import Cancelled, build, load_project, open_tiles
+
+ROOT = Path(__file__).resolve().parents[2]
+PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
+
+distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+
+
+@pytest.fixture(scope="module")
+def client():
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+        ) as cluster,
+        distributed.Client(cluster) as made,
+    ):
+        yield made
+
+
+def run(folder, client, **options):
+    from realmodel.distributed import build as build_tiles
+
+    return build_tiles(load_project(PROJECT), folder, (35, 30), client, **options)
+
+
+def assert_whole(tiled):
+    whole = build(load_project(PROJECT), cells=tiled.cell_kind)
+    for one, other in zip(tiled.blocks, whole.blocks, strict=True):
+        assert one.components == other.components
+        assert abs(one.volume - other.volume) <= 1e-12 * other.volume
+    assert tiled.unequal == 0
+
+
+def test_a_killed_worker_does_not_stop_it(client, tmp_path):
+    killed = []
+
+    def kill():
+        while not list(tmp_path.glob("t/run/built-*.json")):
+            time.sleep(0.02)
+        pids = client.run(os.getpid)
+        killed.append(next(iter(pids.values())))
+        os.kill(killed[0], signal.SIGKILL)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    tiled = run(tmp_path / "t", client)
+    thread.join()
+    assert killed
+    assert len(tiled.tiles) == 6
+    assert_whole(tiled)
+
+
+def test_a_stopped_run_goes_on_in_another_cluster(client, tmp_path):
+    with pytest.raises(Cancelled):
+        run(tmp_path / "t", client, cancel=lambda: bool(list(tmp_path.glob("t/run/built-*.json"))))
+    before = {file: file.stat().st_mtime_ns for file in tmp_path.glob("t/run/built-*.json")}
+    assert before
+    kept = []
+
+    def watch(_share, _text):
+        kept[:] = [file for file in before if file.exists() and file.stat().st_mtime_ns == before[file]]
+
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
+        ) as cluster,
+        distributed.Client(cluster) as other,
+    ):
+        tiled = run(tmp_path / "t", other, progress=watch)
+    assert len(kept) == len(before)
+    assert_whole(tiled)
+
+
+def test_what_a_worker_finds_wrong_comes_back(client, tmp_path):
+    from realmodel.core import InputRefused, Project
+    from realmodel.distributed import build as build_tiles
+
+    project = load_project(PROJECT)
+    project.rocks[0].base_elevation = 15.0
+    with pytest.raises(InputRefused, match=r"base_elevation 15 is not below"):
+        build_tiles(Project("x", project.rocks), tmp_path / "t", (35, 30), client)
+
+
+def batch(*arguments, cwd=None):
+    command = [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
+
+
+def test_the_command_line(client, tmp_path):
+    address = client.scheduler.address
+    asked = ["--tiles", "60,30", "--out", tmp_path / "t", "--scheduler", address, "--cells", "blocks"]
+    done = batch(*asked)
+    assert done.returncode == 0, done.stderr
+    assert "Sand" in done.stdout and "4 tiles, each validated" in done.stdout
+    assert_whole(open_tiles(tmp_path / "t"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--tiles", "5,5"], "--tiles needs --out"),
+        (["--tiles", "5", "--out", "t"], "not two lengths above 0"),
+        (["--tiles", "5,5", "--out", "t", "--seed", 3], "--seed goes with --ensemble"),
+        (["--tiles", "5,5", "--out", "t", "--report", "r.json"], "--tiles goes without --report"),
+    ],
+)
+def test_wrong_usage(arguments, said, tmp_path):
+    done = batch(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+GONE = """
+import sys, threading, time
+from pathlib import Path
+import distributed
+from realmodel.core import UsageError, load_project
+from realmodel.distributed import build
+
+if __name__ == "__main__":
+    project, folder = sys.argv[1:]
+    cluster = distributed.LocalCluster(n_workers=1, processes=True, dashboard_address=":0")
+    client = distributed.Client(cluster)
+
+    def close():
+        while not list(Path(folder).glob("run/built-*.json")):
+            time.sleep(0.02)
+        client.shutdown()
+
+    threading.Thread(target=close).start()
+    try:
+        build(load_project(project), folder, (35, 30), client)
+    except UsageError as error:
+        print("REFUSED", error, flush=True)
+"""
+
+
+def test_a_scheduler_that_goes_away(tmp_path):
+    """In a process of its own: a cluster that ends like this leaves sockets."""
+    (tmp_path / "gone.py").write_text(GONE)
+    command = [sys.executable, tmp_path / "gone.py", PROJECT, tmp_path / "t"]
+    paths = {"PYTHONPATH": str(ROOT / "addon")}
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, timeout=60, env=os.environ | paths
+    )
+    assert "REFUSED" in done.stdout and "start again" in done.stdout, done.stderr

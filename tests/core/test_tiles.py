@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models in tiles, built one tile after another in this process: the same as undivided ones."""
+
+import contextlib
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import strategies as st
+from realmodel.core import (
+    Body,
+    InputRefused,
+    OutputFailed,
+    Project,
+    Rock,
+    Surface,
+    UsageError,
+    build,
+    load_project,
+    open_tiles,
+)
+from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
+from realmodel.distributed import build as build_tiles
+from realmodel.distributed import tile_folder
+from stacks.generate import random_stack
+from stacks.judge import volume_allowance
+from stacks.model_view import rocks_of
+from stacks.project_files import stack_project
+from stacks.rock_masses import random_rock_masses
+
+SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
+
+
+def sample(name):
+    return load_project(SAMPLES / name / "project.toml")
+
+
+@pytest.fixture(autouse=True)
+def one_after_another(monkeypatch):
+    """Tasks in this process; test_distributed_tiles has them on workers."""
+    _in_this_process(monkeypatch)
+
+
+def _in_this_process(patch):
+    def in_order(_client, function, shared, tasks, cancel=None):
+        for task in tasks:
+            yield task, function(shared, task)
+
+    patch.setattr(tile_folder, "client_of", contextlib.nullcontext)
+    patch.setattr(tile_folder, "in_any_order", in_order)
+
+
+def assert_same_blocks(tiled, whole, allowed=None):
+    assert [block.name for block in tiled.blocks] == [block.name for block in whole.blocks]
+    for number, (one, other) in enumerate(zip(tiled.blocks, whole.blocks, strict=True)):
+        assert (one.surface, one.rock, one.property) == (other.surface, other.rock, other.property)
+        assert one.components == other.components, one
+        limit = 2e-12 * other.volume if allowed is None else allowed[number]
+        assert abs(one.volume - other.volume) <= limit, (one, other)
+        if tiled.cell_kind == "blocks":
+            assert one.cells == other.cells
+    assert tiled.unequal == 0
+
+
+def hilly(n, shift, seed, size=100.0):
+    """A surface on a lattice of its own."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.linspace(0, size, n + 1), np.linspace(0, size, n + 1))
+    z = shift + 4 * np.sin(x / 17 + seed) + 3 * np.cos(y / 11) + rng.normal(0, 0.5, x.shape)
+    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    a, b, c, d = corner, corner + 1, corner + n + 2, corner + n + 1
+    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    return np.column_stack([x.ravel(), y.ravel(), z.ravel()]), triangles.astype(np.int32)
+
+
+def ready(region=None, holes=()):
+    """Five ready surfaces with triangulations of their own, some eroded."""
+    surfaces = [
+        Surface(f"S{k}", *hilly(n, shift, k), rule=rule)
+        for k, (n, shift, rule) in enumerate(
+            [
+                (9, 0, "erosional"),
+                (14, 6, "base"),
+                (11, 12, "erosional"),
+                (17, 11, "conformable"),
+                (8, 14, "erosional"),
+            ]
+        )
+    ]
+    return Project("ready", [Rock("rock", surfaces, region=region, holes=holes, base_elevation=-20.0)])
+
+
+OUTLINE = [[7.5, -3.0], [97.0, 11.0], [88.0, 60.0], [104.0, 103.0], [31.0, 90.0], [-4.0, 40.0]]
+HOLE = [[40.0, 35.0], [63.0, 41.0], [52.0, 58.0]]
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "cells"),
+    [
+        ("two_layers", (37, 23), "columns"),
+        ("two_layers", (37, 23), "blocks"),
+        ("two_layers", (1000, 1000), "columns"),
+        ("gravel_plain", (600, 350), "columns"),
+        ("gravel_plain", (600, 350), "blocks"),
+        ("haut_barr", (130, 60), "blocks"),
+    ],
+)
+def test_samples(name, size, cells, tmp_path):
+    project = sample(name)
+    tiled = build_tiles(project, tmp_path / "t", size, cells=cells)
+    whole = build(project, cells=cells)
+    assert_same_blocks(tiled, whole)
+    assert tiled.rounded == 0
+    if size[0] == 1000:
+        assert len(tiled.tiles) == 1
+        assert tiled.blocks == whole.blocks
+
+
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+@pytest.mark.parametrize(("region", "holes"), [(None, ()), (OUTLINE, ()), (OUTLINE, [HOLE])])
+def test_ready_surfaces(region, holes, cells, tmp_path):
+    """Surfaces that the region and the borders of tiles both clip."""
+    project = ready(region, holes)
+    tiled = build_tiles(project, tmp_path / "t", (29, 41), cells=cells)
+    assert len(tiled.tiles) == 12
+    assert_same_blocks(tiled, build(project, cells=cells))
+
+
+def test_a_model_opened_again(tmp_path):
+    project = ready(OUTLINE, [HOLE])
+    whole = build(project)
+    build_tiles(project, tmp_path / "t", (40, 40))
+    tiled = open_tiles(tmp_path / "t")
+    assert_same_blocks(tiled, whole)
+    assert tiled.name == "ready"
+    assert tiled.surface_names == whole.surface_names
+    assert math.isclose(tiled.volume, whole.volume, rel_tol=1e-12)
+    assert sum(tile.cells for tile in tiled.tiles) == sum(block.cells for block in tiled.blocks)
+    assert np.allclose(sum(tile.volumes for tile in tiled.tiles), [block.volume for block in whole.blocks])
+    tile = tiled.tiles[4]
+    model = tile.model()
+    assert model.validate(500).passed
+    low_x, low_y, high_x, high_y = tile.box
+    assert (model.vertices[:, :2] >= [low_x, low_y]).all() and (
+        model.vertices[:, :2] <= [high_x, high_y]
+    ).all()
+    for point, normal in [
+        ((50, 50, 5), (1, 0.3, 0.1)),
+        ((50, 50, 5), (0, 0, 1)),
+        ((tiled.x[1], 0, 0), (1, 0, 0)),
+    ]:
+        one, other = tiled.section(point, normal), whole.section(point, normal)
+        assert np.allclose(one.area_by_block(), other.area_by_block(), rtol=1e-11, atol=1e-9)
+        assert one.block_names == other.block_names and one.unit == other.unit
+        assert one.cells.max() < sum(tile.cells for tile in tiled.tiles)
+    line = [(2, 5), (95, 44), (60, 98)]
+    one, other = tiled.fence(line), whole.fence(line)
+    assert np.allclose(one.area_by_block(), other.area_by_block(), rtol=1e-11)
+    assert set(one.panel) == {0, 1}
+    assert len(tiled.section((500, 0, 0), (1, 0, 0))) == 0
+
+
+def test_boreholes(tmp_path):
+    project = ready(OUTLINE, [HOLE])
+    whole = build(project)
+    tiled = build_tiles(project, tmp_path / "t", (40, 40))
+    in_rock = 0
+    for x, y in np.random.default_rng(5).uniform(-5, 105, (60, 2)):
+        one, other = tiled.borehole(x, y), whole.borehole(x, y)
+        assert [each.block for each in one] == [each.block for each in other]
+        for a, b in zip(one, other, strict=True):
+            assert math.isclose(a.top, b.top, abs_tol=1e-9) and math.isclose(a.bottom, b.bottom, abs_tol=1e-9)
+        if one:
+            in_rock += 1
+            assert one[-1].bottom == -20.0
+            assert all(a.bottom == b.top for a, b in itertools.pairwise(one))
+            at = np.array([[x, y, (each.top + each.bottom) / 2] for each in one])
+            assert whole_blocks(whole, at) == [each.block for each in one]
+    assert in_rock > 20
+    assert whole.borehole(51, 45) == []  # in the hole
+
+
+def whole_blocks(model, places):
+    from realmodel.core.ensembles import blocks_at
+
+    return blocks_at(model, places).tolist()
+
+
+usual = settings(
+    derandomize=True,
+    deadline=None,
+    database=None,
+    max_examples=12,
+    suppress_health_check=list(HealthCheck),
+    phases=[Phase.generate],
+)
+FAMILIES = ("own lattices", "partial", "jumps", "regions", "rules", "general", "T-junctions", "rock masses")
+
+
+@usual
+@given(
+    st.sampled_from(FAMILIES),
+    st.sampled_from(["columns", "blocks"]),
+    st.floats(0.3, 1.2),
+    st.randoms(use_true_random=True),
+)
+def test_random_stacks(tmp_path_factory, family, cells, share, rng):
+    """Holes, islands, steps, borders of any shape, protected surfaces."""
+    case = random_rock_masses(rng) if family == "rock masses" else random_stack(rng, family)
+    path = stack_project(tmp_path_factory.mktemp("stack"), rocks_of(case))
+    assume(path is not None)
+    project = load_project(path)
+    whole = build(project, cells=cells)
+    extent = np.ptp(whole.surface_vertices[:, :2], axis=0)
+    with pytest.MonkeyPatch.context() as patch:
+        _in_this_process(patch)
+        tiled = build_tiles(project, tmp_path_factory.mktemp("tiles"), extent * share, cells=cells)
+    surfaces = [block.surface for block in whole.blocks]
+    volumes = np.zeros(len(whole.surface_names))
+    volumes[surfaces] = [block.volume for block in whole.blocks]
+    assert_same_blocks(tiled, whole, np.asarray(volume_allowance(case, volumes))[surfaces])
+
+
+def test_what_is_told_of_triangles_has_their_numbers(tmp_path):
+    project = ready()
+    surface = project.rocks[0].surfaces[2]
+    flat = np.vstack([surface.triangles[-1], surface.triangles[-1]])
+    flat[:, 1] = flat[:, 0]
+    surface.triangles = np.vstack([surface.triangles, flat])
+    tiled = build_tiles(project, tmp_path / "t", (30, 30))
+    whole = build(project)
+    assert [str(w) for w in tiled.warnings] == [str(w) for w in whole.warnings]
+    assert tiled.warnings[0].items == whole.warnings[0].items
+    assert open_tiles(tmp_path / "t").warnings == tiled.warnings
+
+
+def test_a_surface_with_two_heights_is_refused(tmp_path):
+    project = ready()
+    surface = project.rocks[0].surfaces[3]
+    surface.triangles = np.vstack([surface.triangles, surface.triangles[77]])
+    with pytest.raises(InputRefused, match=r"S3.*triangles 77 and 578 overlap"):
+        build_tiles(project, tmp_path / "t", (30, 30))
+    assert not (tmp_path / "t" / "tiles.toml").exists()
+
+
+def test_the_base_must_be_below(tmp_path):
+    project = ready()
+    project.rocks[0].base_elevation = 5.0
+    with pytest.raises(InputRefused, match="base_elevation 5 is not below"):
+        build_tiles(project, tmp_path / "t", (30, 30))
+
+
+def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
+    project, calls = ready(OUTLINE), []
+    real = tile_folder._join
+
+    def stops(shared, name):
+        calls.append(name)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return real(shared, name)
+
+    monkeypatch.setattr(tile_folder, "_join", stops)
+    with pytest.raises(KeyboardInterrupt):
+        build_tiles(project, tmp_path / "t", (40, 40))
+    with pytest.raises(InputRefused, match="not finished"):
+        open_tiles(tmp_path / "t")
+    monkeypatch.setattr(tile_folder, "_build", None)  # all are built
+    tiled = build_tiles(project, tmp_path / "t", (40, 40))
+    assert len(calls) == 3 + len(tiled.tiles) - 2
+    assert_same_blocks(tiled, build(project))
+    assert not (tmp_path / "t" / "run").exists()
+    monkeypatch.setattr(tile_folder, "_join", None)
+    again = build_tiles(project, tmp_path / "t", (40, 40))
+    assert again.blocks == tiled.blocks
+
+
+def test_the_same_bytes_again(tmp_path):
+    project = ready(OUTLINE)
+    for folder in ("a", "b"):
+        build_tiles(project, tmp_path / folder, (60, 60))
+    names = sorted(path.relative_to(tmp_path / "a") for path in (tmp_path / "a").rglob("*.*"))
+    assert len(names) == 2 * 4 + 2
+    for name in names:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+
+
+def test_the_folder_of_another_model_is_refused(monkeypatch, tmp_path):
+    build_tiles(ready(), tmp_path / "t", (60, 60))
+    with pytest.raises(UsageError, match="another project, tile size or kind of cells"):
+        build_tiles(ready(), tmp_path / "t", (60, 60), cells="blocks")
+
+    def full(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tile_folder, "_build", full)
+    with pytest.raises(KeyboardInterrupt):
+        build_tiles(ready(), tmp_path / "u", (60, 60))
+    with pytest.raises(UsageError, match="another project"):
+        build_tiles(ready(), tmp_path / "u", (50, 60))
+    (tmp_path / "v").mkdir()
+    (tmp_path / "v" / "notes.txt").write_text("mine")
+    with pytest.raises(UsageError, match="other content"):
+        build_tiles(ready(), tmp_path / "v", (50, 60))
+
+
+def test_a_full_disk_stops_it_in_one_line(monkeypatch, tmp_path):
+    project = ready()
+    real = tile_folder.write_vtu
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tile_folder, "write_vtu", full)
+    with pytest.raises(OutputFailed, match="No space left on device; make room") as failed:
+        build_tiles(project, tmp_path / "t", (60, 60))
+    assert "\n" not in str(failed.value)
+    assert not list((tmp_path / "t" / "tiles").iterdir())[1:]  # one .npz, its .vtu is missing
+    monkeypatch.setattr(tile_folder, "write_vtu", real)
+    assert_same_blocks(build_tiles(project, tmp_path / "t", (60, 60)), build(project))
+
+
+def test_a_tile_that_was_changed_is_refused(tmp_path):
+    tiled = build_tiles(ready(), tmp_path / "t", (60, 60))
+    file = tiled.tiles[1].file
+    file.write_bytes(file.read_bytes()[:-7] + b"changed")
+    with pytest.raises(InputRefused, match="has changed"):
+        tiled.tiles[1].model()
+    file.unlink()
+    with pytest.raises(InputRefused, match="cannot be read"):
+        tiled.tiles[1].model()
+    catalog = tmp_path / "t" / "tiles.toml"
+    catalog.write_text(catalog.read_text().replace("digest", "digits"))
+    with pytest.raises(InputRefused, match="damaged"):
+        open_tiles(tmp_path / "t")
+
+
+def test_the_index_opens_in_vtk(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    project = ready(OUTLINE, [HOLE])
+    tiled = build_tiles(project, tmp_path / "t", (40, 40))
+    grid = pyvista.read(tmp_path / "t" / "model.pvtu")
+    assert grid.n_cells == sum(tile.cells for tile in tiled.tiles)
+    cells = np.bincount(grid["block"], minlength=len(tiled.blocks))
+    assert cells.tolist() == [block.cells for block in tiled.blocks]
+    vertices = build(project).vertices
+    low, high = np.array(grid.bounds).reshape(3, 2).T
+    assert np.array_equal(low, vertices.min(axis=0)) and np.array_equal(high, vertices.max(axis=0))
+
+
+def test_faults_and_bodies_are_refused(tmp_path):
+    project = ready()
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+    project.bodies = [Body("b", vertices, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))]
+    with pytest.raises(UsageError, match="faults or bodies"):
+        build_tiles(project, tmp_path / "t", (30, 30))
+
+
+@pytest.mark.parametrize("size", [(0, 5), (5,), (5, -1), (math.inf, 5), "wide", (1e-9, 5)])
+def test_sizes_that_are_none(size, tmp_path):
+    with pytest.raises(UsageError):
+        build_tiles(ready(), tmp_path / "t", size)
+
+
+def test_lines_keep_off_vertices():
+    mesh = np.stack(np.meshgrid(np.arange(0.0, 101), np.arange(0.0, 51)), axis=-1).reshape(-1, 2)
+    grid = tile_grid([mesh], checked_size((10, 25)))
+    assert grid.columns == 10 and grid.rows == 2
+    assert np.abs(grid.x[1:-1] - np.arange(10, 100, 10)).max() <= 10 / 16
+    for axis, lines in enumerate((grid.x, grid.y)):
+        assert np.abs(mesh[:, axis][:, None] - lines).min() > 0.1
+
+
+def test_each_triangle_is_in_the_tiles_that_it_meets():
+    mesh = hilly(10, 0.0, 1)
+    grid = tile_grid([mesh[0]], (35, 30))
+    bins = MeshBins(mesh, grid)
+    corners = mesh[0][mesh[1]][:, :, :2]
+    for column, row in grid:
+        low_x, low_y, high_x, high_y = grid.box(column, row)
+        part = bins.part(column, row)
+        away = (
+            (corners[:, :, 0].max(1) < low_x)
+            | (corners[:, :, 0].min(1) > high_x)
+            | (corners[:, :, 1].max(1) < low_y)
+            | (corners[:, :, 1].min(1) > high_y)
+        )
+        assert np.array_equal(part.numbers, np.flatnonzero(~away))
+        assert np.array_equal(part.vertices[part.triangles], mesh[0][mesh[1][part.numbers]])
+
+
+def test_a_clipped_region_has_its_area():
+    vertices, triangles = hilly(7, 0.0, 1)
+    box = (11.3, -20.0, 64.9, 33.3)
+    vertices, triangles = clipped_region((vertices[:, :2], triangles), box)
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    doubled = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    assert (doubled > 0).all()
+    assert math.isclose(doubled.sum() / 2, (64.9 - 11.3) * 33.3, rel_tol=1e-12)
