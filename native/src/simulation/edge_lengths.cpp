@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "meshing/requested_sizes.hpp"
 #include "realmodel/base/errors.hpp"
