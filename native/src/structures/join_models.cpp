@@ -262,7 +262,8 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     together.reserve(models);
     for (std::size_t m = 0; m < models.size(); ++m) {
         together.add(models[m].model, static_cast<std::int32_t>(m),
-                     places_of_cells(models[m].model, models[m].sides, nearest, threads, progress));
+                     places_of_cells(models[m].model, models[m].sides, nearest, structures, threads,
+                                     progress));
     }
     together.share_vertices(threads, progress);
     if (auto joined = join(together, surface, models, structures, acts, threads, progress))

@@ -6,7 +6,8 @@
 namespace realmodel::structures {
 
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
-                                   std::span<const cutting::NearestSide> structures, int threads,
+                                   std::span<const cutting::NearestSide> structures,
+                                   std::span<const Structure> given, int threads,
                                    const Progress* progress) {
     const cutting::CellBoxes cells(model, structures, threads, progress);
     std::vector<Place> places(model.cell_count(), Place::kInside);
@@ -20,6 +21,14 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
             }
         }
         if (sides[s] == 0) continue;  // either side will do
+        // some corners of these may lie where the branch is not, and nearest to its other side
+        for (const std::int32_t other : given[s].ends_at) {
+            const auto beside =
+                cutting::cells_near(cells, structures[index(other)], threads, progress);
+            for (std::size_t c = 0; c < places.size(); ++c) {
+                if (beside[c] != 0) is_near[c] = 1;
+            }
+        }
         const auto own =
             cutting::sides_of_far_cells(model, structures[s], is_near, threads, progress);
         for (std::size_t c = 0; c < places.size(); ++c) {

@@ -14,8 +14,10 @@ namespace realmodel::structures {
 enum class Place : std::uint8_t { kElsewhere, kInside, kNear };
 
 /// @param structures  of each where its sides are
+/// @param given       the same structures
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
-                                   std::span<const cutting::NearestSide> structures, int threads,
+                                   std::span<const cutting::NearestSide> structures,
+                                   std::span<const Structure> given, int threads,
                                    const Progress* progress);
 
 }  // namespace realmodel::structures

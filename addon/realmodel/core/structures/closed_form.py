@@ -299,7 +299,8 @@ def _nearest(points: np.ndarray, rows: np.ndarray, corners: np.ndarray, numbers:
     """(N,) the nearest triangle of each point, of pairs: `rows` of points, triangles (K, 3, 3), `numbers`."""
     p = points[rows]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    size = np.linalg.norm(normal, axis=1)[:, None]
+    normal /= np.where(size > 0, size, 1.0)  # one without an area comes last
     off = np.abs(((p - corners[:, 0]) * normal).sum(axis=1))
     away = distances_of_pairs(p, corners)
     least = np.full(len(points), np.inf)
