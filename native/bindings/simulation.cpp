@@ -32,6 +32,22 @@ using simulation::PlanLines;
 /// (places or None for all lines, length, distance)
 using Size = std::tuple<std::optional<Array<double>>, double, double>;
 
+/// As LineLength or LocalLength.
+template <class Length>
+std::vector<Length> lengths_of(const std::vector<Size>& sizes) {
+    std::vector<Length> lengths;
+    for (const auto& [line, length, distance] : sizes) {
+        Length& own = lengths.emplace_back();
+        if (line) {
+            const auto places = rows<2, double>(*line, "sizes");
+            own.line.assign(places.begin(), places.end());
+        }
+        own.length = length;
+        own.distance = distance;
+    }
+    return lengths;
+}
+
 template <class T>
 std::span<const T> view_of(const Array<T>& array) {
     return {array.data(), static_cast<std::size_t>(array.size())};
@@ -42,16 +58,7 @@ std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices
                                             int threads, Progress* control) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
-    std::vector<simulation::LineLength> lengths;
-    for (const auto& [line, length, distance] : sizes) {
-        simulation::LineLength& own = lengths.emplace_back();
-        if (line) {
-            const auto places = rows<2, double>(*line, "sizes");
-            own.line.assign(places.begin(), places.end());
-        }
-        own.length = length;
-        own.distance = distance;
-    }
+    const auto lengths = lengths_of<simulation::LineLength>(sizes);
     const py::gil_scoped_release unlocked;
     return std::make_unique<PlanLines>(simulation::plan_lines(
         arrays.complex, view_of(block_rock), edge_length, lengths, threads, control));
@@ -135,13 +142,14 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
 
 py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
                      const Array<std::uint8_t>& kept, double edge_length, double tolerance,
-                     int threads, Progress* control) {
+                     const std::vector<Size>& sizes, int threads, Progress* control) {
     const ComplexArrays arrays(model);
+    const auto lengths = lengths_of<meshing::LocalLength>(sizes);
     simulation::FilledMesh mesh;
     {
         const py::gil_scoped_release unlocked;
         mesh = simulation::filled_mesh(arrays.complex, view_of(cell_region), view_of(kept),
-                                       edge_length, tolerance, threads, control);
+                                       edge_length, tolerance, lengths, threads, control);
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -255,15 +263,16 @@ tetrahedron, pyramid, prism: dicts of corners, block, column, layer; triangle, q
 surface) of the faces outside and between blocks; plan_vertices, plan_triangles, layers, volumes (B,).
 Raises InputError kinds "bad_index", "too_large"; Cancelled.)");
     module.def("filled_mesh", &filled_mesh, py::arg("model"), py::arg("cell_region"),
-               py::arg("kept"), py::arg("edge_length"), py::arg("tolerance"),
+               py::arg("kept"), py::arg("edge_length"), py::arg("tolerance"), py::arg("sizes"),
                py::arg("threads") = 0, py::arg("control") = nullptr,
                R"(Each region of a model filled with tetrahedra, for models without columns.
 
 model: dict of the arrays of docs/dev/geometry.md. cell_region: (C,) int32. kept: (S,) uint8, surfaces
 whose faces matter inside a region, too. tolerance: how far boundaries may lie from the exact ones.
+sizes: (places (N, 2) or None for sharp edges, length, distance): where edges are shorter, in plan.
 Returns a dict: points (P, 3), tetrahedra (E, 4), region (E,), triangles (F, 3) outside, between regions
 and on kept surfaces, surface (F,).
-Raises InputError kinds "bad_index", "nothing", "flat"; Cancelled.)");
+Raises InputError kinds "bad_index", "size", "too_large", "nothing", "flat", "endless"; Cancelled.)");
     module.def("clean_cells", &clean_cells, py::arg("model"), py::arg("blocks"),
                py::arg("surface_kind"), py::arg("tolerance"), py::arg("threads") = 0,
                py::arg("control") = nullptr,

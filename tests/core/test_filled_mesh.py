@@ -141,6 +141,55 @@ def test_the_same_bytes(faulted):
     assert one.faces["triangle"].tobytes() == two.faces["triangle"].tobytes()
 
 
+def mean_edge(mesh, place, least, most):
+    """Of edges whose middles are so far from a place in plan."""
+    corners = mesh.points[mesh.elements["tetrahedron"]]
+    a, b = (corners[:, rows].reshape(-1, 3) for rows in ([0, 0, 0, 1, 1, 2], [1, 2, 3, 2, 3, 3]))
+    away = np.hypot(*((a + b)[:, :2] / 2 - place).T)
+    return np.linalg.norm(a - b, axis=1)[(away >= least) & (away < most)].mean()
+
+
+def test_elements_are_finer_where_asked(faulted):
+    size = [{"at": [20, 15], "length": 3.0, "distance": 6.0}]
+    plain, mesh = filled(faulted, 12.0, 1.5), filled(faulted, 12.0, 1.5, size=size, threads=1)
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.02)
+    assert mesh.smallest_angle > 3
+    # a quarter of the length of other edges
+    assert mean_edge(mesh, [20, 15], 0, 6) < 0.3 * mean_edge(plain, [20, 15], 0, 20)
+    # the length grows by a quarter of the distance; from 42 m on it is the one that was given
+    assert 4.5 < mean_edge(mesh, [20, 15], 12, 20) < 0.7 * mean_edge(plain, [20, 15], 12, 20)
+    far = mean_edge(mesh, [20, 15], 45, 200), mean_edge(plain, [20, 15], 45, 200)
+    assert far[0] == pytest.approx(far[1], rel=0.1)
+    again = faulted.simulation_mesh(12.0, 1.5, elements="tetrahedra", size=size, threads=2)
+    assert again.points.tobytes() == mesh.points.tobytes()
+    assert again.elements["tetrahedron"].tobytes() == mesh.elements["tetrahedron"].tobytes()
+
+
+def test_elements_are_finer_along_a_line_and_sharp_edges(faulted):
+    along = filled(faulted, 12.0, 2.0, size=[{"at": [[85, 0], [85, 60]], "length": 4.0, "distance": 0.0}])
+    for y in (10, 30, 50):
+        assert mean_edge(along, [85, y], 0, 5) < 0.7 * mean_edge(along, [10, y], 0, 10)
+    outline, lines = (
+        filled(faulted, 12.0, 2.0, size=[{"at": word, "length": 5.0, "distance": 0.0}])
+        for word in ("outline", "constraints")
+    )
+    assert outline.points.tobytes() == lines.points.tobytes()
+    assert mean_edge(outline, [0, 0], 0, 8) < 6.5 < mean_edge(outline, [85, 30], 0, 6)
+
+
+@pytest.mark.parametrize(
+    ("size", "message"),
+    [
+        ({"at": [20, 15], "length": 12.0, "distance": 0.0}, "size 0.*shorter than the edge length"),
+        ({"at": [20, 15], "length": 1.9, "distance": 0.0}, "size 0.*below the minimum thickness"),
+        ({"at": [20, 15], "length": 4.0}, "needs exactly at, length, distance"),
+    ],
+)
+def test_refused_lengths(faulted, size, message):
+    with pytest.raises(InputRefused, match=message):
+        faulted.simulation_mesh(12.0, 2.0, elements="tetrahedra", size=[size])
+
+
 @pytest.mark.parametrize(
     ("sample", "edge", "tolerance", "within"),
     [

@@ -255,6 +255,38 @@ def test_edges_are_shorter_where_asked():
         model.simulation_mesh(12.0, 0.1, size=[{"at": "outline", "length": 3.0, "distance": 0.0}])
     )
     assert len(outline.faces["quadrilateral"]) > 2.5 * len(plain.faces["quadrilateral"])
+    lines = model.simulation_mesh(12.0, 0.1, size=[{"at": "constraints", "length": 3.0, "distance": 0.0}])
+    assert lines.points.tobytes() == outline.points.tobytes()  # both mean all lines
+
+
+def test_edges_are_shorter_along_lines_inside():
+    walls = [[0, 0], [60, 0], [60, 60], [0, 60.0]]
+    rocks = [
+        Rock(name="r", surfaces=[plane("s0", 0, walls), plane("s1", 6, walls)]),
+        Rock(
+            name="q",
+            surfaces=[plane("s0", 0, np.add(walls, [60, 0])), plane("s1", 9, np.add(walls, [60, 0]))],
+        ),
+    ]
+    model = build(Project(name="b", rocks=rocks))
+    plain = model.simulation_mesh(12.0, 0.1)
+    for word in ("outline", "constraints"):
+        size = [{"at": word, "length": 3.0, "distance": 6.0}]
+        mesh = checked(model.simulation_mesh(12.0, 0.1, size=size))
+        within = [
+            np.abs(m.plan.vertices[m.plan.triangles].mean(axis=1) - [60, 30]).max(axis=1) < 6
+            for m in (mesh, plain)
+        ]
+        assert within[0].sum() > 4 * max(within[1].sum(), 1)
+
+
+@pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
+def test_a_mesh_of_no_elements(elements):
+    """The model is nowhere as thick as asked."""
+    model = build(Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", 6)])]))
+    mesh = model.simulation_mesh(12.0, 1000.0, elements=elements)
+    assert (mesh.elements, mesh.faces, mesh.volumes.tolist()) == ({}, {}, [0.0])
+    assert any("s1" in str(warning) for warning in mesh.warnings)
 
 
 def test_the_same_for_any_number_of_threads():

@@ -37,39 +37,54 @@ double length(const Point& a) {
     return std::sqrt(dot(a, a));
 }
 
-/// Points in a grid of cubes.
+Point moved(const Point& p, const Point& way, double share) {
+    return {p[0] + share * way[0], p[1] + share * way[1], p[2] + share * way[2]};
+}
+double length_at(const meshing::SizeField& lengths, const Point& p) {
+    return lengths.at({p[0], p[1]});
+}
+
+/// Points in grids of cubes, one grid for all spacings from one power of 2 to the next.
 class SpacedPoints {
 public:
-    explicit SpacedPoints(double spacing) : spacing_(spacing) {}
-
     /// Whether it was far enough from all before.
-    bool add(const Point& p) {
-        const Cube at = cube(p);
-        const auto [x, y, z] = at;
-        for (std::int64_t i = x - 1; i <= x + 1; ++i) {
-            for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-                for (std::int64_t k = z - 1; k <= z + 1; ++k) {
-                    const auto found = cubes_.find({i, j, k});
-                    if (found == cubes_.end()) continue;
-                    for (const Point& other : found->second)
-                        if (length(minus(p, other)) < spacing_) return false;
-                }
-            }
-        }
-        cubes_[at].push_back(p);
+    /// @param spacing  may change from point to point by less than half of their distance
+    bool add(const Point& p, double spacing) {
+        const int level = std::ilogb(spacing);
+        // The spacing of a point that is nearer than this one's differs by less than factor 2.
+        for (auto grid = grids_.lower_bound(level - 1);
+             grid != grids_.end() && grid->first <= level + 1; ++grid)
+            if (is_near(grid->second, cube(p, grid->first), p, spacing)) return false;
+        grids_[level][cube(p, level)].push_back(p);
         return true;
     }
 
 private:
     using Cube = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
-    Cube cube(const Point& p) const {
+    using Grid = std::map<Cube, std::vector<Point>>;
+
+    static bool is_near(const Grid& grid, const Cube& around, const Point& p, double spacing) {
+        const auto [x, y, z] = around;
+        for (std::int64_t i = x - 1; i <= x + 1; ++i) {
+            for (std::int64_t j = y - 1; j <= y + 1; ++j) {
+                for (std::int64_t k = z - 1; k <= z + 1; ++k) {
+                    const auto found = grid.find({i, j, k});
+                    if (found == grid.end()) continue;
+                    for (const Point& other : found->second)
+                        if (length(minus(p, other)) < spacing) return true;
+                }
+            }
+        }
+        return false;
+    }
+    /// Cubes are as wide as the largest spacing of the next level.
+    static Cube cube(const Point& p, int level) {
         const auto of = [&](double x) {
-            return static_cast<std::int64_t>(std::floor(x / spacing_));
+            return static_cast<std::int64_t>(std::floor(std::ldexp(x, -level - 2)));
         };
         return {of(p[0]), of(p[1]), of(p[2])};
     }
-    double spacing_;
-    std::map<Cube, std::vector<Point>> cubes_;
+    std::map<int, Grid> grids_;
 };
 
 /// The normal of a polygon, of length 1, or 0 where it has no area.
@@ -245,25 +260,47 @@ private:
     std::map<Edge, bool> taken_;
 };
 
-/// Points that divide a line into equal parts, in order.
-std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int32_t>& line,
-                            double part) {
-    double size = 0;
-    for (std::size_t i = 1; i < line.size(); ++i)
-        size += length(minus(model.vertex(line[i]), model.vertex(line[i - 1])));
-    const double parts = std::max(1.0, std::round(size / part));
-    std::vector<Point> found;
-    double at = 0, number = line.front() == line.back() ? 0 : 1;
+/// A piece of a line; its size is its length where edges are as long as anywhere, and more where
+/// they are shorter.
+struct Piece {
+    Point from, way;
+    double size;
+};
+
+std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::int32_t>& line,
+                             const meshing::SizeField& lengths) {
+    std::vector<Piece> pieces;
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Point from = model.vertex(line[i - 1]);
         const Point way = minus(model.vertex(line[i]), from);
         const double step = length(way);
-        for (; number < parts && at + step >= number * size / parts; ++number) {
-            const double share = step > 0 ? std::max(0.0, number * size / parts - at) / step : 0;
-            found.push_back(
-                {from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]});
+        for (double at = 0; at < step;) {
+            const Point here = moved(from, way, at / step);
+            const double own = length_at(lengths, here);
+            const double next = lengths.is_uniform() ? step : std::min(step, at + own / 2);
+            pieces.push_back({here, moved({}, way, (next - at) / step),
+                              (next - at) * (lengths.largest() / own)});
+            at = next;
         }
-        at += step;
+    }
+    return pieces;
+}
+
+/// Points that divide a line into parts of about equal size, in order.
+std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int32_t>& line,
+                            const meshing::SizeField& lengths) {
+    const std::vector<Piece> pieces = pieces_of(model, line, lengths);
+    double size = 0;
+    for (const Piece& piece : pieces)
+        size += piece.size;
+    const double parts = std::max(1.0, std::round(size / (kPartOfALine * lengths.largest())));
+    std::vector<Point> found;
+    double at = 0, number = line.front() == line.back() ? 0 : 1;
+    for (const Piece& piece : pieces) {
+        for (; number < parts && at + piece.size >= number * size / parts; ++number)
+            found.push_back(moved(piece.from, piece.way,
+                                  std::max(0.0, number * size / parts - at) / piece.size));
+        at += piece.size;
     }
     return found;
 }
@@ -271,33 +308,35 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
 }  // namespace
 
 std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edge> sharp_edges,
-                                   double edge_length) {
-    SpacedPoints spaced(kNearest * edge_length);
+                                   const meshing::SizeField& lengths) {
+    SpacedPoints spaced;
     std::vector<Point> found;
     const auto add = [&](const Point& p) {
-        if (spaced.add(p)) found.push_back(p);
+        if (spaced.add(p, kNearest * length_at(lengths, p))) found.push_back(p);
     };
     EdgeGraph graph(model, sharp_edges);
     for (const auto& corners : graph.corners())
         for (const std::int32_t v : corners)
             add(model.vertex(v));
     for (const auto& line : graph.lines())
-        for (const Point& p : parts_of(model, line, kPartOfALine * edge_length))
+        for (const Point& p : parts_of(model, line, lengths))
             add(p);
     return found;
 }
 
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
-                                       std::span<const Point> others, double spacing) {
-    SpacedPoints spaced(spacing);
+                                       std::span<const Point> others,
+                                       const meshing::SizeField& lengths, double share) {
+    SpacedPoints spaced;
+    const auto add = [&](const Point& p) { return spaced.add(p, share * length_at(lengths, p)); };
     for (const Point& p : others)
-        spaced.add(p);
+        add(p);
     std::vector<SurfaceSeed> found;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (const std::int32_t v : triangles[t].corners) {
             const Point p = model.vertex(v);
-            if (spaced.add(p)) found.push_back({p, static_cast<std::int32_t>(t)});
+            if (add(p)) found.push_back({p, static_cast<std::int32_t>(t)});
         }
     }
     return found;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "meshing/size_field.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/complex.hpp"
 
@@ -31,12 +32,13 @@ struct BoundaryFaces {
 BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int32_t> cell_region,
                              std::span<const std::uint8_t> kept, int threads, Progress* progress);
 
-/// Points on sharp edges, no two nearer than a part of the edge length, corners first.
+/// Points on sharp edges, no two nearer than a part of the edge length there, corners first.
 std::vector<std::array<double, 3>> points_on_edges(
     const ComplexView& model, std::span<const std::array<std::int32_t, 2>> sharp_edges,
-    double edge_length);
+    const meshing::SizeField& lengths);
 
-/// Vertices of the triangles that are no nearer to each other, and to `others`, than `spacing`.
+/// Vertices of the triangles that are no nearer to each other, and to `others`, than `share` of the
+/// edge length there.
 struct SurfaceSeed {
     std::array<double, 3> point;
     std::int32_t triangle;  ///< one that has it
@@ -44,6 +46,6 @@ struct SurfaceSeed {
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
                                        std::span<const std::array<double, 3>> others,
-                                       double spacing);
+                                       const meshing::SizeField& lengths, double share);
 
 }  // namespace realmodel::simulation

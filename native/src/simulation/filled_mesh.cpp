@@ -2,8 +2,8 @@
 // By CGAL's Mesh_3 (L. Rineau, M. Yvinec, Meshing 3D domains bounded by piecewise smooth surfaces,
 // 2007): Delaunay refinement of the surfaces and the volume at once, then its removal of slivers.
 // Sharp edges are kept by balls (S.-W. Cheng et al., Delaunay refinement for piecewise smooth
-// complexes, 2007) of one size around points that are far enough from each other, so that nothing
-// has to be divided further where such edges come near each other.
+// complexes, 2007) as large as the edge length asks for around points that are far enough from each
+// other, so that nothing has to be divided further where such edges come near each other.
 #include "realmodel/simulation/filled_mesh.hpp"
 
 #include "exact/without_mpfr.hpp"
@@ -40,6 +40,7 @@
 #include "realmodel/base/errors.hpp"
 #include "simulation/boundary_faces.hpp"
 #include "simulation/corner_tetrahedra.hpp"
+#include "simulation/edge_lengths.hpp"
 #include "simulation/flat_tetrahedra.hpp"
 
 namespace realmodel::simulation {
@@ -297,6 +298,14 @@ private:
     double nearest_;
 };
 
+/// The edge length of a place, as CGAL asks for it.
+struct EdgeLength {
+    const meshing::SizeField* lengths;
+    double operator()(const Point& p, int /*dimension*/, int /*index*/) const {
+        return lengths->at({p.x(), p.y()});
+    }
+};
+
 using FacetBase = CGAL::Mesh_facet_criteria_3<Triangulation>;
 using CellBase = CGAL::Mesh_cell_criteria_3<Triangulation>;
 
@@ -304,7 +313,7 @@ struct Criteria {
     using Facet_criteria = NotNearer<FacetBase, FacetBase::Is_facet_bad>;
     using Cell_criteria = NotNearer<CellBase, CellBase::Is_cell_bad>;
 
-    Criteria(double edge_length, double tolerance)
+    Criteria(const EdgeLength& edge_length, double tolerance)
         : facets(FacetBase(kFacetAngle, edge_length, tolerance, CGAL::FACET_VERTICES_ON_SURFACE),
                  tolerance),
           cells(CellBase(kRadiusOverEdge, edge_length), tolerance) {}
@@ -382,8 +391,8 @@ void require_volume(const FilledMesh& mesh) {
 
 /// More than any mesh of this size should need: Delaunay refinement is not proven to end where
 /// boundaries meet at sharp angles.
-std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces, double edge_length,
-                        double tolerance) {
+std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces,
+                        const meshing::SizeField& lengths, double tolerance, Progress* progress) {
     double area = 0;
     CGAL::Bbox_3 box;
     for (const BoundaryTriangle& t : faces.triangles) {
@@ -393,10 +402,9 @@ std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces, do
         area += std::sqrt(CGAL::squared_area(a, b, c));
         box += a.bbox() + b.bbox() + c.bbox();
     }
-    const double volume =
-        (box.xmax() - box.xmin()) * (box.ymax() - box.ymin()) * (box.zmax() - box.zmin());
-    const double most = 10000 + 8 * volume / (edge_length * edge_length * edge_length) +
-                        area / (tolerance * tolerance);
+    const double cubes = cubes_in(lengths, {box.xmin(), box.ymin(), box.zmin()},
+                                  {box.xmax(), box.ymax(), box.zmax()}, kMostPoints, progress);
+    const double most = 10000 + 8 * cubes + area / (tolerance * tolerance);
     return static_cast<std::size_t>(std::min(most, kMostPoints));
 }
 
@@ -430,20 +438,23 @@ void refine(Complex& complex, const Domain& domain, const Criteria& criteria, st
 
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
-                       int threads, Progress* progress) {
+                       std::span<const meshing::LocalLength> sizes, int threads,
+                       Progress* progress) {
     if (progress != nullptr) progress->begin(0.0, 0.2, "finding boundaries");
     const BoundaryFaces faces = boundary_faces(model, cell_region, kept, threads, progress);
     Domain domain(model, faces.triangles, progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
-    const auto on_edges = points_on_edges(model, faces.sharp_edges, edge_length);
-    const auto seeds = surface_seeds(model, faces.triangles, on_edges, kSeeds * edge_length);
-    const Criteria criteria(edge_length, tolerance);
-    const std::size_t most = most_points(model, faces, edge_length, tolerance);
+    const auto lengths = edge_lengths(model, faces, edge_length, tolerance, sizes);
+    const std::size_t most = most_points(model, faces, lengths, tolerance, progress);
+    const auto on_edges = points_on_edges(model, faces.sharp_edges, lengths);
+    const auto seeds = surface_seeds(model, faces.triangles, on_edges, lengths, kSeeds);
+    const EdgeLength length{&lengths};
+    const Criteria criteria(length, tolerance);
     Complex complex;
     try {
         if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
         for (const auto& p : on_edges)
-            insert(complex, p, kBall * edge_length, 1, 1);
+            insert(complex, p, kBall * length(point_of(p), 1, 1), 1, 1);
         for (const SurfaceSeed& seed : seeds)
             insert(complex, seed.point, 0, 2,
                    faces.triangles[index(seed.triangle)].surface + kFirstSurface);

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "realmodel/base/errors.hpp"
@@ -55,9 +57,10 @@ struct DividedBox {
         surface.push_back(on);
     }
     FilledMesh filled(double edge_length, double tolerance,
-                      const std::vector<std::int32_t>& regions = {0, 1}) const {
+                      const std::vector<std::int32_t>& regions = {0, 1},
+                      const std::vector<meshing::LocalLength>& sizes = {}) const {
         return filled_mesh(view, regions, std::vector<std::uint8_t>{1, 0, 0}, edge_length,
-                           tolerance, 1, nullptr);
+                           tolerance, sizes, 1, nullptr);
     }
 };
 
@@ -136,6 +139,71 @@ TEST(FilledMeshTest, EveryLengthEnds) {
     for (const double edge : {0.8, 1.1, 1.6, 2.0, 2.5})
         for (const double share : {0.1, 0.25, 0.5})
             expect_valid(box.filled(edge, share * edge));
+}
+
+TEST(FilledMeshTest, EveryLocalLengthEnds) {
+    const DividedBox box;
+    for (const double local : {0.3, 0.8})
+        for (const double distance : {0.0, 2.0})
+            for (const double share : {0.25, 1.0})
+                expect_valid(box.filled(2, share * local, {0, 1}, {{{{5, 2}}, local, distance}}));
+}
+
+/// The mean length of the edges whose middles lie nearer to a line along z than `reach`, or
+/// farther.
+double mean_edge(const FilledMesh& mesh, double x, double y, double reach, bool is_near) {
+    double sum = 0, count = 0;
+    for (const auto& t : mesh.tetrahedra) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const auto &a = mesh.points[static_cast<std::size_t>(t[i])],
+                           &b = mesh.points[static_cast<std::size_t>(t[j])];
+                const double away = std::hypot((a[0] + b[0]) / 2 - x, (a[1] + b[1]) / 2 - y);
+                if ((away < reach) != is_near) continue;
+                sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+                ++count;
+            }
+        }
+    }
+    return sum / count;
+}
+
+TEST(FilledMeshTest, EdgesAreShorterWhereAsked) {
+    const DividedBox box;
+    const FilledMesh plain = box.filled(2, 0.2);
+    for (const meshing::PlanPoint& place : {meshing::PlanPoint{0, 0}, {10, 3}}) {
+        const auto [x, y] = place;
+        const FilledMesh mesh = box.filled(2, 0.2, {0, 1}, {{{place}, 0.5, 1}});
+        expect_valid(mesh);
+        EXPECT_NEAR(volume(mesh, 0), 240, 2.4);
+        EXPECT_NEAR(volume(mesh, 1), 240, 2.4);
+        const double fine = mean_edge(mesh, x, y, 1, true);
+        EXPECT_GT(fine, 0.3);
+        EXPECT_LT(fine, 0.8);
+        // from 7 m on edges are as long as without
+        EXPECT_NEAR(mean_edge(mesh, x, y, 7, false) / mean_edge(plain, x, y, 7, false), 1, 0.2);
+    }
+}
+
+TEST(FilledMeshTest, SizesWithoutPlacesAreThoseOfSharpEdges) {
+    const FilledMesh mesh = DividedBox().filled(3, 0.2, {0, 1}, {{{}, 0.6, 0}});
+    expect_valid(mesh);
+    EXPECT_LT(mean_edge(mesh, 0, 0, 1, true), 0.9);
+    EXPECT_GT(mean_edge(mesh, 8, 3, 1.5, true), 1);
+}
+
+TEST(FilledMeshTest, LocalLengthsThatCannotBeAreRefused) {
+    const auto kind = [](const meshing::LocalLength& size) -> std::string {
+        try {
+            DividedBox().filled(2, 0.0001, {0, 1}, {size});
+        } catch (const InputError& error) {
+            return error.kind;
+        }
+        return "";
+    };
+    EXPECT_EQ(kind({{{5, 3}}, 2, 0}), "size");
+    EXPECT_EQ(kind({{{5, 3}}, 0.00009, 0}), "size");
+    EXPECT_EQ(kind({{{5, 3}}, 0.001, 3}), "too_large");
 }
 
 TEST(FilledMeshTest, WhatIsTooCoarseIsRefused) {

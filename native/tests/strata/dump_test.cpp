@@ -63,8 +63,8 @@ protected:
     void TearDown() override { std::filesystem::remove(path_); }
 
     // One for each test: CTest runs them side by side.
-    std::string path_ = testing::TempDir() +
-                        testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
+    std::string path_ =
+        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
     exact::PlanArrangement geometry_;
     Polygon outline_;
     Envelope envelope_;

@@ -173,10 +173,13 @@ class Judgement:
         if not case.is_full:
             return []
         whole = 0.0
-        for rock in case.rocks:
+        for rock, entry in zip(case.rocks, self.model.rock_inputs, strict=True):
             ring, *holes = (_area(ring) for ring in rock.rings)
-            height = float(rock.surfaces[-1].vertices[0, 2]) - rock.base_elevation
-            whole += (ring - sum(holes)) * height
+            top = float(rock.surfaces[-1].vertices[0, 2])
+            sheets = [vertices for of in entry.structure.sheets for vertices, _ in of]
+            if any((vertices[:, 2] > top).any() for vertices in sheets):  # splines may go anywhere
+                return []
+            whole += (ring - sum(holes)) * (top - rock.base_elevation)
         found = float(self.model.cell_volumes.sum())
         if abs(found - whole) > 1e-9 * whole:
             return [f"whole: the cells have the volume {found!r}, the region up to its top {whole!r}"]

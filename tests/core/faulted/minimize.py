@@ -33,6 +33,14 @@ def _set(of, **values):
     return change
 
 
+def _keep_rows(case, r, k, key, kept):
+    """Leaves out points or triangles of a surface. Without some of the oldest and the youngest the rock need
+    not be full."""
+    surfaces = case.rocks[r].surfaces
+    setattr(surfaces[k], key, getattr(surfaces[k], key)[kept])
+    case.is_full = case.is_full and 0 < k < len(surfaces) - 1
+
+
 def _pop_surface(case, r, k):
     """Leaves out a surface; what names it names the one before or after."""
     surfaces = case.rocks[r].surfaces
@@ -79,10 +87,9 @@ def _smaller(case):
             if surface.method is not None:
                 yield _set(entry, method=None)
             key = "triangles" if surface.points is None else "points"
-            rows = getattr(surface, key)
-            for kept in _subsets(len(rows)):
+            for kept in _subsets(len(getattr(surface, key))):
                 if kept:
-                    yield _set(entry, **{key: rows[kept]})
+                    yield lambda c, r=r, k=k, key=key, kept=kept: _keep_rows(c, r, k, key, kept)
 
 
 def _rounder(case):

@@ -12,11 +12,12 @@ from .volume_mesh import model_arrays
 _FAULT = 1  # of surface_kind
 
 
-def filled(work: Work, model, edge_length: float, tolerance: float, threads: int) -> dict:
+def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[tuple], threads: int) -> dict:
     """Tetrahedra of a model: points (P, 3), corners (E, 4), block and compartment (E,), triangles (F, 3)
     outside, between blocks or compartments and on faults, and surface (F,) of these.
 
-    tolerance: how far boundaries may lie from the exact ones, model units.
+    tolerance: how far boundaries may lie from the exact ones, model units. sizes: as local_lengths gives
+    them.
     """
     parts = np.stack([model.cell_block, model.cell_compartment], axis=1)
     regions, of_cell = np.unique(parts, axis=0, return_inverse=True)
@@ -28,6 +29,7 @@ def filled(work: Work, model, edge_length: float, tolerance: float, threads: int
         (np.asarray(model.surface_kind) == _FAULT).astype(np.uint8),
         edge_length,
         tolerance,
+        sizes,
         threads,
     )
     block, compartment = regions[made["region"]].T.astype(np.int32)

@@ -15,5 +15,7 @@ def call_native(work: Work, function, *arguments):
     except native.InputError as error:
         if error.kind == "nothing":
             raise InputRefused(str(error), advice="use a shorter edge length") from error
+        if error.kind == "size":
+            raise InputRefused(str(error)) from error
         place = tuple(error.place[:2]) if error.place is not None else None
         raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error

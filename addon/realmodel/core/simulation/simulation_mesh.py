@@ -21,6 +21,7 @@ from .tetrahedra import divided, divided_quadrilaterals
 from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
 from .volume_warnings import changed_volumes
 
+ALL_LINES = np.empty((0, 2))  # of local lengths: no places
 ELEMENTS = ("prisms", "tetrahedra")
 MESHER = "frontal"
 _CHANGES_LESS = "a shorter edge length or a smaller minimum thickness changes less"
@@ -71,9 +72,10 @@ def simulation_mesh(
     mesher: of the planar mesh.
 
     Models that have no columns (with bodies, with faults that are not vertical, halves of cuts) are filled
-    with tetrahedra of about edge_length, and layers, layer_thickness, size and mesher mean nothing there.
-    Their boundaries lie within about minimum_thickness of the exact ones, and no edge is made shorter than
-    that to get there: what is thinner may be lost. Compartments are kept apart.
+    with tetrahedra of about edge_length, and layers, layer_thickness and mesher mean nothing there. All lines
+    are then the sharp edges of their boundaries in plan, and no length of `size` may be below
+    minimum_thickness. Their boundaries lie within about minimum_thickness of the exact ones, and no edge is
+    made shorter than that to get there: what is thinner may be lost. Compartments are kept apart.
 
     Raises UsageError and InputRefused for what cannot be meshed so, BuildFailed, Cancelled.
     """
@@ -89,17 +91,15 @@ def simulation_mesh(
     numbers = layer_numbers(model, layers, layer_thickness)
     if not len(model.cell_block):
         raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
-    size = list(size)
+    sizes = local_lengths(size, [ALL_LINES], None)
     without_columns = _without_columns(model)
     if without_columns and elements != "tetrahedra":
         raise InputRefused(
             f"{without_columns} cannot be meshed in columns of prisms",
             advice='use elements "tetrahedra" (--mesh-elements tetrahedra)',
         )
-    if without_columns and (layers is not None or layer_thickness is not None or size):
-        raise UsageError(
-            f"layers, layer_thickness and size are for meshes of columns; {without_columns} has none"
-        )
+    if without_columns and (layers is not None or layer_thickness is not None):
+        raise UsageError(f"layers and layer_thickness are for meshes of columns; {without_columns} has none")
     largest = float(np.abs(model.vertices).max(initial=0.0))
     if minimum_thickness < _THINNEST * largest:
         raise UsageError(
@@ -109,13 +109,12 @@ def simulation_mesh(
 
     def fill(work: Work) -> SimulationMesh:
         with work.phase(0.0, 1.0, "filling with tetrahedra"):
-            made = filled(work, model, float(edge_length), float(minimum_thickness), threads)
+            made = filled(work, model, float(edge_length), float(minimum_thickness), sizes, threads)
         return _of_tetrahedra(model, made)
 
     def task(work: Work) -> SimulationMesh:
         arrays = model_arrays(model)
         rocks = np.array([block.rock for block in model.blocks], np.int32)
-        sizes = local_lengths(size, [], None)
         with work.phase(0.0, 0.2, "simplifying lines"):
             lines = call_native(
                 work, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes, threads
@@ -127,7 +126,7 @@ def simulation_mesh(
                 lines.rings,
                 float(edge_length),
                 mesher,
-                size=_with_lines(size, inner),
+                size=_of_plan(sizes, inner),
                 constraints=inner,
             )
         with work.phase(0.5, 1.0, "filling columns"):
@@ -189,15 +188,22 @@ def _without_columns(model) -> str | None:
     return None
 
 
-def _with_lines(size, inner: list[np.ndarray]) -> list[Mapping]:
-    """`size` for the planar mesh; without lines inside there is nothing that "constraints" would mean."""
-    return [entry for entry in size if inner or entry.get("at") != "constraints"]
+def _of_plan(sizes: list[tuple], inner: list[np.ndarray]) -> list[Mapping]:
+    """Local lengths for the planar mesh, whose lines are its outline and, where there are any, `inner`."""
+    entries, of_inner = [], []
+    for places, length, distance in sizes:
+        of_lines = places is None or not len(places)
+        entry = {"at": "outline" if of_lines else places, "length": length, "distance": distance}
+        entries.append(entry)
+        if of_lines and inner:
+            of_inner.append({**entry, "at": "constraints"})
+    return entries + of_inner  # so that messages have the numbers of the entries that were given
 
 
 def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
     elements = {kind: made[kind] for kind in ("tetrahedron", "pyramid", "prism") if len(made[kind]["block"])}
     faces = {kind: made[kind] for kind in ("triangle", "quadrilateral") if len(made[kind][1])}
-    if wanted == "tetrahedra":
+    if wanted == "tetrahedra" and elements:
         elements = {"tetrahedron": divided(elements)}
         triangles, surface = made["triangle"]
         sides, side_surface = made["quadrilateral"]

@@ -55,8 +55,8 @@ _DIVIDED = {
 
 
 def divided(of_kind: dict[str, dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Elements by kind, each a dict of `corners` and of rows with a number for each, as tetrahedra alone: a
-    dict with the same rows."""
+    """Elements by kind (one at least), each a dict of `corners` and of rows with a number for each, as
+    tetrahedra alone: a dict with the same rows."""
     parts = []
     for kind, rows in of_kind.items():
         count, division = _DIVIDED[kind]

@@ -10,6 +10,7 @@
 
 #include "realmodel/base/progress.hpp"
 #include "realmodel/complex.hpp"
+#include "realmodel/meshing/region_mesh.hpp"
 
 namespace realmodel::simulation {
 
@@ -30,10 +31,13 @@ struct FilledMesh {
 /// (between surfaces that are as near), it is not reached.
 /// @param cell_region  of each cell; cells of one region need not be connected
 /// @param kept         of each surface: whether its faces matter inside a region, too
-/// @throws InputError kinds bad_index, nothing (no tetrahedron is left), flat (place), endless
-/// (refinement was given up); Cancelled
+/// @param sizes        where edges are shorter, in plan; those without places: near sharp edges.
+///                     None may be below `tolerance`
+/// @throws InputError kinds bad_index, size (items: its number), too_large, nothing (no tetrahedron
+/// is left), flat (place), endless (refinement was given up); Cancelled
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
-                       int threads, Progress* progress);
+                       std::span<const meshing::LocalLength> sizes, int threads,
+                       Progress* progress);
 
 }  // namespace realmodel::simulation
