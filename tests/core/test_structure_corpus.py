@@ -8,6 +8,7 @@ from faulted.case import CORPUS, BodyCase, load_case, save_case
 from faulted.contract import FaultSides, is_inside, levels
 from faulted.generate import random_case
 from faulted.judge import failures_of
+from faulted.located import distances
 from faulted.minimize import minimize
 from faulted.shapes import box, together
 
@@ -58,6 +59,16 @@ def test_the_judge_finds_what_is_wrong(monkeypatch):
     assert any(failure.startswith("point") for failure in failures_of(case))
 
 
+def test_the_judge_finds_a_cell_on_both_sides_of_a_branch(monkeypatch):
+    """Of one that displaces the other rock mass, too, but in the program does not."""
+    case = load_case(CORPUS / "branch_that_displaces_one_of_two_rock_masses.json")
+    project = type(case).project(case)
+    assert case.faults[1].youngest == "S1"
+    case.faults[1].youngest = None
+    monkeypatch.setattr(type(case), "project", lambda self: project)
+    assert any(failure.startswith("straddles: cell 0 is below F1") for failure in failures_of(case))
+
+
 def test_the_judge_asks_for_the_whole_volume_and_the_proof(monkeypatch):
     case = next(c for c in map(random_case, range(20)) if c.is_full and c.faults)
     assert failures_of(case, count=10) == []
@@ -87,6 +98,12 @@ def test_sides_insides_and_levels():
     sheet = np.array([[0.0, 0, 1], [4, 0, 1], [0, 4, 1]]), np.array([[0, 2, 1]])
     places = np.array([[1.0, 1, 2], [1, 1, 0.5], [1, 1, 1], [3, 3, 0], [2, 2, 0]])
     assert levels(places, sheet).tolist() == [1, -1, 9, 0, 9]
+
+
+def test_a_triangle_without_an_area_is_as_far_as_its_edges():
+    corners = np.array([[[0.0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 0, 0], [0, 0, 0], [0, 0, 0]]])
+    assert distances(np.array([[1.0, 3, 4], [5, 4, 0]]), corners).tolist() == [5.0, 5.0]
+    assert distances(np.array([[5.0, 12, 0]]), corners[1:]).tolist() == [13.0]
 
 
 def test_sides_of_a_fault_are_known_beyond_it():

@@ -222,4 +222,4 @@ class Contract:
         kind, number = self.blocks[block]
         if kind == "body":
             return self.times[number].get(rock, 10**6) <= youngest
-        return number <= youngest
+        return kind == rock and number <= youngest

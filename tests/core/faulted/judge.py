@@ -247,7 +247,7 @@ class Judgement:
             if first != own and not self._near(points[n]) and not self._near(points[at]):
                 ends = [points[at].tolist(), points[n].tolist()]
                 failures.append(f"straddles: cell {cell} is on {first} at {ends[0]} and {own} at {ends[1]}")
-        failures += self._around_branches(points, rows, of_point)
+        failures += self._around_branches(points, rows, rock, of_point)
         for (cell, r), (own, at) in seen.items():
             words = [
                 f"{'above' if side > 0 else 'below'} {fault.name}"
@@ -266,25 +266,25 @@ class Judgement:
                 failures.append(f"compartment: cell {cell} is in '{given}', at {place} is '{name or mass}'")
         return failures[:6]
 
-    def _around_branches(self, points, rows, of_point):
-        """No cell is on both sides of a branch that ends at a fault that dies out, but one that reaches past
-        that fault: with some vertex, as these are planes."""
+    def _around_branches(self, points, rows, rock, of_point):
+        """No cell is on both sides of a branch that acts there and ends at a fault that dies out, but one
+        that reaches past that fault: with some vertex, as these are planes."""
         failures, model = [], self.model
         for f, fault in enumerate(self.case.faults):
             if not self.around.fullmatch(f"above {fault.name}"):
                 continue
-            sides = [set(of_point[(of_point >= 0) & (rows[:, f] == side)].tolist()) for side in (-1, 1)]
-            for cell in sides[0] & sides[1]:
-                if not any(
-                    self.contract.acts(f, int(self.block[cell]), r) for r in range(len(self.case.rocks))
-                ):
-                    continue
+            acts = [
+                cell >= 0 and self.contract.acts(f, int(self.block[cell]), int(r))
+                for cell, r in zip(of_point, rock, strict=True)
+            ]
+            below, above = (np.array(acts) & (rows[:, f] == side) for side in (-1, 1))
+            for cell in set(of_point[below].tolist()) & set(of_point[above].tolist()):
                 faces = np.flatnonzero((model.face_cells == cell).any(axis=1))
                 spans = zip(model.face_offsets[faces], model.face_offsets[faces + 1], strict=True)
                 corners = model.vertices[np.unique([v for a, b in spans for v in model.face_vertices[a:b]])]
                 ends = zip(self.contract.ends[f], self.contract.kept[f], strict=True)
                 reaches = any((self.contract.sides[other](corners) == -kept).any() for other, kept in ends)
-                at = [points[(of_point == cell) & (rows[:, f] == side)] for side in (-1, 1)]
+                at = [points[(of_point == cell) & side] for side in (below, above)]
                 if not reaches and not any(all(self._near(p) for p in some) for some in at):
                     ends = [some[0].tolist() for some in at]
                     failures.append(

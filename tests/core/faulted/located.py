@@ -78,13 +78,13 @@ def distances(points, corners):
     a, b, c = (x[None] for x in corners.transpose(1, 0, 2))
     p = points[:, None]
     normal = np.cross(b - a, c - a)
-    size = np.maximum((normal**2).sum(axis=2), 1e-300)
+    size = (normal**2).sum(axis=2)
     off = ((p - a) * normal).sum(axis=2)
-    inside = np.ones(off.shape, bool)
+    inside = np.broadcast_to(size > 0, off.shape).copy()  # one without an area is its edges
     for u, v in ((a, b), (b, c), (c, a)):
         inside &= (np.cross(v - u, p - u) * normal).sum(axis=2) >= 0
         way = v - u
         t = np.clip(((p - u) * way).sum(axis=2) / np.maximum((way**2).sum(axis=2), 1e-300), 0, 1)
         nearest = np.minimum(nearest, np.linalg.norm(p - u - t[..., None] * way, axis=2).min(axis=1))
-    plane = np.where(inside, np.abs(off) / np.sqrt(size), np.inf)
+    plane = np.where(inside, np.abs(off) / np.sqrt(np.where(size > 0, size, 1.0)), np.inf)
     return np.minimum(nearest, plane.min(axis=1))
