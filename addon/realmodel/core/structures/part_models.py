@@ -73,7 +73,7 @@ def inside_body(
         base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
     if block == NOTHING:
         return _emptied(
-            stack.without([number == DEEP for number in stack.surfaces]), after, base, region, build
+            stack.without([number == DEEP for number in stack.surfaces]), after, base, ends, region, build
         )
     first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
     # what is protected depends on all that was there, and so does what is below the oldest surface
@@ -135,8 +135,24 @@ def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
     return [(piece.sheet, stack.surfaces[piece.of]) for piece in pieces]
 
 
+def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangulation, int]]:
+    """Levels below everything, over surfaces that came upon a body: where no surface was before, the body
+    was all that there was, and the void reaches as deep."""
+    first = stack.emptied[-1] if stack.emptied else 0
+    own = range(first, older)
+    upon = next((k for k in own if stack.surfaces[k] == FILLER), older)
+    return [
+        (level(stack.sheets[k], deep), stack.surfaces[k]) for k in own if k > upon and stack.surfaces[k] >= 0
+    ]
+
+
 def _emptied(
-    stack: Stack, after: int, base: float | None, region: Triangulation | None, build: Build
+    stack: Stack,
+    after: int,
+    base: float | None,
+    ends: tuple[float, float],
+    region: Triangulation | None,
+    build: Build,
 ) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
     of what is below the oldest surface. The older ones only stay where they protect."""
@@ -146,7 +162,7 @@ def _emptied(
         # where no older surface was, none that comes later forms a block
         floors = [(level(plan, base), FLOOR) for plan in before.plans]
     else:
-        floors = _never(stack, before)
+        floors = [*_never(stack, before), *_below_bodies(stack, older, ends[0])]
     protects = any(RULES[rule].protects for rule in before.rules)
     # upon a base the first that comes finds nothing to cut
     may_cut = stack.rules[older + (base is not None) :]
