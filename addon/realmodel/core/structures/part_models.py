@@ -139,11 +139,9 @@ def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangula
     """Levels below everything, over surfaces that came upon a body: where no surface was before, the body
     was all that there was, and the void reaches as deep."""
     first = stack.emptied[-1] if stack.emptied else 0
-    own = range(first, older)
-    upon = next((k for k in own if stack.surfaces[k] == FILLER), older)
-    return [
-        (level(stack.sheets[k], deep), stack.surfaces[k]) for k in own if k > upon and stack.surfaces[k] >= 0
-    ]
+    body = next((k for k in range(first, older) if stack.surfaces[k] == FILLER), older)
+    upon = [k for k in range(body, older) if stack.surfaces[k] >= 0]
+    return [(level(stack.sheets[k], deep), stack.surfaces[k]) for k in upon]
 
 
 def _emptied(
