@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
-from realmodel.core.structures.between_sheets import torn_triangles
+from realmodel.core.structures.between_sheets import common_lines, torn_triangles
 from realmodel.core.structures.tips import _meet_within
+from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
 from structure_cases import plane_fault
 
@@ -67,3 +68,29 @@ def test_points_that_dsi_ignores_are_no_data_of_a_compartment():
     assert sorted(model.compartment_names) == ["above F", "below F"]
     texts = [warning.text for warning in model.warnings]
     assert any("it has no points on the mesh in compartment" in text for text in texts), texts
+
+
+def test_triangles_over_one_another_have_a_common_area():
+    ulp = np.spacing(1.0)
+    one = np.array([[[0.0, 0], [1, 0], [0, 1]]])
+    others = np.array(
+        [
+            [[1.0, 0], [1, 1], [0, 1]],  # along an edge
+            [[1.0 - ulp, 0], [1, 1], [0, 1]],  # over it, by less than any tolerance
+            [[0.0, 0], [-1, 0], [0, -1]],  # at a corner
+            [[0.1, 0.1], [0.1, 0.2], [0.2, 0.1]],  # within, and the other way round
+            [[0.0, 0], [0, 1], [1, 0]],  # the same
+        ]
+    )
+    assert sorted(overlapping_pairs(one, others)[:, 1].tolist()) == [1, 3, 4]
+
+
+def test_lines_between_triangles_are_in_what_they_have_in_common():
+    low = np.array([[0.0, 0, 0], [4, 0, 4], [0, 4, 0]])
+    high = np.array([[2.0, 0, 9], [2, 6, 9], [-4, 0, 9]])
+    begin, end = common_lines(low, high)
+    assert np.array_equal(begin[:, :2], end[:, :2])
+    assert np.allclose(begin[:, 2], begin[:, 0])
+    assert np.allclose(end[:, 2], 9)
+    expected = {(0, 0), (2, 0), (2, 2), (0, 4)}
+    assert {tuple(corner) for corner in np.round(begin[:, :2]).astype(int).tolist()} == expected

@@ -57,16 +57,38 @@ def torn_triangles(
 
 def _part_between(triangle: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """(K, 3) the polygon of a triangle that lies above and below two others with one plan, (3, 3) each."""
-    (ux, uy), (vx, vy) = lower[1, :2] - lower[0, :2], lower[2, :2] - lower[0, :2]
-    turn = np.sign(ux * vy - uy * vx)
-    planes = []
-    for corner in range(3):
-        at, step = lower[corner], lower[(corner + 1) % 3] - lower[corner]
-        planes.append((at, np.array([-turn * step[1], turn * step[0], 0.0])))
+    planes = _walls(lower)
     for facing, sheet in ((1.0, lower), (-1.0, upper)):
         normal = np.cross(sheet[1] - sheet[0], sheet[2] - sheet[0])
         planes.append((sheet[0], normal * facing * np.sign(normal[2])))
-    polygon = triangle
+    return _clipped(triangle, planes)
+
+
+def common_lines(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(2, K, 3) the ends of vertical lines from one triangle (3, 3) to another, just within each corner of
+    what they have in common in plan."""
+    polygon = _clipped(one, _walls(other))
+    if len(polygon):
+        polygon = polygon + _INSET * (polygon.mean(axis=0) - polygon)
+    normal = np.cross(other[1] - other[0], other[2] - other[0])
+    end = polygon.copy()
+    end[:, 2] = other[0, 2] - (polygon - other[0])[:, :2] @ normal[:2] / normal[2]
+    return np.stack([polygon, end])
+
+
+def _walls(triangle: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The vertical planes through the edges of a triangle: a point, and the normal inward, of each."""
+    (ux, uy), (vx, vy) = triangle[1, :2] - triangle[0, :2], triangle[2, :2] - triangle[0, :2]
+    turn = np.sign(ux * vy - uy * vx)
+    steps = np.roll(triangle, -1, axis=0) - triangle
+    return [
+        (at, np.array([-turn * step[1], turn * step[0], 0.0]))
+        for at, step in zip(triangle, steps, strict=True)
+    ]
+
+
+def _clipped(polygon: np.ndarray, planes: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """(K, 3) the part of a polygon that is inward of all planes."""
     for at, inward in planes:
         if not len(polygon):
             break

@@ -225,7 +225,11 @@ def _stack(
         if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
-        stack = inside_body(stack, after, block, ends, plans, entry.region, build)
+        try:
+            stack = inside_body(stack, after, block, ends, plans, entry.region, build)
+        except native_module().InputError as error:
+            error.surface = first + error.surface if error.surface >= 0 else -1
+            raise refused_stack(error, inputs) from error
     return stack
 
 

@@ -6,8 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..rules import RULES
+from ..work import native_module
 from .rock_structure import Triangulation
-from .voids import Build, Older, distinct_plans, level
+from .voids import Build, Older, level
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
@@ -66,35 +67,46 @@ def inside_body(
     body, block `block`, or NOTHING in a void. ends: heights below and above all. plans:
     triangulations that together cover the rock mass in plan; region: the one that bounds it, or None.
     """
-    stack = stack.without([number == DEEP for number in stack.surfaces])
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
         base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
-    before = Older(build, stack.sheets[:older], stack.rules[:older], region, stack.emptied)
     if block == NOTHING:
-        return _emptied(stack, older, base, before)
-    # what is protected depends on all that was there
-    protects = any(RULES[rule].protects for rule in before.rules)
+        return _emptied(
+            stack.without([number == DEEP for number in stack.surfaces]), after, base, ends, region, build
+        )
     first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
-    kept = [k for k in range(first, older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
-    lowest: list[tuple[Triangulation, int]] = []
-    if base is None:  # a body also lies where no older surface is
-        lowest = [(level(plan, ends[0]), DEEP) for plan in plans]
-        if len(distinct_plans([stack.sheets[k] for k in kept if stack.surfaces[k] != FILLER])) > 1:
-            lowest += _never(stack, before)
-            kept = kept if protects else []
-    else:
-        lowest = [(level(plan, base), FLOOR) for plan in plans]
+    # what is protected depends on all that was there, and so does what is below the oldest surface
+    keeps = base is None or any(RULES[rule].protects for rule in stack.rules[:older])
+    kept = [k for k in range(first, older) if stack.surfaces[k] != FLOOR] if keeps else []
+    lowest = [] if base is None else [(level(plan, base), FLOOR) for plan in plans]
+    # a body also lies where no older surface is: upon a level that raises nothing where one is
+    deep = [(level(plan, ends[0]), DEEP) for plan in plans if base is None and DEEP not in stack.surfaces]
     inside = Stack(
-        [*stack.sheets[:first], *(sheet for sheet, _ in lowest), *(stack.sheets[k] for k in kept)],
-        [*stack.rules[:first], *[_DEPOSITS] * len(lowest), *(stack.rules[k] for k in kept)],
+        [
+            *stack.sheets[:first],
+            *(sheet for sheet, _ in lowest),
+            *(stack.sheets[k] for k in kept),
+            *(sheet for sheet, _ in deep),
+        ],
+        [
+            *stack.rules[:first],
+            *[_DEPOSITS] * len(lowest),
+            *(stack.rules[k] for k in kept),
+            *[_DEPOSITS] * len(deep),
+        ],
         None,
         [
             *[NOTHING] * (first + len(lowest)),
             *(NOTHING if base is None and stack.blocks[k] == NOTHING else block for k in kept),
+            *[NOTHING] * len(deep),
         ],
-        [*stack.surfaces[:first], *(of for _, of in lowest), *(stack.surfaces[k] for k in kept)],
+        [
+            *stack.surfaces[:first],
+            *(of for _, of in lowest),
+            *(stack.surfaces[k] for k in kept),
+            *(of for _, of in deep),
+        ],
         stack.emptied,
     )
     for plan in plans:
@@ -115,17 +127,40 @@ def inside_body(
 def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
     """The top of what is below the oldest surface, with numbers of surfaces; none where only bodies are."""
     fills = [of == FILLER for of in stack.surfaces[: len(before.sheets)]]
-    return [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never(fills)]
+    try:
+        pieces = before.never(fills)
+    except native_module().InputError as error:
+        error.surface = stack.surfaces[error.surface] if error.surface >= 0 else -1
+        raise
+    return [(piece.sheet, stack.surfaces[piece.of]) for piece in pieces]
 
 
-def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Stack:
+def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangulation, int]]:
+    """Levels below everything, over surfaces that came upon a body: where no surface was before, the body
+    was all that there was, and the void reaches as deep."""
+    first = stack.emptied[-1] if stack.emptied else 0
+    body = next((k for k in range(first, older) if stack.surfaces[k] == FILLER), older)
+    upon = [k for k in range(body, older) if stack.surfaces[k] >= 0]
+    return [(level(stack.sheets[k], deep), stack.surfaces[k]) for k in upon]
+
+
+def _emptied(
+    stack: Stack,
+    after: int,
+    base: float | None,
+    ends: tuple[float, float],
+    region: Triangulation | None,
+    build: Build,
+) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
     of what is below the oldest surface. The older ones only stay where they protect."""
+    older = sum(number <= after for number in stack.surfaces)
+    before = Older(build, stack.sheets[:older], stack.rules[:older], region, stack.emptied)
     if base is not None:
         # where no older surface was, none that comes later forms a block
         floors = [(level(plan, base), FLOOR) for plan in before.plans]
     else:
-        floors = _never(stack, before)
+        floors = [*_never(stack, before), *_below_bodies(stack, older, ends[0])]
     protects = any(RULES[rule].protects for rule in before.rules)
     # upon a base the first that comes finds nothing to cut
     may_cut = stack.rules[older + (base is not None) :]

@@ -9,12 +9,13 @@ from ..errors import InputRefused, place_text
 from ..heights import heights
 from ..methods import CONTINUATION
 from ..work import Work
+from .between_sheets import common_lines
 from .families import Family
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
-from .tips import on_fault, shared, torn_beyond, trace_of, with_equal_ends
-from .triangles import meet, welded
+from .tips import hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
+from .triangles import meet, overlapping_pairs, welded
 from .within import Within
 
 
@@ -85,7 +86,11 @@ class ReadyMesh:
             return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
 
         traces = traces_on((np.column_stack([plan, common]), triangles))
-        met = [number for number, trace in enumerate(traces) if len(trace.points)]
+        over = [np.zeros(len(own), bool) for _ in faults]
+        for number, trace in enumerate(traces):
+            if not len(trace.points) and not self.tiling.is_mesh:
+                over[number] = self._over_others(own, family.dying[number])
+        met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
@@ -100,11 +105,27 @@ class ReadyMesh:
             hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
                 other = LEFT if side > 0 else RIGHT
-                hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
+                hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
+        """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
+        as at a fault that is nearly level; none where it does not pass between all of these."""
+        found = np.zeros(len(self.triangles), bool)
+        left, right = (np.flatnonzero(own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
+        corners = [self.vertices[self.triangles[some]] for some in (left, right)]
+        pairs = overlapping_pairs(*(each[:, :, :2] for each in corners))
+        lines = [common_lines(corners[0][one], corners[1][other]) for one, other in pairs]
+        if not lines:
+            return found
+        begin, end = np.concatenate(lines, axis=1)
+        shape = self.entry.structure.faults.shapes[fault]
+        if np.isfinite(hit_shares(begin, end, shape)).all():
+            found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
+        return found
 
     def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Triangulation) -> None:
         faults = self.entry.structure.faults

@@ -68,7 +68,7 @@ def trace_of(
     of_triangle = number.reshape(3, -1).T
     changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
     begin, end = vertices[edges[changing, 0]], vertices[edges[changing, 1]]
-    share = _hit_shares(begin, end, fault)
+    share = hit_shares(begin, end, fault)
     hits = np.isfinite(share)
     passed = _where_sides_change(work, begin[~hits], end[~hits], fault, threads)
     missed = np.zeros(len(edges), bool)
@@ -112,7 +112,7 @@ def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     return found
 
 
-def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
+def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
     vertices, triangles = fault.vertices, fault.triangles
     corners = vertices[triangles]

@@ -7,6 +7,8 @@ import itertools
 
 import numpy as np
 
+from .exact import orient2d
+
 _EDGES = ((0, 1), (1, 2), (2, 0))
 _ROUNDING = 1e-9  # relative: what is so near to a plane may be on it
 _FEW = 16  # triangles: with so many, all others are compared with each
@@ -130,6 +132,20 @@ def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
         rows = order[some][near]
         found.append(np.column_stack([np.full(len(rows), number), rows]))
     return np.concatenate(found) if found else np.empty((0, 2), np.int64)
+
+
+def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(K, 2) rows of triangles in plan (N, 3, 2) and (M, 3, 2) that have a common area (exact): no edge of
+    one separates them."""
+    pairs = crossing_pairs(first, second)
+    one, other = first[pairs[:, 0]], second[pairs[:, 1]]
+    apart = np.zeros(len(pairs), bool)
+    for triangle, corners in ((one, other), (other, one)):
+        turn = orient2d(*triangle.transpose(1, 0, 2))
+        for i, j in _EDGES:
+            sides = [orient2d(triangle[:, i], triangle[:, j], corners[:, k]) * turn for k in range(3)]
+            apart |= np.max(sides, axis=0) <= 0
+    return pairs[~apart]
 
 
 def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:

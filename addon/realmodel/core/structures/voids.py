@@ -47,7 +47,8 @@ class Older(NamedTuple):
         return distinct_plans(self.sheets)
 
     def _built(self) -> dict:
-        """The model of the sheets upon one more for each plan, far below all; these count first."""
+        """The model of the sheets upon one more for each plan, far below all; these count first. Raises the
+        builder's InputError for a sheet that it refuses, with the sheet's number."""
         heights = [vertices[:, 2] for vertices, _ in self.sheets if len(vertices)]
         low, high = min(each.min() for each in heights), max(each.max() for each in heights)
         far = float(low - _FAR * (high - low) - 1.0)
@@ -55,7 +56,11 @@ class Older(NamedTuple):
         first = self.emptied[-1] if self.emptied else 0
         sheets = [*self.sheets[:first], *floors, *self.sheets[first:]]
         rules = [*self.rules[:first], *[_DEPOSITS] * len(floors), *self.rules[first:]]
-        model = self.build(sheets, self.region, rules, self.emptied)
+        try:
+            model = self.build(sheets, self.region, rules, self.emptied)
+        except native_module().InputError:  # of a floor: the sheet is refused in its own place
+            self.build(list(self.sheets), self.region, list(self.rules), self.emptied)
+            raise
         count = len(floors)
         order = [*range(count, count + first), *range(count), *range(count + first, len(sheets))]
         number = np.array([*order, -2, -1], np.int32)  # bases and walls stay
