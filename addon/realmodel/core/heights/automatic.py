@@ -15,6 +15,7 @@ _FEW = 10  # points: below this a variogram shows nothing
 _TOLD = 2000  # points that are left out and told, where there are so many
 _FOLDS = 10
 _AS_GOOD = 1.02  # errors this near tell nothing: then a method with a variance is better
+_ROUNDING = 1e-12  # of the highest point: errors below it are of rounding, and tell nothing either
 _IN_LINE = 1e-3  # of the greatest spread: points of less across it show no slope there
 
 
@@ -87,14 +88,15 @@ def choose(task: Task) -> tuple[Trial, str]:
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
     trials = [_trial(task, candidate) for candidate in (_OF_FEW if len(places) < _FEW else _CANDIDATES)]
     errors = [trial.error(task, points) for trial in trials]
-    least = min(errors)
+    told = np.maximum(errors, _ROUNDING * np.abs(points[:, 2]).max())
+    least = told.min()
     best = next(
         (
             trial
-            for trial, error in zip(trials, errors, strict=True)
+            for trial, error in zip(trials, told, strict=True)
             if error <= _AS_GOOD * least and trial.known is not None
         ),
-        trials[int(np.argmin(errors))],
+        trials[int(np.argmin(told))],
     )
     said = [f"{trial.candidate.name} {error:.4g}" for trial, error in zip(trials, errors, strict=True)]
     return best, f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"
