@@ -3,33 +3,20 @@
 
 import csv
 import json
-import os
-import signal
-import subprocess
 import sys
-import threading
-import time
-from pathlib import Path
 
 import numpy as np
 import pytest
+from dask_workers import PROJECT, batch, local_client, one_killed
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
 
-ROOT = Path(__file__).resolve().parents[2]
-PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
-
-distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+pytest.importorskip("distributed", reason="Dask is not installed")
 
 
 @pytest.fixture(scope="module")
 def client():
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as made,
-    ):
+    with local_client(2) as made:
         yield made
 
 
@@ -109,26 +96,9 @@ def test_a_folder_that_cannot_be(client, tmp_path):
 
 
 def test_a_killed_worker_does_not_stop_it(client, alone, tmp_path):
-    killed = []
-
-    def kill():
-        while not list(tmp_path.glob("batches/*.npz")):
-            time.sleep(0.02)
-        pids = client.run(os.getpid)
-        killed.append(next(iter(pids.values())))
-        os.kill(killed[0], signal.SIGKILL)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-    found = run(tmp_path, client, 20, places=alone.places)
-    thread.join()
-    assert killed
+    with one_killed(client, tmp_path, "batches/*.npz"):
+        found = run(tmp_path, client, 20, places=alone.places)
     assert_same(found, alone)
-
-
-def batch(*arguments, cwd=None):
-    command = [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
 
 
 def test_the_command_line(client, tmp_path):

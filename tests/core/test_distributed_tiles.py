@@ -2,30 +2,19 @@
 """Tiles on workers of Dask: killed workers, another scheduler, the command line."""
 
 import os
-import signal
 import subprocess
 import sys
-import threading
-import time
-from pathlib import Path
 
 import pytest
+from dask_workers import PROJECT, ROOT, batch, local_client, one_killed
 from realmodel.core import Cancelled, build, load_project, open_tiles
 
-ROOT = Path(__file__).resolve().parents[2]
-PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
-
-distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+pytest.importorskip("distributed", reason="Dask is not installed")
 
 
 @pytest.fixture(scope="module")
 def client():
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
-        ) as cluster,
-        distributed.Client(cluster) as made,
-    ):
+    with local_client(2) as made:
         yield made
 
 
@@ -44,20 +33,8 @@ def assert_whole(tiled):
 
 
 def test_a_killed_worker_does_not_stop_it(client, tmp_path):
-    killed = []
-
-    def kill():
-        while not list(tmp_path.glob("t/run/built-*.json")):
-            time.sleep(0.02)
-        pids = client.run(os.getpid)
-        killed.append(next(iter(pids.values())))
-        os.kill(killed[0], signal.SIGKILL)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-    tiled = run(tmp_path / "t", client)
-    thread.join()
-    assert killed
+    with one_killed(client, tmp_path, "t/run/built-*.json"):
+        tiled = run(tmp_path / "t", client)
     assert len(tiled.tiles) == 6
     assert_whole(tiled)
 
@@ -72,12 +49,7 @@ def test_a_stopped_run_goes_on_in_another_cluster(client, tmp_path):
     def watch(_share, _text):
         kept[:] = [file for file in before if file.exists() and file.stat().st_mtime_ns == before[file]]
 
-    with (
-        distributed.LocalCluster(
-            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
-        ) as cluster,
-        distributed.Client(cluster) as other,
-    ):
+    with local_client(1) as other:
         tiled = run(tmp_path / "t", other, progress=watch)
     assert len(kept) == len(before)
     assert_whole(tiled)
@@ -91,11 +63,6 @@ def test_what_a_worker_finds_wrong_comes_back(client, tmp_path):
     project.rocks[0].base_elevation = 15.0
     with pytest.raises(InputRefused, match=r"base_elevation 15 is not below"):
         build_tiles(Project("x", project.rocks), tmp_path / "t", (35, 30), client)
-
-
-def batch(*arguments, cwd=None):
-    command = [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)
 
 
 def test_the_command_line(client, tmp_path):

@@ -4,7 +4,6 @@
 import contextlib
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,13 +24,12 @@ from realmodel.core import (
 from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
+from sample_scripts import SAMPLES
 from stacks.generate import random_stack
 from stacks.judge import volume_allowance
 from stacks.model_view import rocks_of
 from stacks.project_files import stack_project
 from stacks.rock_masses import random_rock_masses
-
-SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 
 
 def sample(name):

@@ -21,8 +21,6 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
     are what was eroded of each block, what the surface above it eroded of all older ones, and what bodies
     took of the block.
     """
-    library = model.project.library
-    total = model.volume
     headings = _HEADINGS if erosion is None else (*_HEADINGS, *_HEADINGS_OF_EROSION)
     with_bodies = erosion is not None and len(erosion.taken) > 0
     if with_bodies:
@@ -30,32 +28,18 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
     rows = []
     for number, block in reversed(list(enumerate(model.blocks))):
         parts = model.component_volumes[number]
-        row = [
-            block.name,
-            _property(library, block),
-            model.project.rocks[block.rock].name,
-            _figure(block.volume),
-            _share(block.volume, total),
-            f"{block.cells}",
-            f"{block.components}",
-            _share(parts[0], block.volume) if len(parts) > 1 else "",
-        ]
+        row = [*_row(model, block), _share(parts[0], block.volume) if len(parts) > 1 else ""]
         if erosion is not None:
             row += [_figure(erosion.by_block[number]), _figure(erosion.by_surface[block.surface])]
         if with_bodies:
             row.append(_figure(erosion.taken[:, number].sum()))
         rows.append(row)
-    cells = sum(block.cells for block in model.blocks)
-    parts = sum(block.components for block in model.blocks)
-    sums = ["total", "", "", _figure(total), _share(total, total), f"{cells}", f"{parts}", ""]
+    sums = [*_sums(model), ""]
     if erosion is not None:
         sums += [_figure(erosion.total)] * 2
     if with_bodies:
         sums.append(_figure(erosion.taken.sum()))
-    widths = [max(len(row[i]) for row in (headings, *rows, sums)) for i in range(len(headings))]
-    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
-    lines = [_line(headings, widths), rule, *(_line(row, widths) for row in rows), rule, _line(sums, widths)]
-    return "\n".join(lines)
+    return _table(headings, rows, sums)
 
 
 _HEADINGS_OF_SURFACES = (
@@ -99,9 +83,7 @@ def surface_table(surfaces) -> str:
                 f"{100 * result.extrapolated:.3g} %" if result else "",
             ]
         )
-    widths = [max(len(row[i]) for row in (_HEADINGS_OF_SURFACES, *rows)) for i in range(len(rows[0]))]
-    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
-    return "\n".join([_line(_HEADINGS_OF_SURFACES, widths), rule, *(_line(row, widths) for row in rows)])
+    return _table(_HEADINGS_OF_SURFACES, rows)
 
 
 _HEADINGS_OF_ENSEMBLE = ("block", "property", "rock", "interpolated", "mean", "deviation")
@@ -126,38 +108,47 @@ def ensemble_table(ensemble) -> str:
                 *map(_figure, figures),
             ]
         )
-    widths = [max(len(row[i]) for row in (headings, *rows)) for i in range(len(headings))]
-    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
-    return "\n".join([_line(headings, widths), rule, *(_line(row, widths) for row in rows)])
-
-
-_HEADINGS_OF_TILES = ("block", "property", "rock", "volume", "share", "cells", "components")
+    return _table(headings, rows)
 
 
 def tiles_table(model) -> str:
     """A line for each block of a model in tiles, youngest first, and the sum; then the tiles."""
-    rows = [
-        [
-            block.name,
-            _property(model.project.library, block),
-            model.project.rocks[block.rock].name,
-            _figure(block.volume),
-            _share(block.volume, model.volume),
-            f"{block.cells}",
-            f"{block.components}",
-        ]
-        for block in reversed(model.blocks)
-    ]
-    counts = [f"{sum(getattr(block, name) for block in model.blocks)}" for name in ("cells", "components")]
-    sums = ["total", "", "", _figure(model.volume), _share(model.volume, model.volume), *counts]
-    widths = [max(len(row[i]) for row in (_HEADINGS_OF_TILES, *rows, sums)) for i in range(len(sums))]
-    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
-    lines = [_line(_HEADINGS_OF_TILES, widths), rule, *(_line(row, widths) for row in rows), rule]
+    rows = [_row(model, block) for block in reversed(model.blocks)]
+    sums = _sums(model)
     told = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
     told += "equal on both sides"
     if model.rounded or model.unequal:
         told += f" but for {model.rounded} up to rounding and {model.unequal} beyond it"
-    return "\n".join([*lines, _line(sums, widths), told])
+    return f"{_table(_HEADINGS[: len(sums)], rows, sums)}\n{told}"
+
+
+def _table(headings, rows, sums=None) -> str:
+    """Aligned columns, and below a rule the sums where there are any."""
+    below = [] if sums is None else [sums]
+    widths = [max(len(row[i]) for row in (headings, *rows, *below)) for i in range(len(headings))]
+    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
+    lines = [_line(headings, widths), rule, *(_line(row, widths) for row in rows)]
+    lines += [line for row in below for line in (rule, _line(row, widths))]
+    return "\n".join(lines)
+
+
+def _row(model, block) -> list[str]:
+    """What a model and one in tiles say of a block."""
+    return [
+        block.name,
+        _property(model.project.library, block),
+        model.project.rocks[block.rock].name,
+        _figure(block.volume),
+        _share(block.volume, model.volume),
+        f"{block.cells}",
+        f"{block.components}",
+    ]
+
+
+def _sums(model) -> list[str]:
+    total, blocks = model.volume, model.blocks
+    counts = sum(block.cells for block in blocks), sum(block.components for block in blocks)
+    return ["total", "", "", _figure(total), _share(total, total), *map(str, counts)]
 
 
 def _property(library, block) -> str:

@@ -72,15 +72,7 @@ def intersect(
     if structures is not None:
         return build_joined(work, inputs, structures, cells, threads, start, end)
     native = native_module()
-    rocks = [
-        (
-            entry.surfaces,
-            entry.region,
-            entry.rock.base_elevation,
-            [surface.rule for surface in entry.rock.surfaces],
-        )
-        for entry in inputs
-    ]
+    rocks = [entry.native() for entry in inputs]
     with work.phase(start, end, "intersecting and cutting"):
         try:
             return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)

@@ -62,6 +62,11 @@ class RockInput:
     structure: RockStructure | None = None
     draws: list[Draw] | None = None
 
+    def native(self) -> tuple:
+        """As the native stack builder takes it: surfaces, region, base elevation, rules."""
+        rules = [surface.rule for surface in self.rock.surfaces]
+        return self.surfaces, self.region, self.rock.base_elevation, rules
+
     def stage(self, m: int) -> RockInput:
         """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
         is gone keeps its heights as a ready mesh, if it has them yet."""

@@ -122,15 +122,7 @@ def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
         project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel
     )
     inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
-    rocks = [
-        (
-            entry.surfaces,
-            entry.region,
-            entry.rock.base_elevation,
-            [surface.rule for surface in entry.rock.surfaces],
-        )
-        for entry in inputs
-    ]
+    rocks = [entry.native() for entry in inputs]
     joined = run(lambda work: _joined(work, rocks), cancel=cancel)
     if joined is not None:
         rocks, text = joined
