@@ -23,8 +23,8 @@ using page_store::kBlock;
 
 constexpr std::size_t kLarge = 5 * kBlock / sizeof(std::uint64_t);  // elements
 
-/// Under AddressSanitizer, and where the system is not Linux, arrays come from malloc: they behave
-/// the same, and nothing is kept.
+/// Under AddressSanitizer, and on other systems than Linux and Windows, arrays come from malloc:
+/// they behave the same, and nothing is kept.
 void expect_kept(std::size_t blocks) {
     EXPECT_EQ(page_store::kept(), page_store::kIsThere ? blocks * kBlock : 0);
 }
