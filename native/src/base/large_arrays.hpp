@@ -7,12 +7,22 @@
 /// blocks.
 namespace realmodel::page_store {
 
+/// A block here, and the least large array.
+#if defined(_WIN64)
+// The heap of Windows returns what has more than half a megabyte to the system at once.
+inline constexpr std::size_t kPages = std::size_t{256} << 10;
+inline constexpr std::size_t kLeastLarge = kIsThere ? 2 * kPages : kLargeArray;
+#else
+inline constexpr std::size_t kPages = kBlock;
+inline constexpr std::size_t kLeastLarge = kLargeArray;
+#endif
+
 constexpr bool is_large(const Memory& memory) {
-    return memory.reserved >= kLargeArray;
+    return memory.reserved >= kLeastLarge;
 }
 
 constexpr std::size_t in_blocks(std::size_t bytes) {
-    return (bytes + kBlock - 1) / kBlock * kBlock;
+    return (bytes + kPages - 1) / kPages * kPages;
 }
 
 /// Gives a new array kept blocks that lie side by side, just so many.

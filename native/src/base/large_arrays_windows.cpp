@@ -30,13 +30,13 @@ public:
             begin_ = static_cast<char*>(VirtualAlloc(nullptr, bytes, MEM_RESERVE, PAGE_READWRITE));
         }
         if (begin_ == nullptr) throw std::bad_alloc();
-        state_.resize(bytes / kBlock);
+        state_.resize(bytes / kPages);
         free_.emplace(0, state_.size());
     }
 
-    char* address(std::size_t block) const { return begin_ + block * kBlock; }
+    char* address(std::size_t block) const { return begin_ + block * kPages; }
     std::size_t block(const char* address) const {
-        return static_cast<std::size_t>(address - begin_) / kBlock;
+        return static_cast<std::size_t>(address - begin_) / kPages;
     }
     std::size_t kept() const { return kept_; }
 
@@ -80,7 +80,7 @@ public:
     }
 
     /// Gives blocks their pages. As many kept ones are given up as are needed to hold no more than
-    /// arrays ever had at once.
+    /// a quarter beside what arrays had at most at once.
     /// @return false where the system has no memory for them; none is then used
     bool use(std::size_t first, std::size_t count) {
         std::size_t reused = 0;
@@ -91,7 +91,7 @@ public:
                 ++at;
             if (state == State::kKept) {
                 reused += at - begin;
-            } else if (VirtualAlloc(address(begin), (at - begin) * kBlock, MEM_COMMIT,
+            } else if (VirtualAlloc(address(begin), (at - begin) * kPages, MEM_COMMIT,
                                     PAGE_READWRITE) == nullptr) {
                 for (std::size_t back = first; back < begin; ++back) {
                     if (state_[back] == State::kNothing) decommit(back, 1);
@@ -105,7 +105,8 @@ public:
         used_ += count;
         most_used_ = std::max(most_used_, used_);
         top_ = std::max(top_, first + count);
-        if (used_ + kept_ > most_used_) give_up(used_ + kept_ - most_used_);
+        const std::size_t most_held = most_used_ + most_used_ / 4;
+        if (used_ + kept_ > most_held) give_up(used_ + kept_ - most_held);
         return true;
     }
 
@@ -129,7 +130,7 @@ private:
     using Ranges = std::map<std::size_t, std::size_t>;            // the first block, how many
 
     void decommit(std::size_t first, std::size_t count) {
-        VirtualFree(address(first), count * kBlock, MEM_DECOMMIT);
+        VirtualFree(address(first), count * kPages, MEM_DECOMMIT);
     }
 
     /// So many of the kept ones, those at the highest addresses first.
@@ -186,12 +187,12 @@ bool take_kept(Memory&, std::size_t) {
 
 void reserve_blocks(Memory& memory, std::size_t bytes) {
     Store& all = store();
-    const std::size_t count = bytes / kBlock;
+    const std::size_t count = bytes / kPages;
     Memory moved{nullptr, 0, bytes};
     {
         const std::lock_guard lock(all.busy);
         if (is_large(memory)) {
-            const std::size_t before = memory.reserved / kBlock;
+            const std::size_t before = memory.reserved / kPages;
             if (all.arena.extend(all.arena.block(memory.begin), before, count - before)) {
                 memory.reserved = bytes;
                 return;
@@ -217,7 +218,7 @@ void make_blocks_ready(Memory& memory, std::size_t ready) {
     const std::lock_guard lock(all.busy);
     if (ready <= memory.ready) return;
     if (!all.arena.use(all.arena.block(memory.begin + memory.ready),
-                       (ready - memory.ready) / kBlock))
+                       (ready - memory.ready) / kPages))
         throw std::bad_alloc();
     memory.ready = ready;
 }
@@ -226,9 +227,9 @@ void drop_blocks(Memory& memory) noexcept {
     Store& all = store();
     const std::lock_guard lock(all.busy);
     const std::size_t first = all.arena.block(memory.begin);
-    all.arena.unuse(first, memory.ready / kBlock, all.keepers > 0);
+    all.arena.unuse(first, memory.ready / kPages, all.keepers > 0);
     try {
-        all.arena.give_back(first, memory.reserved / kBlock);
+        all.arena.give_back(first, memory.reserved / kPages);
     } catch (const std::bad_alloc&) {  // these addresses are not used again
     }
 }
@@ -236,7 +237,7 @@ void drop_blocks(Memory& memory) noexcept {
 std::size_t kept() noexcept {
     Store& all = store();
     const std::lock_guard lock(all.busy);
-    return all.arena.kept() * kBlock;
+    return all.arena.kept() * kPages;
 }
 
 Keeper::Keeper() {

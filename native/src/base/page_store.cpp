@@ -12,7 +12,7 @@ namespace realmodel::page_store {
 
 void reserve(Memory& memory, std::size_t bytes) {
     if (bytes <= memory.reserved) return;
-    if (bytes >= kLargeArray) {
+    if (bytes >= kLeastLarge) {
         reserve_blocks(memory, in_blocks(bytes));
         return;
     }
@@ -24,7 +24,7 @@ void reserve(Memory& memory, std::size_t bytes) {
 void make_ready(Memory& memory, std::size_t bytes) {
     constexpr std::size_t kLeast = 64;
     if (bytes <= memory.ready) return;
-    const bool is_new = memory.begin == nullptr && bytes >= kLargeArray;
+    const bool is_new = memory.begin == nullptr && bytes >= kLeastLarge;
     if (is_new && take_kept(memory, in_blocks(bytes))) return;
     if (bytes > memory.reserved) reserve(memory, std::max({bytes, memory.reserved * 2, kLeast}));
     if (is_large(memory)) {
