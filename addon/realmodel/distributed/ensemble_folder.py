@@ -82,7 +82,11 @@ def _digest(realizer: Realizer, points: np.ndarray) -> str:
         digest.update(np.ascontiguousarray(array))
     for entry in model.rock_inputs:
         for surface in entry.rock.surfaces:
-            digest.update(repr((surface.name, surface.rule, surface.method, surface.options)).encode())
+            digest.update(
+                repr(
+                    (surface.name, surface.rule, surface.method, surface.options, surface.correlation)
+                ).encode()
+            )
             if surface.points is not None:
                 digest.update(np.ascontiguousarray(surface.points))
     return digest.hexdigest()

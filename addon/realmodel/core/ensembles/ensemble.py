@@ -147,8 +147,9 @@ def ensemble(
     """Builds a project, and realizations of it: models whose interpolated heights are drawn at random, as
     the points and each surface's variogram allow. The result depends on the seed alone.
 
-    correlation: of the errors of each surface with those of the next older one, -1 to 1. places: (N, 3)
-    points of which the probability of each block is wanted. Other arguments as `build`.
+    correlation: of the errors of each surface with those of the next older one, -1 to 1, for surfaces that
+    have none of their own. places: (N, 3) points of which the probability of each block is wanted. Other
+    arguments as `build`.
     Raises as `build`; UsageError.
     """
     check_request(realizations, seed, correlation)
