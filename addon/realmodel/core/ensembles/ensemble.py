@@ -156,20 +156,36 @@ def ensemble(
     check_request(realizations, seed, correlation)
 
     def task(work: Work) -> Ensemble:
-        steps = np.linspace(0.0, 1.0, realizations + 2)
-        with work.part(*steps[:2]):
+        built = 1.0 / (realizations + 1)
+        with work.part(0.0, built):
             model = build(project, cells="blocks", threads=threads)
-        realizer = Realizer(model, seed, correlation)
-        points = places_of(model, places)
-
-        def one(number: int) -> Sums:
-            with work.part(*steps[number + 1 : number + 3]):
-                return sums_of(realizer, number, points, threads)
-
-        sums = added(added(map(one, numbers)) for numbers in batches(realizations))
-        return Ensemble.of(realizer, sums, points)
+        with work.part(built, 1.0):
+            realizer = Realizer(model, seed, correlation)
+            return realized(work, realizer, realizations, places_of(model, places), threads)
 
     return run(task, progress, cancel)
+
+
+def realized(
+    work: Work,
+    realizer: Realizer,
+    realizations: int,
+    points: np.ndarray,
+    threads: int = 0,
+    each: Callable[[Sums], None] | None = None,
+) -> Ensemble:
+    """Those of a built model, in this thread. points: (N, 3). each: is called with the sums of each
+    realization, in their order."""
+    steps = np.linspace(0.0, 1.0, realizations + 1)
+
+    def one(number: int) -> Sums:
+        with work.part(*steps[number : number + 2]):
+            sums = sums_of(realizer, number, points, threads)
+        if each is not None:
+            each(sums)
+        return sums
+
+    return Ensemble.of(realizer, added(added(map(one, n)) for n in batches(realizations)), points)
 
 
 def places_of(model: Model, places: Places | None) -> np.ndarray:
