@@ -80,15 +80,15 @@ def number_text(value):
 
 def unit_text(scene, power):
     """The unit of lengths (power 1), areas or volumes, as it is shown."""
-    return _shown(scene, power)[0]
+    return shown_unit(scene, power)[0]
 
 
 def _text(scene, value, power, number=number_text):
-    unit, factor = _shown(scene, power)
+    unit, factor = shown_unit(scene, power)
     return f"{number(value * factor)} {unit}"
 
 
-def _shown(scene, power):
+def shown_unit(scene, power):
     """The unit of the model, or where the scene is set to the other system its base unit; and the factor to
     it."""
     unit, system = scene.realmodel.units, scene.unit_settings.system

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ensemble of a model: how certain its volumes are, and which block is where."""
 
+import math
+
 import bpy
 
 from ..bl import units
 from ..bl.display import ensembles
 from ..props_ensemble import slider_of
 from .panel import OfABuiltModel, TabPanel, hint
+
+_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 
 
 class REALMODEL_PT_ensemble(OfABuiltModel, TabPanel, bpy.types.Panel):
@@ -47,14 +51,19 @@ class REALMODEL_PT_ensemble(OfABuiltModel, TabPanel, bpy.types.Panel):
 
 
 def _draw_table(layout, scene, found):
+    """Volumes in thousands, millions and so on, with few digits: the sidebar is narrow."""
+    unit, factor = units.shown_unit(scene, 3)
+    largest = factor * max(row["percentiles"][-1] for row in found["blocks"])
+    power = 3 * math.floor(math.log10(largest) / 3) if largest > 0.0 else 0
+    unit = f"10{str(power).translate(_RAISED)} {unit}" if power else unit
     column = layout.box().column(align=True)
-    _row(column, f"Block ({units.unit_text(scene, 3)})", ensembles.headings())
+    _row(column, unit, ensembles.headings())
     for row in reversed(found["blocks"]):
-        _row(column, row["name"], [_short(volume) for volume in row["percentiles"]])
+        _row(column, row["name"], [_short(factor * volume / 10.0**power) for volume in row["percentiles"]])
 
 
 def _row(column, name, texts):
-    line = column.split(factor=0.34)
+    line = column.split(factor=0.36)
     line.label(text=name)
     cells = line.row()
     for text in texts:
@@ -63,9 +72,9 @@ def _row(column, name, texts):
         cell.label(text=text)
 
 
-def _short(volume):
-    """A volume in the width of a column."""
-    return f"{volume:,.0f}" if 100 <= volume < 1e5 else f"{volume:.4g}"
+def _short(value):
+    """Three digits of a number below 1000."""
+    return f"{value:.{0 if value >= 99.95 else 1 if value >= 9.995 else 2}f}"
 
 
 CLASSES = (REALMODEL_PT_ensemble,)
