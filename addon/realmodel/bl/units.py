@@ -47,7 +47,7 @@ def area_text(scene, value):
 
 def volume_text(scene, row):
     """The volume of a row without its unit, which `unit_text` gives once for a whole column."""
-    return number_text(results.volume(row) * _shown(scene, 3)[1])
+    return number_text(results.volume(row) * shown_unit(scene, 3)[1])
 
 
 def full_volume_text(scene, row):
