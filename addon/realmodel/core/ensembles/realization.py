@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..assembly import assemble, intersect
+from ..errors import InputRefused
 from ..model import Model
 from ..rock_input import RockInput, interpolate_rock
 from ..structures.setup import make_structures
@@ -24,7 +25,8 @@ class Realizer:
     """Makes the realizations of a built model, each from the seed and its number alone.
 
     model: as `build` gives it. seed: from 0. correlation: of the errors of each surface with those of the
-    next older one of its rock mass, from -1 to 1; exact where both have the same variogram.
+    next older one of its rock mass, from -1 to 1, where the surface has none of its own; exact where both
+    have the same variogram.
     """
 
     model: Model
@@ -53,7 +55,10 @@ class Realizer:
 
         Raises InputRefused, BuildFailed, Cancelled.
         """
-        return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+        try:
+            return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+        except InputRefused as error:
+            raise error.within(f"realization {number}") from error
 
     def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
         began = time.perf_counter()
@@ -74,12 +79,17 @@ class Realizer:
         timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
         return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
 
+    def correlations(self, entry: RockInput) -> list[float]:
+        """Of the errors of each surface of a rock mass with those of the next older one."""
+        own = [surface.correlation for surface in entry.rock.surfaces]
+        return [self.correlation if each is None else each for each in own]
+
     def _drawn(self, entry: RockInput, rock: int, number: int) -> RockInput:
         """An entry without heights, whose surfaces will be drawn."""
         surfaces = entry.rock.surfaces
         draws, noise = [], None
-        for each in range(len(surfaces)):
-            noise = Noise((self.seed, number, rock, each), noise, self.correlation)
+        for each, correlation in enumerate(self.correlations(entry)):
+            noise = Noise((self.seed, number, rock, each), noise, correlation)
             draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {})))
         return replace(
             entry,
