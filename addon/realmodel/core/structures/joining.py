@@ -133,14 +133,8 @@ def _part_model(
     rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
-    emptied = [list(stacks[n].emptied) for n in taken]
-    fills = [
-        [of == FILLER for of in stacks[n].surfaces[: max(stacks[n].emptied, default=0)]]
-        if inputs[n].rock.base_elevation is None
-        else []
-        for n in taken
-    ]
-    built_as = "columns" if any(emptied) else cells
+    voids = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
+    built_as = "columns" if voids else cells
     # blocks end at one border: those that each sheet ends at by itself leave many small ones between
     around = reach.around(columns) if built_as == "blocks" else None
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
@@ -151,14 +145,7 @@ def _part_model(
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
-        built = work.native(
-            native.build_rock_masses,
-            rocks,
-            cells=built_as,
-            threads=threads,
-            emptied=emptied if any(emptied) else [],
-            fills=fills if any(emptied) else [],
-        )
+        built = work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **voids)
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):
             error.items = rows[error.surface][error.items].tolist()
@@ -189,6 +176,18 @@ def _part_model(
         for kind, k, items, text in built["warnings"]
     ]
     return {**model, "warnings": warnings}
+
+
+def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
+    """What the builder is told of voids, by the names of its arguments; {} where there is none. stacks: with
+    whether what is below the oldest surface stays."""
+    if not any(stack.emptied for stack, _ in stacks):
+        return {}
+    tops = [
+        [of == FILLER for of in stack.surfaces[: max(stack.emptied, default=0)]] if stays else []
+        for stack, stays in stacks
+    ]
+    return {"emptied": [list(stack.emptied) for stack, _ in stacks], "fills": tops}
 
 
 def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
