@@ -6,8 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
-#include "exact/arithmetic.hpp"
-#include "exact/formulas.hpp"
+#include "strata/cells/exact_places.hpp"
 
 namespace realmodel::strata {
 
@@ -33,6 +32,11 @@ bool is_far_from_origin(const PlanVertices& plan_vertices) {
     return unit > extent * 0x1p-43;
 }
 
+/// Whether an offset from a coordinate is known to a small part of it.
+bool is_close(const exact::DoubleDoubleInterval& offset, double coordinate) {
+    return offset.error < 0x1p-20 * ulp(coordinate);
+}
+
 }  // namespace
 
 Array<PlanOffset> find_plan_offsets(const exact::PlanArrangement& geometry,
@@ -46,6 +50,7 @@ Array<PlanOffset> find_plan_offsets(const exact::PlanArrangement& geometry,
             using Number = exact::DoubleDoubleInterval;
             const exact::LocalArrangement scope(geometry);
             const exact::BallArithmetic in{geometry};
+            const ExactPlaces places(geometry);
             for (std::size_t p = begin; p < end; ++p) {
                 offsets[p] = {0, 0};
                 const PointId point = plan_vertices.representative[p];
@@ -55,10 +60,15 @@ Array<PlanOffset> find_plan_offsets(const exact::PlanArrangement& geometry,
                 const exact::Point& o = geometry.point(origin);
                 const auto h = exact::position_of<Number>(in, scope, point, origin);
                 const auto [x, y] = plan_vertices.position[p];
-                const auto off_x = (h.x / h.w + Number::difference(o.x, x)).rounded();
-                const auto off_y = (h.y / h.w + Number::difference(o.y, y)).rounded();
-                if (off_x && off_y)
-                    offsets[p] = {static_cast<float>(*off_x), static_cast<float>(*off_y)};
+                const Number off_x = h.x / h.w + Number::difference(o.x, x),
+                             off_y = h.y / h.w + Number::difference(o.y, y);
+                if (is_close(off_x, x) && is_close(off_y, y)) {
+                    offsets[p] = {static_cast<float>(off_x.high), static_cast<float>(off_y.high)};
+                    continue;
+                }
+                const auto at = places.plan(point);
+                offsets[p] = {static_cast<float>(nearest(at[0] - x)),
+                              static_cast<float>(nearest(at[1] - y))};
             }
         });
     return offsets;
