@@ -210,13 +210,12 @@ def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
     share = (divided - along[:, :1]) / (along[:, 1:] - along[:, :1])
     between = height[:, :1] + share * (height[:, 1:] - height[:, :1])
     height = np.where(share == 0, height[:, :1], np.where(share == 1, height[:, 1:], between))
-    order = np.lexsort((height.sum(axis=1), part, face))
+    order = np.lexsort((*height.T, height.sum(axis=1), part, face))
     face, part, cell, height, divided = (each[order] for each in (face, part, cell, height, divided))
     start = np.ones(len(face), bool)
     start[1:] = (face[1:] != face[:-1]) | (part[1:] != part[:-1])
     begin = np.flatnonzero(start)
     size = np.diff([*begin, len(face)])
-    # More than two are where rounding moved a vertex past another: both tiles have them.
     lowest, highest = begin[size > 1], (begin + size - 1)[size > 1]
     shape = np.column_stack([divided[lowest], height[lowest], height[highest]]).reshape(-1, 6)
     cell = cell[lowest]
