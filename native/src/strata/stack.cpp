@@ -80,9 +80,8 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
                                            : build_columns(site, threads, progress);
     }
     result.cell_kind = cells;
-    result.volumes =
-        block_volumes(result, static_cast<std::size_t>(site.surfaces), threads, progress,
-                      {built.offsets.data(), built.offsets.size()});
+    result.volumes = block_volumes(result, static_cast<std::size_t>(site.surfaces), threads,
+                                   progress, {built.offsets.data(), built.offsets.size()});
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();

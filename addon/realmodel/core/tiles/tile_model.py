@@ -103,21 +103,14 @@ def build_tile(
         if frame.clips[r]:
             region = (parts[r, _REGION].vertices[:, :2].copy(), parts[r, _REGION].triangles)
             seen = clipped_region(region, box)
-        rules = [surface.rule for surface in rock.surfaces]
-        rocks.append((shapes, region, rock.base_elevation, rules))
         given = [
             replace(surface, vertices=vertices, triangles=triangles)
             for surface, (vertices, triangles) in zip(rock.surfaces, shapes, strict=True)
         ]
-        inputs.append(
-            RockInput(
-                replace(rock, surfaces=given),
-                shapes,
-                seen,
-                [None] * len(shapes),
-                [None] * len(shapes),
-            )
-        )
+        nothing = [None] * len(shapes)
+        entry = RockInput(replace(rock, surfaces=given), shapes, region, nothing, nothing)
+        rocks.append(entry.native())
+        inputs.append(replace(entry, region=seen))
     numbers = [
         parts[r, k].numbers for r, rock in enumerate(frame.project.rocks) for k in range(len(rock.surfaces))
     ]

@@ -110,9 +110,9 @@ struct Tile {
     std::vector<BorderVertex> border;
 };
 
-/// What of rock masses lies in a window. No vertex but those in `border` has a coordinate of a line.
-/// Borders are taken as they are: whoever divides a model has
-/// joined them in all of it (join_rock_masses), so that all its tiles have the same.
+/// What of rock masses lies in a window. No vertex but those in `border` has a coordinate of a
+/// line. Borders are taken as they are: whoever divides a model has joined them in all of it
+/// (join_rock_masses), so that all its tiles have the same.
 /// @throws as build_rock_masses
 Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
                 Progress* progress, CellKind cells = CellKind::kColumns);

@@ -78,8 +78,8 @@ Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex)
 }  // namespace
 
 BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
-                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
-                        const std::optional<Window>& window, int threads, Progress* progress) {
+                       const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
+                       const std::optional<Window>& window, int threads, Progress* progress) {
     // The peak of memory is still to come, and what chunks of overlays were made in is free.
     geometry.forget_names();
     constexpr std::size_t kManyPoints = 1000000;
@@ -91,8 +91,7 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
         border = find_tile_border(geometry, faces, c.plan_vertices, c.conformed, *window, threads,
                                   progress);
     }
-    Array<PlanOffset> plan_off =
-        find_plan_offsets(geometry, c.plan_vertices, threads, progress);
+    Array<PlanOffset> plan_off = find_plan_offsets(geometry, c.plan_vertices, threads, progress);
     // What comes out takes the memory of what it was made of.
     if (blocks == nullptr) {
         c.conformed.entries = {};

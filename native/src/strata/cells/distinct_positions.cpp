@@ -42,8 +42,7 @@ public:
         if (border_ == nullptr) return;
         for (const auto& [number, is_on] : border_->plan_vertices) {
             const auto vertex = static_cast<std::size_t>(number);
-            if (!border_->allows(vertex, at(vertex)))
-                move(vertex, [](int, int) { return true; });
+            if (!border_->allows(vertex, at(vertex))) move(vertex, [](int, int) { return true; });
         }
     }
 

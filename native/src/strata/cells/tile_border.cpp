@@ -44,8 +44,7 @@ std::vector<std::vector<PlaneId>> planes_at(const std::vector<TileBorder::PlanVe
         return conformed.vertex_offsets[static_cast<std::size_t>(on[i].number) + 1];
     };
     std::vector<std::vector<PlaneId>> planes;
-    std::vector<bool> is_asked(
-        static_cast<std::size_t>(*(conformed.vertex_offsets.end() - 1)));
+    std::vector<bool> is_asked(static_cast<std::size_t>(*(conformed.vertex_offsets.end() - 1)));
     for (std::size_t i = 0; i < on.size(); ++i) {
         planes.emplace_back(static_cast<std::size_t>(last(i) - first(i)), PlaneId(kNone));
         std::fill(is_asked.begin() + first(i), is_asked.begin() + last(i), true);
@@ -99,28 +98,28 @@ TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& fac
     const auto planes = planes_at(border.plan_vertices, faces, conformed);
     constexpr std::size_t kTogether = 64;
     std::vector<std::vector<BorderVertex>> found((planes.size() + kTogether - 1) / kTogether);
-    parallel_ranges(planes.size(), kTogether, threads, progress, [&](std::size_t begin,
-                                                                     std::size_t end) {
-        const ExactPlaces places(geometry);
-        for (std::size_t i = begin; i < end; ++i) {
-            TileBorder::PlanVertex& vertex = border.plan_vertices[i];
-            const auto p = static_cast<std::size_t>(vertex.number);
-            const PointId point = plan_vertices.representative[p];
-            const auto at = places.plan(point);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                vertex.is_on[axis] =
-                    vertex.is_on[axis] && at[axis] == plan_vertices.position[p][axis];
+    parallel_ranges(
+        planes.size(), kTogether, threads, progress, [&](std::size_t begin, std::size_t end) {
+            const ExactPlaces places(geometry);
+            for (std::size_t i = begin; i < end; ++i) {
+                TileBorder::PlanVertex& vertex = border.plan_vertices[i];
+                const auto p = static_cast<std::size_t>(vertex.number);
+                const PointId point = plan_vertices.representative[p];
+                const auto at = places.plan(point);
+                for (std::size_t axis = 0; axis < 2; ++axis) {
+                    vertex.is_on[axis] =
+                        vertex.is_on[axis] && at[axis] == plan_vertices.position[p][axis];
+                }
+                if (!vertex.is_on[0] && !vertex.is_on[1]) continue;
+                for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
+                    const mpq_class z = places.height(planes[i][rank], point);
+                    found[begin / kTogether].push_back(
+                        {conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
+                         {nearest(at[0]), nearest(at[1]), nearest(z)},
+                         {at[0].get_str(16), at[1].get_str(16), z.get_str(16)}});
+                }
             }
-            if (!vertex.is_on[0] && !vertex.is_on[1]) continue;
-            for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
-                const mpq_class z = places.height(planes[i][rank], point);
-                found[begin / kTogether].push_back(
-                    {conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
-                     {nearest(at[0]), nearest(at[1]), nearest(z)},
-                     {at[0].get_str(16), at[1].get_str(16), z.get_str(16)}});
-            }
-        }
-    });
+        });
     for (auto& some : found) {
         border.vertices.insert(border.vertices.end(), std::make_move_iterator(some.begin()),
                                std::make_move_iterator(some.end()));

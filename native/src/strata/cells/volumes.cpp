@@ -39,8 +39,7 @@ Projection project(const CellComplex& complex, std::size_t face,
     for (std::int64_t i = begin + kAhead; i < std::min(end + kAhead, corners); ++i)
         prefetch(&corner(i));
     const auto offset = [&](std::int64_t i) {
-        const auto v =
-            static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)]);
+        const auto v = static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)]);
         return v < offsets.size() ? offsets[v] : PlanOffset{0, 0};
     };
     const auto& origin = corner(begin);
@@ -95,8 +94,7 @@ struct BlockSum {
 // A face within a block adds to one cell what it takes from the other. Walls between blocks count
 // too: the rounded corners of one are in line in plan only up to rounding.
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
-                                  const Progress* progress,
-                                  std::span<const PlanOffset> offsets) {
+                                  const Progress* progress, std::span<const PlanOffset> offsets) {
     const auto block_of = [&](std::int32_t cell) {
         return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
     };
