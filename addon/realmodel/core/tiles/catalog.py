@@ -42,8 +42,8 @@ class TileEntry:
 @dataclass(frozen=True)
 class Catalog:
     """What tiles.toml says. project: without shapes. digest: of the input. patches: quadrilaterals of
-    blocks on the borders between tiles, which were compared double for double; unequal: those that one side alone
-    has."""
+    blocks on the borders between tiles, which were compared double for double; unequal: those that one side
+    alone has."""
 
     project: Project
     cell_kind: str

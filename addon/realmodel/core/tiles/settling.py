@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the vertices on the border of a tile are: decided alike in all tiles that share them.
 
-Points that differ can round to the same doubles, and then one of them moves to the next ones. On a border each
-tile may have points that its neighbors have not. So what moves there follows from the exact points that all of
-them have together, and from nothing else.
+Points that differ can round to the same doubles, and then one of them moves to the next ones. On a border
+each tile may have points that its neighbors have not. So what moves there follows from the exact points that
+all of them have together, and from nothing else.
 """
 
 from __future__ import annotations
@@ -42,11 +42,9 @@ class BorderVertices:
         return cls(arrays["numbers"], arrays["nearest"], _lines(arrays["exact"].tobytes()))
 
 
-def settled(
-    box: tuple[float, float, float, float], tiles: Iterable[BorderVertices]
-) -> list[np.ndarray]:
-    """Where vertices are that lie on the border of a tile. tiles: those of the tile, and of all that share its
-    sides or corners. Returns (N, 3) float64 for each, NaN where a neighbor's is not on this border."""
+def settled(box: tuple[float, float, float, float], tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
+    """Where vertices are that lie on the border of a tile. tiles: those of the tile, and of all that share
+    its sides or corners. Returns (N, 3) float64 for each, NaN where a neighbor's is not on this border."""
     tiles = list(tiles)
     heights: dict[tuple[str, str], dict[str, float]] = {}
     on_sides = []

@@ -90,9 +90,7 @@ def _parts(frame: Frame, path: Path) -> dict[tuple, Part]:
     return {(r, k): Part(*(arrays[f"{n}_{r}_{k}"] for n in Part.__dataclass_fields__)) for r, k in keys}
 
 
-def build_tile(
-    work: Work, frame: Frame, box: Box, path: Path, threads: int
-) -> tuple[Model, BorderVertices]:
+def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> tuple[Model, BorderVertices]:
     """The model of a tile, with borders as they come, and its vertices there. path: what TileParts wrote."""
     parts = _parts(frame, path)
     inputs, rocks = [], []
