@@ -62,16 +62,23 @@ CellKind kind_of(const std::string& cells) {
 
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
                            int threads, Progress* control,
-                           const std::vector<std::vector<std::size_t>>& emptied) {
+                           const std::vector<std::vector<std::size_t>>& emptied,
+                           const std::vector<std::vector<std::uint8_t>>& fills) {
     const CellKind kind = kind_of(cells);
     auto input = views_of(rocks);
     if (!emptied.empty() && (emptied.size() != rocks.size() || kind != CellKind::kColumns))
         throw py::value_error("emptied: one for each rock mass, of columns alone");
+    if (!fills.empty() && fills.size() != emptied.size())
+        throw py::value_error("fills: one for each rock mass, where some are emptied");
     for (std::size_t r = 0; r < emptied.size(); ++r) {
         input[r].emptied = emptied[r];
         if (!std::ranges::is_sorted(emptied[r]) ||
             (!emptied[r].empty() && emptied[r].back() >= input[r].surfaces.size()))
             throw py::value_error("emptied: surfaces, ascending");
+        if (fills.empty() || fills[r].empty()) continue;
+        input[r].fills = fills[r];
+        if (emptied[r].empty() || fills[r].size() != emptied[r].back())
+            throw py::value_error("fills: of each surface before the last emptying");
     }
     CellComplex complex;
     {
@@ -140,7 +147,7 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
-                             {});
+                             {}, {});
 }
 
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
@@ -170,6 +177,7 @@ void bind_strata(py::module_& module) {
     module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
+               py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
@@ -178,7 +186,10 @@ float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None o
 flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosional). cells:
 "columns" or "blocks" (each connected part of a block one cell); threads: 0 for
 all; emptied: of each rock mass the surfaces, ascending, before which all that is there becomes air,
-and only what was protected stays so (columns, no base elevation). Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
+and only what was protected stays so (columns, no base elevation); fills: of each rock mass for each
+surface before the last of these 1 where it is the top of a body: then what is below the oldest
+surface stays, but for places at which a body was there first; none: nothing stays. Surfaces are
+counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,

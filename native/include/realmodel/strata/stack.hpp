@@ -72,6 +72,10 @@ struct StackInput {
     /// Surfaces, ascending: before each of them all that is there becomes air, and only what was
     /// protected stays so. Of models of columns without a base elevation.
     std::vector<std::size_t> emptied;
+    /// Of each surface before the last of `emptied` 1 where it is the top of a body: then what is
+    /// below the oldest surface stays as it is, but for places at which a body was there first.
+    /// None at all: nothing stays.
+    std::vector<std::uint8_t> fills;
     /// What lies beyond it is left out, as beyond the region.
     std::optional<Window> window = {};
 };

@@ -18,6 +18,7 @@ struct EnteredRock {
     std::vector<SurfacePlan> plans;  ///< of the surfaces
     std::vector<Rule> rules;
     std::vector<std::size_t> emptied;  ///< surfaces before which all that is there becomes air
+    std::vector<std::uint8_t> fills;   ///< of those before the last of them: 1 for tops of bodies
     std::optional<std::vector<PlanTriangle>> region;
     std::vector<BorderEdge> region_border;
     FrameTriangles region_filling;         ///< the frame around the region
