@@ -62,16 +62,23 @@ CellKind kind_of(const std::string& cells) {
 
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
                            int threads, Progress* control,
-                           const std::vector<std::vector<std::size_t>>& emptied) {
+                           const std::vector<std::vector<std::size_t>>& emptied,
+                           const std::vector<std::vector<std::uint8_t>>& fills) {
     const CellKind kind = kind_of(cells);
     auto input = views_of(rocks);
     if (!emptied.empty() && (emptied.size() != rocks.size() || kind != CellKind::kColumns))
         throw py::value_error("emptied: one for each rock mass, of columns alone");
+    if (!fills.empty() && fills.size() != emptied.size())
+        throw py::value_error("fills: one for each rock mass, where some are emptied");
     for (std::size_t r = 0; r < emptied.size(); ++r) {
         input[r].emptied = emptied[r];
         if (!std::ranges::is_sorted(emptied[r]) ||
             (!emptied[r].empty() && emptied[r].back() >= input[r].surfaces.size()))
             throw py::value_error("emptied: surfaces, ascending");
+        if (fills.empty() || fills[r].empty()) continue;
+        input[r].fills = fills[r];
+        if (emptied[r].empty() || fills[r].size() != emptied[r].back())
+            throw py::value_error("fills: of each surface before the last emptying");
     }
     CellComplex complex;
     {
@@ -86,14 +93,27 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
                     const std::string& cells, int threads, Progress* control) {
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
-    CellComplex complex;
+    strata::Tile tile;
+    std::vector<std::int32_t> numbers;
+    std::vector<double> nearest;
+    std::string exact;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
-                                     control, kind);
+        tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
+                                  control, kind);
+        for (const strata::BorderVertex& vertex : tile.border) {
+            numbers.push_back(vertex.vertex);
+            nearest.insert(nearest.end(), vertex.nearest.begin(), vertex.nearest.end());
+            const auto& [x, y, z] = vertex.exact;
+            exact += x + ' ' + y + ' ' + z + '\n';
+        }
     }
-    return to_dict(std::move(complex));
+    py::dict result = to_dict(std::move(tile.complex));
+    result["border_vertices"] = to_array(std::move(numbers));
+    result["border_nearest"] = to_array(std::move(nearest), 3);
+    result["border_exact"] = py::bytes(exact);
+    return result;
 }
 
 py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
@@ -127,7 +147,7 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
-                             {});
+                             {}, {});
 }
 
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
@@ -157,6 +177,7 @@ void bind_strata(py::module_& module) {
     module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
+               py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
@@ -165,7 +186,10 @@ float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None o
 flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosional). cells:
 "columns" or "blocks" (each connected part of a block one cell); threads: 0 for
 all; emptied: of each rock mass the surfaces, ascending, before which all that is there becomes air,
-and only what was protected stays so (columns, no base elevation). Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
+and only what was protected stays so (columns, no base elevation); fills: of each rock mass for each
+surface before the last of these 1 where it is the top of a body: then what is below the oldest
+surface stays, but for places at which a body was there first; none: nothing stays. Surfaces are
+counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,
@@ -174,7 +198,11 @@ surface, items, text); decisions, exact_decisions: int. Raises InputError and Ca
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                R"(build_rock_masses of what lies in a window (low x, low y, high x, high y).
 
-Borders are taken as they are: join_rock_masses is to be called before, with all of the model.)");
+Borders are taken as they are: join_rock_masses is to be called before, with all of the model. And
+what lies on the lines that bound it: border_vertices (N,) int32, ascending, no other vertex has a
+coordinate of these; border_nearest (N, 3) float64, the doubles nearest to where they are exactly;
+border_exact: bytes, a line with x, y and z of each, reduced fractions in hexadecimal, which are
+equal where points are, in all tiles.)");
     module.def("join_rock_masses", &join_rock_masses, py::arg("rocks"), py::arg("threads") = 0,
                py::arg("control") = nullptr,
                R"(What build_rock_masses does to its input before it builds.

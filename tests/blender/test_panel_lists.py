@@ -239,12 +239,13 @@ class Surfaces(PanelCase):
         ops.surface_add(name="S0")
         row = self.rock().surfaces[0]
         examples = {"word": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        examples["number"] = examples["length"] = lambda s: 7.25 if s.high is None else s.high - 0.25
         for settings in (ROCK, SURFACE):
             target = self.rock() if settings is ROCK else row
             for key, setting in settings.items():
                 if setting.kind in ("other", "columns") or setting.parts:
                     continue
-                given = examples.get(setting.kind, lambda s: 7.25 if s.kind in ("number", "length") else "7")
+                given = examples.get(setting.kind, lambda s: "7")
                 method_settings.set_value(target, key, settings, given(setting))
                 found = method_settings.value(target, key, settings)
                 self.assertEqual(str(found).rstrip("0."), str(given(setting)), key)

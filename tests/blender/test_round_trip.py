@@ -62,6 +62,7 @@ drift = "quadratic"
 variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
 rule = "conformable"
 minimum_thickness = 0.35
+correlation = -0.3
 
 [[rock.surface]]
 name = "contours"
@@ -272,7 +273,10 @@ def _surface(surface):
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
         "method": surface.method_options() if surface.interpolated else None,
-        **{key: getattr(surface, key) for key in ("name", "rule", "property", "block", "minimum_thickness")},
+        **{
+            key: getattr(surface, key)
+            for key in ("name", "rule", "property", "block", "minimum_thickness", "correlation")
+        },
     }
 
 

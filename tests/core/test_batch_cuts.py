@@ -26,17 +26,22 @@ def test_sections_fences_and_halves_are_written(layers, out):  # noqa: F811
         *("--section", f"0.5,0.5,0,1,0,0={out / 's.csv'}"),
         *("--section", f"0,0,2,0,0,1={out / 'level.npz'}"),
         *("--fence", f"{out.parent / 'line.csv'}={out / 'f.csv'}"),
+        *("--borehole", f"0.5,0.25={out / 'b.csv'}"),
         *("--cut", f"0,0,2,0,0,1={out / 'below.npz'},{out / 'above.npz'}"),
         *("--cut", f":1={out / 'inside.npz'},"),
         *("--cut", f"{project}:1=,{out / 'outside.npz'}"),
     )
     assert done.returncode == 0, done.stderr
     assert names(out) == [
-        *("above.npz", "below.npz", "f.csv", "inside.npz", "level.npz", "outside.npz", "s.csv")
+        *("above.npz", "b.csv", "below.npz", "f.csv", "inside.npz", "level.npz", "outside.npz", "s.csv")
     ]
-    last = done.stdout.splitlines()[-6:]
+    last = done.stdout.splitlines()[-7:]
     assert last[0].startswith("section s.csv: ") and last[2].startswith("fence f.csv: ")
-    assert last[3].startswith("cut by the plane: volume ")
+    assert last[3] == "borehole b.csv: 2 intervals, 3.00 of rock"
+    assert last[4].startswith("cut by the plane: volume ")
+    with (out / "b.csv").open() as file:
+        told = [(row["block"], float(row["top"]), float(row["bottom"])) for row in csv.DictReader(file)]
+    assert told == [("1", 3, 1), ("0", 1, 0)]
     whole = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("below", "above"))
     assert arrays(out / "inside.npz")["block_volume"][0] == 0
     parts = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("inside", "outside"))
@@ -131,6 +136,8 @@ def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F8
         (("--section", "0,0,0,1,0,nan=s.vtu"), "a plane is six numbers"),
         (("--section", "0,0,0,1,0,0=s.step"), "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz"),
         (("--fence", "0,0,1=f.vtu"), "at least two points"),
+        (("--borehole", "0,0,1=b.csv"), "two numbers, X,Y"),
+        (("--borehole", "0,0=b.vtu"), "boreholes are not written as '.vtu'"),
         (("--fence", "0,0,0,0,1,1=f.vtu"), "two consecutive points are equal"),
         (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),
         (("--cut", "0,0,0,1,0,0=a.npz,b.npz,c.npz"), "expected "),

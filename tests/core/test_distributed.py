@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pytest
 from dask_workers import PROJECT, batch, local_client, one_killed
+from realmodel.batch.terminal import TimeLeft
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
 
@@ -85,7 +86,7 @@ def test_a_stopped_run_goes_on(client, alone, tmp_path):
 def test_the_folder_of_another_ensemble_is_refused(client, tmp_path):
     with pytest.raises(Cancelled):
         run(tmp_path, client, cancel=lambda: bool(list(tmp_path.glob("batches/*.npz"))))
-    with pytest.raises(UsageError, match="another project, seed or correlation"):
+    with pytest.raises(UsageError, match="another project, seed, correlation or places"):
         run(tmp_path, client, seed=4)
 
 
@@ -110,12 +111,56 @@ def test_the_command_line(client, tmp_path):
     assert report["realizations"] == 3 and report["seed"] == 5
 
 
+def test_probabilities_on_the_command_line(client, tmp_path):
+    """Files in the folder of the ensemble, the same as what Python says."""
+    out, line = tmp_path / "e", "5,5,50,25,95,45"
+    arguments = (
+        *("--ensemble", 4, "--seed", 5, "--out", out, "--scheduler", client.scheduler.address),
+        *("--section", f"50,25,20,0,1,0={out / 'section.png'}", "--fence", f"{line}={out / 'fence.csv'}"),
+        *("--borehole", f"50,25={out / 'hole.csv'}", "--export", out / "grid.npz", "--cell-size", "10,1"),
+    )
+    done = batch(*arguments)
+    assert done.returncode == 0, done.stderr
+    files = {"section.png", "fence.csv", "hole.csv", "grid.npz"}
+    found = {path.name for path in out.iterdir()}
+    assert found == files | {"ensemble.json", "ensemble.npz", "volumes.csv"}
+    project = load_project(PROJECT)
+    with np.load(out / "grid.npz") as arrays:
+        alone = core_ensembles.ensemble(project, 4, 5, places=arrays["places"])
+        assert np.array_equal(arrays["probability"], alone.probability)
+    rows = list(csv.DictReader((out / "hole.csv").read_text().splitlines()))
+    places = np.array([[float(row[axis]) for axis in "xyz"] for row in rows])
+    alone = core_ensembles.ensemble(project, 4, 5, places=places)
+    clay = [float(row["probability Clay"]) for row in rows]
+    assert clay == pytest.approx(alone.probability[:, 0])
+    assert clay[0] < clay[-1] == 1
+
+
+def test_a_section_beside_the_model_is_refused(client, tmp_path):
+    section = f"500,500,0,0,1,0={tmp_path / 's.csv'}"
+    done = batch("--ensemble", 4, "--out", tmp_path, "--section", section)
+    assert done.returncode == 2
+    assert "the section does not meet the model" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_time_that_is_left():
+    left = TimeLeft()
+    assert left(0.1, 0.0) == "" and left(0.105, 10.0) == "" and left(0.3, 1.0) == ""
+    assert left(0.2, 10.0) == ", 80 s left"
+    assert left(0.2, 100.0) == ", 13 min left"
+    assert left(0.15, 1000.0) == ", 5 h left"
+    assert left(1.0, 50.0) == ""
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["--ensemble", 3], "--ensemble needs --out"),
         (["--out", "e"], "--out goes with --ensemble or --tiles"),
-        (["--ensemble", 3, "--out", "e", "--export", "m.npz"], "--ensemble goes without --export"),
+        (["--ensemble", 3, "--out", "e", "--report", "m.json"], "--ensemble goes without --report"),
+        (["--ensemble", 3, "--out", "e", "--export", "m.obj"], "of a grid are not written as '.obj'"),
+        (["--ensemble", 3, "--out", "e", "--borehole", "1=b.csv"], "a position in plan is two numbers"),
         (["--ensemble", 3, "--out", "e", "--correlation", 2], "from -1 to 1"),
         (["--ensemble", 0, "--out", "e"], "at least one realization"),
     ],

@@ -91,6 +91,26 @@ def test_a_real_reservoir_with_six_faults_that_die_out(tmp_path):
         assert np.abs(throw).max() < 100
 
 
+@pytest.mark.skipif(not REAL.is_dir(), reason="the real data are not there")
+def test_a_fault_leaves_the_throw_of_one_beside_it():
+    """Two edges of the mesh apart, and on sides of both there is no rock: what such a sheet would be counts
+    nowhere."""
+    points = PointFile(REAL / "BaseVolantis.poi", z_axis="down")
+    horizon = Surface("base", points=points, method="idw", options={"extrapolate": "nearest"})
+    region = np.array([[461537.0, 5926637], [467404, 5930024], [462016, 5939355], [456149, 5935968]])
+    rock = Rock("r", [horizon], region=region, edge_length=400.0)
+    faults = [
+        Fault(name, points=PointFile(REAL / f"{name}.pol", z_axis="down"), dies_out=True, extend=100.0)
+        for name in ("F4", "F2")
+    ]
+    throws = []
+    for some in (faults[:1], faults):
+        model = build(Project("real", [rock], faults=some))
+        throws.append(next(each.throw.mean() for each in displacements(model) if each.fault == "F4"))
+    assert throws[0] > 10
+    assert throws[1] == pytest.approx(throws[0], rel=0.05)
+
+
 @pytest.mark.skipif(not (REAL.parent / "california_faults").is_dir(), reason="the real data are not there")
 def test_a_detachment_and_a_fault_of_overlapping_strands(tmp_path, monkeypatch):
     """A nearly level fault is built. Strands beside one another in one file are refused: what is beyond their

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.structures.between_sheets import common_lines, torn_triangles
-from realmodel.core.structures.tips import _meet_within
+from realmodel.core.structures.tips import _meet_within, _near
 from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
 from structure_cases import plane_fault
@@ -55,6 +55,21 @@ def test_what_lies_between_two_sheets_tears_them(height, is_torn):
         found = torn_triangles(nodes, triangles, pair, level, Between(5.0, 5.001), everywhere)
         assert found.tolist() == [is_torn]
     assert not torn_triangles(nodes, triangles, sheets, level, Between(11.0, 12.0), everywhere).any()
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "near"), [(3.5, 5.5, []), (4.5, 4.2, [3, 4, 5, 6]), (3.9, 3.1, [2, 3, 4, 5])]
+)
+def test_a_sheet_counts_near_places_that_are_on_its_sides_of_all_faults(low, high, near):
+    """Below `low` on the side of one fault, beyond `high` on that of another: where some triangle may be on
+    both, and beside it. Near each of two places is not near both."""
+    x = np.tile(np.arange(9.0), 3)
+    at = np.arange(27).reshape(3, 9)
+    corners = at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]
+    a, b, c, d = (each.ravel() for each in corners)
+    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    found = _near(triangles, [x < low, x > high], [np.zeros(27, bool)] * 2)
+    assert sorted(set(x[found].astype(int).tolist())) == near
 
 
 def test_points_that_dsi_ignores_are_no_data_of_a_compartment():

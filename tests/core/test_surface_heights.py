@@ -165,6 +165,9 @@ def test_in_a_project_file(written):
             19,
             "'to' names 'high', which depends on this surface",
         ),
+        ('method = "constant"\nvalue = 3\ncorrelation = 1.2\n', 15, "must be at most 1, not 1.2"),
+        ('method = "constant"\nvalue = 3\ncorrelation = "all"\n', 15, "must be a finite number"),
+        ('mesh = "m.off"\ncorrelation = 0.5\n', 14, "'correlation' has no effect"),
         (
             'mesh = "m.off"\nminimum_thickness = 1\n',
             14,
@@ -180,9 +183,10 @@ def test_refused_at_the_line(written, write, text, line, words):
     assert raised.value.line == line
 
 
-def test_minimum_thickness_of_the_oldest():
-    with pytest.raises(InputRefused, match="there is no surface beneath it"):
-        build(rock(Surface("a", method="constant", options={"value": 1}, minimum_thickness=1)))
+@pytest.mark.parametrize("key", ["minimum_thickness", "correlation"])
+def test_what_the_oldest_surface_cannot_have(key):
+    with pytest.raises(InputRefused, match=f"a {key}, as there is no surface beneath it"):
+        build(rock(Surface("a", method="constant", options={"value": 1}, **{key: 0.5})))
 
 
 def test_a_smooth_surface_that_keeps_off_another():

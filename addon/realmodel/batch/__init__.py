@@ -3,7 +3,8 @@
 
 options        arguments, checked
 run            build, write, print
-cuts           sections, fences and cuts
+cuts           sections, fences, boreholes and cuts
+probabilities  the same of ensembles
 interruption   Ctrl-C while Blender renders or saves
 table          the table of volumes
 terminal       the progress bar

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts, sections and fences as the command line asks for them: WHAT=FILE."""
+"""Cuts, sections, fences and boreholes as the command line asks for them: WHAT=FILE."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,12 +13,16 @@ import numpy as np
 from ..core.build import build
 from ..core.errors import InputRefused, UsageError
 from ..core.exporters import format_for, write_model
+from ..core.exporters.boreholes import borehole_writer
 from ..core.exporters.sections import section_writer
 from ..core.point_file import MeshFile
 from ..core.project_file import load_project
 from ..core.readers import MESH_ENDINGS, read_mesh
 from ..core.readers.text import read_text
+from ..core.section import Section
 from ..core.simulation.mesh_request import cleaned_line
+
+Writer = Callable[[Path | str], Callable]
 
 
 @dataclass
@@ -30,6 +34,7 @@ class SectionRequest:
     file: Path
     what: np.ndarray | Path
     exaggeration: float = 1.0
+    kind = "section"
 
     @property
     def outputs(self) -> list[Path]:
@@ -44,17 +49,48 @@ class SectionRequest:
         if isinstance(self.what, Path):
             self.what = read_polyline(self.what)
 
+    def cut(self, model, threads: int = 0) -> Section:
+        if self.option == "--fence":
+            return model.fence(self.what, threads)
+        return model.section(self.what[:3], self.what[3:], threads)
+
     def run(self, model, outputs, threads: int, progress) -> str:
         """Makes the section and stages its file; what there is to say about it."""
         progress(1.0, f"cutting {self.file.name}")
-        if self.option == "--fence":
-            found = model.fence(self.what, threads)
-        else:
-            found = model.section(self.what[:3], self.what[3:], threads)
+        found = self.cut(model, threads)
         with outputs.file(self.file) as file:
             section_writer(self.file, self.exaggeration)(found, file)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
+
+
+@dataclass
+class BoreholeRequest:
+    """A vertical borehole at a position in plan, and its file."""
+
+    file: Path
+    what: tuple[float, float]
+    kind = "borehole"
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return []
+
+    def read(self) -> None:
+        pass
+
+    def run(self, model, outputs, _threads: int, progress) -> str:
+        """Stages the file; what there is to say about the borehole."""
+        progress(1.0, f"writing {self.file.name}")
+        found = model.borehole(*self.what)
+        with outputs.file(self.file) as file:
+            borehole_writer(self.file)(model, found, file)
+        length = sum(interval.length for interval in found)
+        return f"borehole {self.file.name}: {len(found)} intervals, {length:.2f} of rock"
 
 
 @dataclass
@@ -137,17 +173,17 @@ class CutRequest:
         return "\n".join([line, *lines])
 
 
-def section_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
-    """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
+def section_request(text: str, exaggeration: float = 1.0, writer: Writer = section_writer) -> SectionRequest:
+    """X,Y,Z,NX,NY,NZ=FILE. writer: knows which files there are. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
-    section_writer(file)
+    writer(file)
     return SectionRequest("--section", Path(file), _plane("--section", what), exaggeration)
 
 
-def fence_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
-    """X,Y,X,Y,...=FILE or LINE.csv=FILE. Raises UsageError."""
+def fence_request(text: str, exaggeration: float = 1.0, writer: Writer = section_writer) -> SectionRequest:
+    """X,Y,X,Y,...=FILE or LINE.csv=FILE, as section_request. Raises UsageError."""
     what, file = _divided("--fence", text, "X,Y,X,Y,...=FILE or LINE.csv=FILE")
-    section_writer(file)
+    writer(file)
     numbers = _numbers(what)
     if numbers is None:
         return SectionRequest("--fence", Path(file), Path(what), exaggeration)
@@ -155,6 +191,16 @@ def fence_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
         raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
     return SectionRequest("--fence", Path(file), line, exaggeration)
+
+
+def borehole_request(text: str, writer: Writer = borehole_writer) -> BoreholeRequest:
+    """X,Y=FILE, as section_request. Raises UsageError."""
+    what, file = _divided("--borehole", text, "X,Y=FILE")
+    writer(file)
+    numbers = _numbers(what)
+    if numbers is None or len(numbers) != 2:
+        raise UsageError(f"--borehole {text}: a position in plan is two numbers, X,Y")
+    return BoreholeRequest(Path(file), tuple(numbers.tolist()))
 
 
 def cut_request(text: str) -> CutRequest:

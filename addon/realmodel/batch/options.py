@@ -67,6 +67,13 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         help="write vertical sections along a line in plan to F: X,Y,X,Y,... or a text file of x and y",
     )
     parser.add_argument(
+        "--borehole",
+        metavar="X,Y=F",
+        action="append",
+        default=[],
+        help="write what a vertical borehole at a position in plan meets to F (.csv)",
+    )
+    parser.add_argument(
         "--exaggeration",
         metavar="X",
         type=_factor,
@@ -118,7 +125,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "--ensemble",
         metavar="N",
         type=_whole,
-        help="build N realizations on several processes by Dask, and write their volumes to the folder --out",
+        help="build N realizations on several processes by Dask and write their volumes to the folder --out; "
+        "--section, --fence, --borehole, and --export (a grid) write the probability of each block",
     )
     parser.add_argument(
         "--tiles",
@@ -200,6 +208,7 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
             "memory",
             "section",
             "fence",
+            "borehole",
             "cut",
             "mesh",
             "cell_tolerance",
@@ -208,7 +217,8 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
     if options.exaggeration != 1.0 and not options.section and not options.fence:
         parser.error("--exaggeration is of drawings: it goes with --section or --fence")
-    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut", "--mesh")
+    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--borehole", "--cut")
+    outputs += ("--mesh",)
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
     _check_dask(parser, options)
@@ -219,7 +229,10 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
 
 
 _OF_DASK = {
-    "ensemble": ("out", "scheduler", "seed", "correlation"),
+    "ensemble": (
+        *("out", "scheduler", "seed", "correlation"),
+        *("section", "fence", "borehole", "export", "cell_size", "exaggeration"),
+    ),
     "tiles": ("out", "scheduler", "cells"),
 }
 
@@ -227,7 +240,7 @@ _OF_DASK = {
 def _check_dask(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
     """The options of what Dask does, --ensemble and --tiles."""
     asked = [name for name in _OF_DASK if getattr(options, name) is not None]
-    for name in dict.fromkeys(name for names in _OF_DASK.values() for name in names if name != "cells"):
+    for name in ("out", "scheduler", "seed", "correlation"):
         takes = [f"--{option}" for option, names in _OF_DASK.items() if name in names]
         if getattr(options, name) is not None and not any(f"--{option}" in takes for option in asked):
             parser.error(f"--{name} goes with {' or '.join(takes)}")

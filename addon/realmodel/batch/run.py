@@ -18,35 +18,40 @@ from ..core import (
     estimate,
     load_project,
 )
-from ..core.atomic import Outputs
+from ..core.atomic import Outputs, make_folder
 from ..core.exporters import FORMATS, format_for, output_target, write_model
 from ..core.exporters.report import write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
 from ..core.rock_input import with_arrays
 from ..core.simulation.mesh_request import MeshRequest, cleaned_line
 from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
-from .cuts import CutRequest, cut_request, fence_request, section_request
+from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
+from .probabilities import ProbabilityRequests
 from .table import ensemble_table, surface_table, tiles_table, volume_table
 from .terminal import TerminalProgress
 
 
 def run(options: argparse.Namespace) -> None:
     """Does what the options say. Raises RealModelError; files appear whole or not at all."""
-    requests = _requests(options)
+    probabilities = ProbabilityRequests.of(options) if options.ensemble is not None else None
+    requests = _requests(options) if probabilities is None else probabilities.made
+    if probabilities is not None and requests:
+        make_folder(options.out)  # they may go there
     mesh_request = _mesh_request(options)
     targets = _checked_targets(options, requests, mesh_request)
     project = load_project(options.project)
     _refuse_overwriting([*project.input_files(), *(f for r in requests for f in r.inputs)], targets)
-    progress = TerminalProgress(sys.stdout, options.quiet)
+    by_dask = options.ensemble is not None or options.tiles is not None
+    progress = TerminalProgress(sys.stdout, options.quiet, time_left=by_dask)
     if options.estimate:
         _estimate(options, project, progress)
         return
     if options.surfaces_only:
         _surfaces_only(options, project, progress)
         return
-    if options.ensemble is not None:
-        _ensemble(options, project, progress)
+    if probabilities is not None:
+        _ensemble(options, project, progress, probabilities)
         return
     if options.tiles is not None:
         _tiles(options, project, progress)
@@ -147,9 +152,11 @@ def _tiles(options: argparse.Namespace, project, progress) -> None:
     _print(options, found.warnings, [tiles_table(found)])
 
 
-def _ensemble(options: argparse.Namespace, project, progress) -> None:
+def _ensemble(options: argparse.Namespace, project, progress, probabilities: ProbabilityRequests) -> None:
     from ..distributed import ensemble
 
+    for request in probabilities.made:
+        request.read()
     with _client(options, progress) as client:
         found = ensemble(
             project,
@@ -158,6 +165,8 @@ def _ensemble(options: argparse.Namespace, project, progress) -> None:
             options.seed or 0,
             client,
             correlation=options.correlation or 0.0,
+            places=probabilities.places,
+            also=probabilities.write,
             progress=progress,
         )
     _print(options, found.model.warnings, [ensemble_table(found)])
@@ -195,10 +204,11 @@ def _validation(options: argparse.Namespace, model, progress):
 
 
 def _requests(options: argparse.Namespace) -> list:
-    """Sections, fences and cuts, in this order. Raises UsageError."""
+    """Sections, fences, boreholes and cuts, in this order. Raises UsageError."""
     return [
         *(section_request(text, options.exaggeration) for text in options.section),
         *(fence_request(text, options.exaggeration) for text in options.fence),
+        *(borehole_request(text) for text in options.borehole),
         *(
             replace(
                 cut_request(text),
@@ -238,7 +248,8 @@ def _mesh_request(options: argparse.Namespace):
 
 def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
-    for path in options.export:
+    exported = [] if options.ensemble is not None else options.export  # else they are requests
+    for path in exported:
         surface_writer_for(path) if options.surfaces_only else format_for(path)
     if options.cell_tolerance is not None:
         able = [known.ending for known in FORMATS.values() if known.has_cells]
@@ -247,7 +258,7 @@ def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> 
             raise UsageError(
                 f"--cell-tolerance goes with --export or --cut to a file with cells: {', '.join(able)}"
             )
-    paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
+    paths = [*exported, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     paths += [path for request in requests for path in request.outputs]
     targets = [output_target(path) for path in paths]
     if mesh is not None:

@@ -8,15 +8,40 @@ import time
 from typing import TextIO
 
 _SECONDS_BETWEEN_LINES = 2.0
+_SECONDS_TO_KNOW = 2.0  # before a time left is worth telling
+_SHARE_TO_KNOW = 0.02
+
+
+class TimeLeft:
+    """ ", 40 s left", from how fast the fraction has grown since it was first known."""
+
+    def __init__(self):
+        self._first: tuple[float, float] | None = None
+
+    def __call__(self, fraction: float, now: float) -> str:
+        if self._first is None:
+            self._first = fraction, now
+        done, seconds = fraction - self._first[0], now - self._first[1]
+        if done < _SHARE_TO_KNOW or seconds < _SECONDS_TO_KNOW or fraction >= 1.0:
+            return ""
+        left = round(seconds / done * (1.0 - fraction))
+        if left < 1:
+            return ""
+        if left < 100:
+            return f", {left} s left"
+        minutes = round(left / 60)
+        return f", {minutes} min left" if minutes < 100 else f", {round(minutes / 60)} h left"
 
 
 class TerminalProgress:
     """progress(fraction, text) for people. A terminal sees a bar, drawn again in its line; a file gets a
-    line for each new phase, and another every two seconds of a long one. Quiet: nothing at all."""
+    line for each new phase, and another every two seconds of a long one. Quiet: nothing at all. time_left:
+    the text says how long it may take yet."""
 
-    def __init__(self, stream: TextIO, quiet: bool = False):
+    def __init__(self, stream: TextIO, quiet: bool = False, time_left: bool = False):
         self.stream = stream
         self.quiet = quiet
+        self.time_left = TimeLeft() if time_left else None
         self.bar = not quiet and stream.isatty()
         self._text = ""
         self._drawn = ""
@@ -25,6 +50,8 @@ class TerminalProgress:
     def __call__(self, fraction: float, text: str) -> None:
         if self.quiet:
             return
+        if self.time_left is not None:
+            text += self.time_left(fraction, time.monotonic())
         if self.bar:
             self._draw(fraction, text)
             return

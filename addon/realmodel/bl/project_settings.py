@@ -33,6 +33,8 @@ from . import (
 )
 from .origin import KEY as ORIGIN_KEY
 
+_OF_INTERPOLATED = ("minimum_thickness", "correlation")  # of surfaces; a ready mesh has none
+
 
 @dataclass
 class Composed:
@@ -122,7 +124,8 @@ def _plain_surface(row):
         surface.method = row.method
         surface.options = method_settings.options_of(row)
     if row.source not in method_settings.READY_MESHES:
-        surface.minimum_thickness = method_settings.value(row, "minimum_thickness", SURFACE)
+        for key in _OF_INTERPOLATED:
+            setattr(surface, key, method_settings.value(row, key, SURFACE))
     return surface
 
 
@@ -175,7 +178,9 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
-                surface.method, surface.options, surface.minimum_thickness = None, {}, None
+                surface.method, surface.options = None, {}
+                for key in _OF_INTERPOLATED:
+                    setattr(surface, key, None)
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             return
@@ -365,7 +370,7 @@ def add_rock(group, rock):
 def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
-        for key in ("name", "rule", "property", "block", "minimum_thickness"):
+        for key in ("name", "rule", "property", "block", *_OF_INTERPOLATED):
             method_settings.set_value(row, key, SURFACE, getattr(surface, key))
         given = surface.method is not None or surface.options
         row.use_continuation = bool(given) and not surface.interpolated

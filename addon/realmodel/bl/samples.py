@@ -14,6 +14,7 @@ _LABELS = {
     "haut_barr": ("Haut-Barr", "Three rocks of sandstone on a base: four rock masses, 36 layers"),
     "castle_hill": ("Castle Hill", "Eleven surfaces, cut by erosion into separate bodies"),
     "gravel_plain": ("Gravel Plain", "A valley filled with gravel, from boreholes"),
+    "uncertain_valley": ("Uncertain Valley", "Gravel in a buried channel between boreholes: how much?"),
     "fault_blocks": (
         "Fault Blocks",
         "Faults from sticks: a branch, one that dies out, a younger cover",

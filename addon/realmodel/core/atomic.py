@@ -144,6 +144,12 @@ def _remove(folders: list[Path]) -> None:
         folders.pop()
 
 
+def make_folder(path: str | Path) -> None:
+    """Makes a folder where there is none. Raises OutputFailed."""
+    with _explained(path):
+        Path(path).mkdir(parents=True, exist_ok=True)
+
+
 def writable_target(target: str | Path) -> Path:
     """The path, links followed, where an output will stand. Raises OutputFailed where it cannot."""
     with _explained(target):

@@ -73,6 +73,8 @@ def number(option: str, setting: Setting, value) -> float:
         raise OptionRefused(f"'{name}' must be at least {setting.low:g}, not {given:g}", option=option)
     if setting.below is not None and given >= setting.below:
         raise OptionRefused(f"'{name}' must be below {setting.below:g}, not {given:g}", option=option)
+    if setting.below is None and setting.high is not None and given > setting.high:
+        raise OptionRefused(f"'{name}' must be at most {setting.high:g}, not {given:g}", option=option)
     return given
 
 

@@ -18,6 +18,10 @@ class Interval:
     top: float
     bottom: float
 
+    @property
+    def length(self) -> float:
+        return self.top - self.bottom
+
 
 def borehole(model, x: float, y: float) -> list[Interval]:
     """The blocks along the vertical line at a position in plan, from above downward; nothing where there is

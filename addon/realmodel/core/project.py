@@ -58,7 +58,8 @@ class Surface:
     (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
     Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
-    older one. `property` is the library id of the block deposited beneath it (0: none), `block` that block's
+    older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
+    `property` is the library id of the block deposited beneath it (0: none), `block` that block's
     name.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
@@ -74,6 +75,7 @@ class Surface:
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
     minimum_thickness: float | None = None
+    correlation: float | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
 
@@ -370,7 +372,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         return _refuse(surface.source, item, what, key, advice)
 
     _check_shape(rock, surface, refuse, bool(project.faults))
-    _check_values(surface, SURFACE, ("minimum_thickness", "rule", "property", "block"), refuse)
+    _check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
     _check_property(project.library, surface, refuse)
 
 
@@ -404,7 +406,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
             raise refuse(error.what, error.key, error.advice) from error
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given = [] if continues else given
-        given += ["minimum_thickness"] if surface.minimum_thickness is not None else []
+        given += [key for key in ("minimum_thickness", "correlation") if getattr(surface, key) is not None]
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         if continues:
@@ -465,10 +467,11 @@ def _check_references(rock: Rock) -> None:
                 what = f"'{option}' names surface '{name}', which {rock_item(rock)} does not have"
                 raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
             needed.append((option, numbers[name]))
+        for key in ("minimum_thickness", "correlation"):
+            if number == 0 and getattr(surface, key) is not None:
+                what = f"the oldest surface cannot have a {key}, as there is no surface beneath it"
+                raise _refuse(surface.source, item, what, key)
         if surface.minimum_thickness is not None:
-            if number == 0:
-                what = "the oldest surface cannot have a minimum_thickness, as there is no surface beneath it"
-                raise _refuse(surface.source, item, what, "minimum_thickness")
             needed.append(("minimum_thickness", number - 1))
         needs.append(needed)
     done: set[int] = set()

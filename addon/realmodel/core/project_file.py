@@ -213,7 +213,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         method=table.text("method"),
         options=options,
         source=Source(table.document, table.path),
-        **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness")),
+        **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness", "correlation")),
         **_shape_files(table, folder),
     )
 

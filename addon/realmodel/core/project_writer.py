@@ -149,8 +149,10 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
     if shape is not None:
         values[shape[0]] = shape[1]
     # of a ready mesh the method is that by which it is continued to faults
-    values |= {"method": given.method, **given.options, "minimum_thickness": given.minimum_thickness}
+    values |= {"method": given.method, **given.options}
     values |= {
+        "minimum_thickness": given.minimum_thickness,
+        "correlation": given.correlation,
         "rule": given.rule if given.rule != DEFAULT_RULE else None,
         "property": given.property or None,
         "block": given.block,

@@ -58,7 +58,7 @@ def regular_cells(model, size: float | Sequence[float] | None = None) -> Regular
     """The volume of each block in each cell of a grid that covers the model; its corners are multiples of the
     size. size: as of `checked_size`. Raises UsageError."""
     size = checked_size(model, size)
-    origin, counts = _frame(model, size)
+    origin, counts = frame_of(model, size)
     cells = int(np.prod(counts, dtype=np.float64))
     if cells * max(len(model.blocks), 1) > MOST_CELLS:
         raise UsageError(
@@ -87,7 +87,8 @@ def regular_cells(model, size: float | Sequence[float] | None = None) -> Regular
     return RegularCells(origin, size, counts, np.maximum(volumes, 0.0) * size.prod())
 
 
-def _frame(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]:
+def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]:
+    """The lowest corner of a grid that covers the model, and its numbers of cells along x, y and z."""
     if not len(model.vertices):
         return np.zeros(3), (1, 1, 1)
     low = np.floor(model.vertices.min(axis=0) / size)
@@ -162,7 +163,7 @@ def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
     """Exact at the centers of cells. size: as of `checked_size`; the height does not count. Raises
     UsageError."""
     size = checked_size(model, size)
-    origin, (nx, ny, _) = _frame(model, size)
+    origin, (nx, ny, _) = frame_of(model, size)
     if float(nx) * ny * max(len(model.blocks), 1) > MOST_CELLS:
         raise UsageError(f"cells of {size[:2].tolist()} give {nx * ny} cells; take larger ones")
     thickness = np.zeros((len(model.blocks), ny * nx))

@@ -81,6 +81,7 @@ class RockInput:
                     method=None,
                     options={},
                     minimum_thickness=None,
+                    correlation=None,
                     vertices=vertices,
                     triangles=triangles,
                 )

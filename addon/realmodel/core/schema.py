@@ -184,6 +184,14 @@ SURFACE = {
         more="For interpolated surfaces; points that contradict it are listed",
         switch=("Minimum Thickness", "Keep the surface at least this far above the next older one"),
     ),
+    "correlation": Setting(
+        label="Correlation",
+        tip="Correlation of the errors of its elevations with those of the next older surface, in ensembles",
+        low=-1.0,
+        high=1.0,
+        more="-1 to 1, for interpolated surfaces; see [ensembles](../ensembles.md)",
+        switch=("Correlation", "In ensembles, draw its elevations with those of the next older surface"),
+    ),
     "rule": Setting(
         DEFAULT_RULE,
         kind="word",

@@ -29,10 +29,17 @@ _LEGEND = "Block"  # what the names in the legend are; views have those of prope
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 
-def draw_section(section: Section, exaggeration: float = 1.0, title: str | None = None) -> Drawing:
+def draw_section(
+    section: Section,
+    exaggeration: float = 1.0,
+    title: str | None = None,
+    cells: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Drawing:
     """The section on a page, in its own coordinates at a scale of 1, 2, 2.5, or 5 times a power of ten.
 
     exaggeration: of heights, where the section is vertical. The drawing's layers are named after the blocks.
+    cells: corners (N, 4, 2), as of `flattened`, and colors (N, 3) of what is drawn below the outlines of the
+    blocks, in place of their colors.
     Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
     """
     if not 0 < exaggeration <= MOST_EXAGGERATION:
@@ -43,7 +50,8 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
         raise UsageError("there is nothing to draw: the section does not meet the model")
     flat = flattened(section)
     exaggeration = exaggeration if is_vertical(section) else 1.0
-    low, high = flat.min(axis=0), flat.max(axis=0)
+    places = flat if cells is None else np.concatenate([flat, cells[0].reshape(-1, 2)])
+    low, high = places.min(axis=0), places.max(axis=0)
     if _is_fence(section):
         low[0], high[0] = 0.0, section.length
     if is_vertical(section):
@@ -67,10 +75,12 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
         (_LEFT - scale * low[0], base - scale * exaggeration * low[1]),
     )
     axes = Axes(drawing, (_LEFT, base, width, height), (low[0], high[0]), (low[1], high[1]), _SIZE)
+    for corners, color in zip(*(cells or ((), ())), strict=True):
+        drawing.polygon(axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells")
     for block in present:
         rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
         color, name = tuple(section.block_colors[block]), section.block_names[block]
-        drawing.polygon(rings, color, BLACK, 0.35, layer=name)
+        drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
     _draw_faults(drawing, axes, section)
     axes.frame(*_axis_names(section), layer="Axes")
     _ends(drawing, axes, section, flat)
@@ -92,12 +102,12 @@ def flattened(section: Section) -> np.ndarray:
     Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
     y, of others distances along strike and up dip. Planes are seen from where their normal points.
     """
-    return section.unrolled() if _is_fence(section) else _flat(section, section.vertices)
+    return section.unrolled() if _is_fence(section) else flat_of(section, section.vertices)
 
 
-def _flat(section: Section, points: np.ndarray) -> np.ndarray:
+def flat_of(section: Section, points: np.ndarray) -> np.ndarray:
     """(N, 2) points (N, 3) on the plane of a section as it is drawn."""
-    right, up = _directions(section)
+    right, up = directions(section)
     if right is None:
         return points[:, :2]
     if is_vertical(section):
@@ -115,7 +125,7 @@ def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
         if _is_fence(section):
             flat = section.along_panels(points, np.repeat(trace.panel, 2))
         else:
-            flat = _flat(section, points)
+            flat = flat_of(section, points)
         lines = axes.at(flat).reshape(-1, 2, 2)
         for line in lines:
             drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
@@ -184,7 +194,7 @@ def _unit_normal(section: Section) -> np.ndarray:
     return normal / np.linalg.norm(normal)
 
 
-def _directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]:
+def directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Unit vectors to the right and up in the picture; None for a level plane, which is drawn as a map."""
     normal = _unit_normal(section)
     right = np.array([-normal[1], normal[0], 0.0])
@@ -219,7 +229,7 @@ def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:
 def _axis_names(section: Section) -> tuple[str, str]:
     if is_vertical(section):
         names = ("Distance", "Elevation")
-    elif _directions(section)[0] is None:
+    elif directions(section)[0] is None:
         names = ("East (x)", "North (y)")
     else:
         names = ("Distance along strike", "Distance up dip")

@@ -7,13 +7,15 @@ import hashlib
 import os
 import shutil
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from ..core import OutputFailed, UsageError, build
+from ..core.atomic import Outputs
 from ..core.ensembles import Ensemble, Realizer
-from ..core.ensembles.ensemble import Sums, added, batches, check_request, sums_of
+from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
 from .workers import client_of, in_any_order
 
@@ -29,7 +31,8 @@ def ensemble(
     client=None,
     *,
     correlation: float = 0.0,
-    places: np.ndarray | None = None,
+    places: Places | None = None,
+    also: Callable[[Ensemble, Outputs], None] | None = None,
     progress=None,
     cancel=None,
 ) -> Ensemble:
@@ -38,13 +41,13 @@ def ensemble(
 
     client: of distributed; None: a LocalCluster with a process for each processor. A run that was stopped
     goes on where it was when it is started again with the same project, seed, correlation and places; the
-    number of realizations may be larger. The result is the same for any number of workers.
+    number of realizations may be larger. The result is the same for any number of workers. also(found,
+    outputs) writes more files, which appear with the others.
 
     Raises as core.ensembles.ensemble; UsageError where Dask is missing or the folder holds another ensemble;
     OutputFailed.
     """
     check_request(realizations, seed, correlation)
-    points = np.zeros((0, 3)) if places is None else np.asarray(places, np.float64).reshape(-1, 3)
     told = progress or (lambda _share, _text: None)
     model = build(
         project,
@@ -52,18 +55,20 @@ def ensemble(
         progress=lambda share, text: told(_BUILT * share, text),
         cancel=cancel,
     )
+    points = places_of(model, places)
     realizer = Realizer(model, seed, correlation)
     store = _Store(Path(folder), _digest(realizer, points))
     todo = [numbers for numbers in batches(realizations) if not store.has(numbers)]
     done = realizations - sum(map(len, todo))
     if todo:
+        realizer.prepare()
         with client_of(client) as workers:
             for numbers, sums in in_any_order(workers, _batch, (realizer, points), todo, cancel):
                 store.put(numbers, sums)
                 done += len(numbers)
                 told(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")
     found = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
-    write_ensemble(found, folder)
+    write_ensemble(found, folder, also)
     store.remove()
     return found
 
@@ -82,7 +87,11 @@ def _digest(realizer: Realizer, points: np.ndarray) -> str:
         digest.update(np.ascontiguousarray(array))
     for entry in model.rock_inputs:
         for surface in entry.rock.surfaces:
-            digest.update(repr((surface.name, surface.rule, surface.method, surface.options)).encode())
+            digest.update(
+                repr(
+                    (surface.name, surface.rule, surface.method, surface.options, surface.correlation)
+                ).encode()
+            )
             if surface.points is not None:
                 digest.update(np.ascontiguousarray(surface.points))
     return digest.hexdigest()
@@ -98,8 +107,8 @@ class _Store:
             of = self._folder / "digest"
             if of.exists() and of.read_text() != digest:
                 raise UsageError(
-                    f"{folder}: it holds an unfinished ensemble of another project, seed or correlation; "
-                    "choose another folder, or delete this one"
+                    f"{folder}: it holds an unfinished ensemble of another project, seed, correlation or "
+                    "places; choose another folder, or delete this one"
                 )
             of.write_text(digest)
         except OSError as error:

@@ -60,6 +60,7 @@ def _draw_surface(layout, context, surface):
     if surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+        setting_rows.draw(layout, surface, "correlation", SURFACE)
     elif len(context.scene.realmodel.faults):
         line = layout.row(heading="Continue By")
         line.prop(surface, "use_continuation", text="")

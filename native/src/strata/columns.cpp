@@ -22,17 +22,23 @@ public:
         : site_(site), rock_(rock), threads_(threads), progress_(progress) {
         if (rock.is_erosional() && rock.emptied.empty())
             return;  // e_k is the surface itself, made when it is asked for
-        RuleReplay replay(TilingRaising(site.geometry, threads, progress), rock.rules);
+        RuleReplay replay(TilingRaising(site.geometry, threads, progress), rock.rules, rock.fills);
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
             if (progress != nullptr) progress->check();
             if (std::ranges::binary_search(rock.emptied, k)) {
-                replay.empty();
                 replayed_.clear();
+                if (auto lowest = replay.empty()) replayed_.push_back(std::move(*lowest));
             }
             replayed_.push_back(replay.add(surface(k)));
         }
     }
 
+    /// The number of the oldest one, once the others are there: after the rock was emptied that of
+    /// the last surface before, for the top of what stayed.
+    std::int32_t oldest() const {
+        const std::size_t count = rock_.surfaces.size();
+        return static_cast<std::int32_t>(replayed_.empty() ? 0 : count - replayed_.size());
+    }
     SurfaceTiling take(std::int32_t k) {
         if (replayed_.empty()) return surface(static_cast<std::size_t>(k));
         SurfaceTiling tiling = std::move(replayed_.back());
@@ -81,12 +87,12 @@ void finish_rock(const Site& site, const EnteredRock& rock, const Envelope& enve
 void add_rock(Site& site, EnteredRock& rock, Construction& construction, double start, double share,
               int threads, Progress* progress) {
     const std::size_t first_node = construction.node_block.size();
-    const auto count = static_cast<std::int32_t>(rock.surfaces.size()),
-               first = static_cast<std::int32_t>(rock.emptied.empty() ? 0 : rock.emptied.back());
+    const auto count = static_cast<std::int32_t>(rock.surfaces.size());
     Envelope envelope;
     if (rock.region) envelope = region_envelope(site, rock, threads, progress);
     TilingSequence tilings(site, rock, threads, progress);
-    for (std::int32_t k = count - 1; k >= first; --k) {
+    const std::int32_t oldest = tilings.oldest();
+    for (std::int32_t k = count - 1; k >= oldest; --k) {
         begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,
                    share / count, "intersecting the surfaces");
         SurfaceTiling tiling = tilings.take(k);
@@ -101,7 +107,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
 
 }  // namespace
 
-CellComplex build_columns(Site& site, int threads, Progress* progress) {
+BuiltCells build_columns(Site& site, int threads, Progress* progress) {
     // of triangulations of these vertices, and one is crossed by a trace here and there
     site.geometry.expect_lines(4 * site.geometry.point_count());
     Construction construction;
@@ -116,8 +122,8 @@ CellComplex build_columns(Site& site, int threads, Progress* progress) {
         if (site.rocks.size() > 1)
             footprints.add(site.geometry, construction.faces, first_face, progress);
     }
-    return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, threads,
-                       progress);
+    return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, site.window,
+                       threads, progress);
 }
 
 }  // namespace realmodel::strata

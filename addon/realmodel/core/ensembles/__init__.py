@@ -2,7 +2,21 @@
 """Many models of one project: what is known of each block when heights are uncertain."""
 
 from .ensemble import PERCENTILES, Ensemble, ensemble
-from .places import blocks_at
+from .places import Probabilities, blocks_at
 from .realization import Realizer
+from .sample_files import draw_probabilities, sample_writer
+from .samples import borehole_samples, grid_samples, section_samples
 
-__all__ = ["PERCENTILES", "Ensemble", "Realizer", "blocks_at", "ensemble"]
+__all__ = [
+    "PERCENTILES",
+    "Ensemble",
+    "Probabilities",
+    "Realizer",
+    "blocks_at",
+    "borehole_samples",
+    "draw_probabilities",
+    "ensemble",
+    "grid_samples",
+    "sample_writer",
+    "section_samples",
+]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,13 @@ _SCHEMA = 1
 _BINS = 20
 
 
-def write_ensemble(ensemble: Ensemble, folder: str | Path) -> None:
-    """Writes ensemble.json, volumes.csv and ensemble.npz; all of them or none. Raises OutputFailed."""
+def write_ensemble(
+    ensemble: Ensemble,
+    folder: str | Path,
+    also: Callable[[Ensemble, Outputs], None] | None = None,
+) -> None:
+    """Writes ensemble.json, volumes.csv and ensemble.npz, and what also(ensemble, outputs) writes; all of
+    them or none. Raises OutputFailed."""
     folder = Path(folder)
     with Outputs(ensemble.model.project.input_files()) as outputs:
         with outputs.file(folder / REPORT) as file:
@@ -30,6 +36,8 @@ def write_ensemble(ensemble: Ensemble, folder: str | Path) -> None:
             file.write(_volumes(ensemble).encode())
         with outputs.file(folder / ARRAYS) as file:
             write_arrays(_arrays(ensemble), file)
+        if also is not None:
+            also(ensemble, outputs)
 
 
 def _report(ensemble: Ensemble) -> dict:

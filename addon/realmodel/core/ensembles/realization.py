@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..assembly import assemble, intersect
+from ..errors import InputRefused
 from ..model import Model
 from ..rock_input import RockInput, interpolate_rock
 from ..structures.setup import make_structures
@@ -24,7 +25,8 @@ class Realizer:
     """Makes the realizations of a built model, each from the seed and its number alone.
 
     model: as `build` gives it. seed: from 0. correlation: of the errors of each surface with those of the
-    next older one of its rock mass, from -1 to 1; exact where both have the same variogram.
+    next older one of its rock mass, from -1 to 1, where the surface has none of its own; exact where both
+    have the same variogram.
     """
 
     model: Model
@@ -53,15 +55,30 @@ class Realizer:
 
         Raises InputRefused, BuildFailed, Cancelled.
         """
-        return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+        try:
+            return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+        except InputRefused as error:
+            raise error.within(f"realization {number}") from error
+
+    def prepare(self, threads: int = 0) -> None:
+        """Finds what all realizations share, so that workers that are given this do not find it again."""
+        run(lambda work: self._interpolated(work, 0, threads))
 
     def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
         began = time.perf_counter()
-        given = self.model
-        inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(given.rock_inputs)]
-        project = given.project
+        inputs, structures = self._interpolated(work, number, threads)
+        interpolated = time.perf_counter()
+        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
+        timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
+        project = self.model.project
+        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+
+    def _interpolated(self, work: Work, number: int, threads: int) -> tuple:
+        """The rock masses with heights drawn, and the structures or None."""
+        inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
+        project = self.model.project
         structures = None
-        if given.structures is not None:
+        if self.model.structures is not None:
             structures = make_structures(
                 work, project, project.faults, project.bodies, inputs, threads, None, 0.0, _INTERPOLATED
             )
@@ -69,18 +86,21 @@ class Realizer:
             steps = np.linspace(0.0, _INTERPOLATED, len(inputs) + 1).tolist()
             for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
                 interpolate_rock(work, entry, start, end, threads)
-        interpolated = time.perf_counter()
-        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
-        timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
-        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+        return inputs, structures
+
+    def correlations(self, entry: RockInput) -> list[float]:
+        """Of the errors of each surface of a rock mass with those of the next older one."""
+        own = [surface.correlation for surface in entry.rock.surfaces]
+        return [self.correlation if each is None else each for each in own]
 
     def _drawn(self, entry: RockInput, rock: int, number: int) -> RockInput:
         """An entry without heights, whose surfaces will be drawn."""
         surfaces = entry.rock.surfaces
         draws, noise = [], None
-        for each in range(len(surfaces)):
-            noise = Noise((self.seed, number, rock, each), noise, self.correlation)
-            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {})))
+        for each, correlation in enumerate(self.correlations(entry)):
+            noise = Noise((self.seed, number, rock, each), noise, correlation)
+            given = None if self.model.structures is not None else entry.interpolations[each]
+            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {}), given))
         return replace(
             entry,
             surfaces=[

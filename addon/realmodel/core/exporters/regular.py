@@ -15,6 +15,7 @@ from ..regular_cells import plan_grids, regular_cells
 from ..simulation.patches import solver_names
 from .parts import distinct_names
 from .text_rows import write_rows
+from .vtk_xml import write_image
 
 _NO_HEIGHT = -9999.0
 _TIFF_TYPES = {"s": 2, "H": 3, "I": 4, "d": 12, "Q": 16}
@@ -60,29 +61,8 @@ def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size
         ("block", block.astype("<i4")),
         *((f"share {n}", s) for n, s in zip(names, shares, strict=True)),
     ]
-    extent = " ".join(f"0 {count}" for count in cells.counts)
-    origin, spacing = (" ".join(map(repr, a.tolist())) for a in (cells.origin, cells.size))
-    tags, at = [], 0
-    for name, values in arrays:
-        kind = "Int32" if values.dtype.kind == "i" else "Float64"
-        text = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
-        tags.append(f'<DataArray type="{kind}" Name="{text}" format="appended" offset="{at}"/>')
-        at += 8 + values.nbytes
     with outputs.file(path) as file:
-        file.write(
-            f"""<?xml version="1.0" encoding="UTF-8"?>
-<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<ImageData WholeExtent="{extent}" Origin="{origin}" Spacing="{spacing}">
-<Piece Extent="{extent}">
-<CellData Scalars="block">
-""".encode()
-        )
-        file.write(("\n".join(tags) + "\n</CellData>\n</Piece>\n</ImageData>\n").encode())
-        file.write(b'<AppendedData encoding="raw">\n_')
-        for _, values in arrays:
-            file.write(np.array([values.nbytes], "<u8").tobytes())
-            file.write(np.ascontiguousarray(values))
-        file.write(b"\n</AppendedData>\n</VTKFile>\n")
+        write_image(file, cells.origin, cells.size, cells.counts, arrays)
     step(1.0)
 
 

@@ -37,6 +37,36 @@ def write_grid(file: BinaryIO, arrays: Sequence[tuple[str, str, np.ndarray]]) ->
     file.write(END)
 
 
+def write_image(file: BinaryIO, origin, size, counts, arrays: Sequence[tuple[str, np.ndarray]]) -> None:
+    """Writes a whole file of type ImageData. origin, size, counts: as of RegularCells. arrays: of the cells,
+    by name, x fastest, of little-endian int32 or float64; programs color by the first."""
+    extent = " ".join(f"0 {count}" for count in counts)
+    corner, spacing = (" ".join(map(repr, given.tolist())) for given in (origin, size))
+    tags, at = [], 0
+    for name, values in arrays:
+        kind = _TYPES[values.dtype.str[1:]]
+        tags.append(f'<DataArray type="{kind}" Name="{_quoted(name)}" format="appended" offset="{at}"/>')
+        at += 8 + values.nbytes
+    file.write(
+        f"""<?xml version="1.0" encoding="UTF-8"?>
+<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<ImageData WholeExtent="{extent}" Origin="{corner}" Spacing="{spacing}">
+<Piece Extent="{extent}">
+<CellData Scalars="{_quoted(arrays[0][0])}">
+""".encode()
+    )
+    file.write(("\n".join(tags) + "\n</CellData>\n</Piece>\n</ImageData>\n").encode())
+    file.write(b'<AppendedData encoding="raw">\n_')
+    for _, values in arrays:
+        write_array(file, np.ascontiguousarray(values))
+    file.write(END)
+
+
+def _quoted(text: str) -> str:
+    """A text as the value of an attribute."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+
+
 def write_header(file: BinaryIO, points: int, cells: int, arrays: Sequence[ArrayTag]) -> None:
     """Writes all that stands before the arrays, which follow in this order. The first array of points or
     cells is what programs color by."""
@@ -44,9 +74,10 @@ def write_header(file: BinaryIO, points: int, cells: int, arrays: Sequence[Array
     at = 0
     for element, name, kind, size, components in arrays:
         width = f' NumberOfComponents="{components}"' if components > 1 else ""
-        active = f' Scalars="{name}"' if element.endswith("Data") else ""
+        active = f' Scalars="{_quoted(name)}"' if element.endswith("Data") else ""
+        named = f'type="{_TYPES[kind]}" Name="{_quoted(name)}"{width}'
         lines.setdefault(element, [f"<{element}{active}>"]).append(
-            f'<DataArray type="{_TYPES[kind]}" Name="{name}"{width} format="appended" offset="{at}"/>'
+            f'<DataArray {named} format="appended" offset="{at}"/>'
         )
         at += 8 + size
     body = "\n".join("\n".join([*found, f"</{element}>"]) for element, found in lines.items())
@@ -59,7 +90,7 @@ def write_header(file: BinaryIO, points: int, cells: int, arrays: Sequence[Array
 </Piece>
 </UnstructuredGrid>
 <AppendedData encoding="raw">
-_""".encode("ascii")
+_""".encode()
     )
 
 

@@ -242,18 +242,26 @@ class PlanGrid:
 def winding_numbers(
     points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray, grid: PlanGrid | None = None
 ) -> np.ndarray:
-    """(N,) how often a closed surface goes around each point: the signed count of its triangles above (exact;
-    of points on an edge in plan as if they were moved by less than any distance)."""
+    """(N,) how often a closed surface goes around each point: the signed count of its triangles above."""
     found = np.zeros(len(points), np.int64)
-    for rows, above in (grid or PlanGrid(vertices[triangles])).over(points[:, :2]):
-        a, b, c = vertices[triangles[above]].transpose(1, 0, 2)
+    corners = vertices[triangles]
+    for rows, _, turn in triangles_above(points, corners, grid or PlanGrid(corners)):
+        np.add.at(found, rows, turn)
+    return found
+
+
+def triangles_above(points: np.ndarray, corners: np.ndarray, grid: PlanGrid):
+    """Pairs of points (N, 3) and triangles (T, 3, 3) above them, all of a point at a time: rows of the points
+    and of the triangles, and +1 or -1, how these turn in plan. Exact: points on an edge in plan count as
+    moved aside by less than any distance, those on a triangle as above it. grid: of the triangles."""
+    for rows, above in grid.over(points[:, :2]):
+        a, b, c = corners[above].transpose(1, 0, 2)
         p = points[rows]
         turns = [_moved_side(u[:, :2], v[:, :2], p[:, :2]) for u, v in ((a, b), (b, c), (c, a))]
         turn = np.where((turns[0] == turns[1]) & (turns[1] == turns[2]), turns[0], 0)
         hit = np.flatnonzero(turn)
-        under = orient3d(a[hit], b[hit], c[hit], p[hit]) * turn[hit] < 0
-        np.add.at(found, rows[hit[under]], turn[hit[under]])
-    return found
+        hit = hit[orient3d(a[hit], b[hit], c[hit], p[hit]) * turn[hit] < 0]
+        yield rows[hit], above[hit], turn[hit]
 
 
 def _moved_side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:

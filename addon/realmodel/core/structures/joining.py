@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
-from .part_models import DEEP, FILLER, NOTHING, Stack, inside_body, plain_stack
+from .part_models import DEEP, FILLER, NOTHING, Stack, distinct_plans, inside_body, plain_stack
 from .parts import Structures, compartment_of
 from .reach import Reach
 from .refusals import refused_structure
 from .rock_structure import Triangulation
-from .voids import Build, distinct_plans
 
 _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
 
@@ -37,10 +34,15 @@ def build_joined(
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
     models, parts, warnings = [], [], {}
     reach = Reach(work, structures, threads)
-    steps = np.linspace(start, start + _BUILT * (end - start), len(structures.sides) + 1)
-    for part, (begin, finish) in enumerate(itertools.pairwise(steps)):
-        with work.phase(float(begin), float(finish), "intersecting and cutting"):
-            built = _part_model(work, inputs, structures, reach, part, cells, threads)
+    begin = start + _BUILT * (end - start)
+
+    def built_in(own_work: Work, part: int, own_threads: int) -> dict | None:
+        with own_work.phase(0.0, 1.0, "intersecting and cutting"):
+            return _part_model(own_work, inputs, structures, reach, part, cells, own_threads)
+
+    with work.phase(start, begin, "intersecting and cutting"):
+        made = work.each(built_in, range(len(structures.sides)), threads)
+    for part, built in enumerate(made):
         if built is not None and len(built["cell_block"]):
             warnings |= dict.fromkeys((w[0], w[1], tuple(w[2]), w[3]) for w in built.pop("warnings"))
             models.append((built, structures.sides[part].tolist()))
@@ -49,7 +51,7 @@ def build_joined(
         return _nothing(inputs, structures)
     native = native_module()
     divides = acts(inputs, structures)
-    with work.phase(float(steps[-1]), end, "joining the compartments"):
+    with work.phase(begin, end, "joining the compartments"):
         try:
             joined = work.native(
                 native.join_structured, models, structures.native(), divides, threads=threads
@@ -122,14 +124,8 @@ def _part_model(
     """The arrays of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
     native = native_module()
-
-    def of_columns(sheets, region, rules, emptied) -> dict:
-        rocks = [(sheets, region, None, rules)]
-        return work.native(native.build_rock_masses, rocks, emptied=[list(emptied)], threads=threads)
-
     stacks = [
-        _stack(inputs, structures, part, number, first[number], first[-1], of_columns)
-        for number in range(len(inputs))
+        _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
     ]
     columns = reach.columns(part)
     kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
@@ -140,8 +136,8 @@ def _part_model(
     rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
-    emptied = [list(stacks[n].emptied) for n in taken]
-    built_as = "columns" if any(emptied) else cells
+    voids = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
+    built_as = "columns" if voids else cells
     # blocks end at one border: those that each sheet ends at by itself leave many small ones between
     around = reach.around(columns) if built_as == "blocks" else None
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
@@ -152,13 +148,7 @@ def _part_model(
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
-        built = work.native(
-            native.build_rock_masses,
-            rocks,
-            cells=built_as,
-            threads=threads,
-            emptied=emptied if any(emptied) else [],
-        )
+        built = work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **voids)
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):
             error.items = rows[error.surface][error.items].tolist()
@@ -191,6 +181,18 @@ def _part_model(
     return {**model, "warnings": warnings}
 
 
+def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
+    """What the builder is told of voids, by the names of its arguments; {} where there is none. stacks: with
+    whether what is below the oldest surface stays."""
+    if not any(stack.emptied for stack, _ in stacks):
+        return {}
+    tops = [
+        [of == FILLER for of in stack.surfaces[: max(stack.emptied, default=0)]] if stays else []
+        for stack, stays in stacks
+    ]
+    return {"emptied": [list(stack.emptied) for stack, _ in stacks], "fills": tops}
+
+
 def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
     """Some triangles of a sheet, with their vertices alone."""
     vertices, triangles = sheet
@@ -202,10 +204,8 @@ def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
     return np.ascontiguousarray(vertices[used]), number[triangles[kept]].astype(np.int32)
 
 
-def _stack(
-    inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int, build: Build
-) -> Stack:
-    """The stack of one rock mass in one part. surfaces: of all rock masses; build: models of columns."""
+def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:
+    """The stack of one rock mass in one part. surfaces: of all rock masses."""
     entry = inputs[number]
     sheets = entry.structure.sheets[compartment_of(structures, entry, part)]
     rules = [surface.rule for surface in entry.rock.surfaces]
@@ -225,11 +225,7 @@ def _stack(
         if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
-        try:
-            stack = inside_body(stack, after, block, ends, plans, entry.region, build)
-        except native_module().InputError as error:
-            error.surface = first + error.surface if error.surface >= 0 else -1
-            raise refused_stack(error, inputs) from error
+        stack = inside_body(stack, after, block, ends, plans)
     return stack
 
 

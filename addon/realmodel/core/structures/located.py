@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .closed_form import PlanGrid, heights_in_plane
-from .exact import orient2d, orient3d
+from .closed_form import PlanGrid, triangles_above
 
 OUTSIDE = -1
 
@@ -21,38 +20,28 @@ def fanned(offsets: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 class Locator:
-    """Tells in which cells of a model points lie: what is below the nearest face above."""
+    """Tells in which cells of a model points lie: in those whose faces go round them."""
 
     def __init__(self, model):
         triangles, face = fanned(model.face_offsets, model.face_vertices)
         corners = model.vertices[triangles]
         plan = corners[:, :, :2]
         flat = (plan == plan[:, [1, 2, 0]]).all(axis=2).any(axis=1)  # two corners above one another
-        turn = np.zeros(len(corners), np.int8)
-        turn[~flat] = orient2d(*plan[~flat].transpose(1, 0, 2))
-        self.corners, self.turn = corners[turn != 0], turn[turn != 0]
+        self.corners, self.cells_of = corners[~flat], model.face_cells[face[~flat]]
         self.grid = PlanGrid(self.corners)
-        self.below = model.face_cells[face[turn != 0], np.where(self.turn > 0, 0, 1)]
+        self.count = len(model.cell_block)
 
     def cells(self, points: np.ndarray) -> np.ndarray:
-        """(N,) the cell that each point (N, 3) lies in, OUTSIDE for none. Signs are exact for the triangles
-        into which faces are divided; points on a face are in a cell beside it."""
+        """(N,) the cell that each point (N, 3) lies in, OUTSIDE for none; the first one where rounding made
+        cells overlap. Exact for the triangles into which faces are divided; a point on a face is above it."""
         found = np.full(len(points), OUTSIDE, np.int64)
-        nearest = np.full(len(points), np.inf)
-        for rows, above in self.grid.over(points[:, :2]):
-            a, b, c = self.corners[above].transpose(1, 0, 2)
-            p, turn = points[rows], self.turn[above]
-            turns = [orient2d(u[:, :2], v[:, :2], p[:, :2]) for u, v in ((a, b), (b, c), (c, a))]
-            within = np.flatnonzero(np.all([each * turn >= 0 for each in turns], axis=0))
-            rows, above, a, b, c, p, turn = (each[within] for each in (rows, above, a, b, c, p, turn))
-            over = np.flatnonzero(orient3d(a, b, c, p) * turn < 0)
-            rows, above, a, b, c, p = (each[over] for each in (rows, above, a, b, c, p))
-            if not len(rows):
-                continue
-            height = heights_in_plane(a, b, c, p[:, :2])
-            order = np.lexsort((height, rows))
-            first = order[np.concatenate([[True], np.diff(rows[order]) > 0])]
-            closer = first[height[first] < nearest[rows[first]]]
-            nearest[rows[closer]] = height[closer]
-            found[rows[closer]] = self.below[above[closer]]
+        for rows, above, turn in triangles_above(points, self.corners, self.grid):
+            # a face is seen counter-clockwise from outside of its first cell
+            keys = rows[:, None] * (self.count + 1) + self.cells_of[above] + 1
+            key, number = np.unique(keys, return_inverse=True)
+            winding = np.zeros(len(key), np.int64)
+            np.add.at(winding, number.reshape(keys.shape), np.column_stack([turn, -turn]))
+            row, cell = np.divmod(key[winding > 0], self.count + 1)
+            row, first = np.unique(row[cell > 0], return_index=True)
+            found[row] = cell[cell > 0][first] - 1
         return found

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..rules import RULES
-from ..work import native_module
 from .rock_structure import Triangulation
-from .voids import Build, Older, level
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
@@ -21,7 +22,7 @@ class Stack:
     """A stack as the builder takes it. blocks: of each surface the number of the block beneath it, NOTHING
     for none. surfaces: of each surface its number in the rock mass, FILLER, FLOOR or DEEP. emptied: surfaces,
     ascending, before which all that is there becomes air; of those before the last of them stays what they
-    protect."""
+    protect, and, of a rock mass without a base elevation, what is below the oldest of them."""
 
     sheets: list[Triangulation]
     rules: list[str]
@@ -41,8 +42,11 @@ class Stack:
         sheets, rules = [self.sheets[k] for k in kept], [self.rules[k] for k in kept]
         emptied = tuple(sorted({sum(k < at for k in kept) for at in self.emptied} - {0}))
         if emptied and emptied[-1] == len(kept):
-            return Stack([], [], None, [], [])
+            return _EMPTY
         return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept], emptied)
+
+
+_EMPTY = Stack([], [], None, [], [])
 
 
 def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | None, first: int) -> Stack:
@@ -55,26 +59,18 @@ def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | Non
 
 
 def inside_body(
-    stack: Stack,
-    after: int,
-    block: int,
-    ends: tuple[float, float],
-    plans: list[Triangulation],
-    region: Triangulation | None,
-    build: Build,
+    stack: Stack, after: int, block: int, ends: tuple[float, float], plans: list[Triangulation]
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
-    body, block `block`, or NOTHING in a void. ends: heights below and above all. plans:
-    triangulations that together cover the rock mass in plan; region: the one that bounds it, or None.
+    body, block `block`, or NOTHING in a void. ends: heights below and above all. plans: triangulations that
+    together cover the rock mass in plan.
     """
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
         base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
     if block == NOTHING:
-        return _emptied(
-            stack.without([number == DEEP for number in stack.surfaces]), after, base, ends, region, build
-        )
+        return _emptied(stack.without([number == DEEP for number in stack.surfaces]), after, base, ends[0])
     first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
     # what is protected depends on all that was there, and so does what is below the oldest surface
     keeps = base is None or any(RULES[rule].protects for rule in stack.rules[:older])
@@ -124,17 +120,6 @@ def inside_body(
     )
 
 
-def _never(stack: Stack, before: Older) -> list[tuple[Triangulation, int]]:
-    """The top of what is below the oldest surface, with numbers of surfaces; none where only bodies are."""
-    fills = [of == FILLER for of in stack.surfaces[: len(before.sheets)]]
-    try:
-        pieces = before.never(fills)
-    except native_module().InputError as error:
-        error.surface = stack.surfaces[error.surface] if error.surface >= 0 else -1
-        raise
-    return [(piece.sheet, stack.surfaces[piece.of]) for piece in pieces]
-
-
 def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangulation, int]]:
     """Levels below everything, over surfaces that came upon a body: where no surface was before, the body
     was all that there was, and the void reaches as deep."""
@@ -144,27 +129,21 @@ def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangula
     return [(level(stack.sheets[k], deep), stack.surfaces[k]) for k in upon]
 
 
-def _emptied(
-    stack: Stack,
-    after: int,
-    base: float | None,
-    ends: tuple[float, float],
-    region: Triangulation | None,
-    build: Build,
-) -> Stack:
+def _emptied(stack: Stack, after: int, base: float | None, deep: float) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
-    of what is below the oldest surface. The older ones only stay where they protect."""
+    of what is below the oldest surface. The older ones only stay for that, and where they protect."""
     older = sum(number <= after for number in stack.surfaces)
-    before = Older(build, stack.sheets[:older], stack.rules[:older], region, stack.emptied)
-    if base is not None:
-        # where no older surface was, none that comes later forms a block
-        floors = [(level(plan, base), FLOOR) for plan in before.plans]
+    if older == len(stack.surfaces):
+        return _EMPTY
+    if base is None:
+        floors, kept = _below_bodies(stack, older, deep), older
     else:
-        floors = [*_never(stack, before), *_below_bodies(stack, older, ends[0])]
-    protects = any(RULES[rule].protects for rule in before.rules)
-    # upon a base the first that comes finds nothing to cut
-    may_cut = stack.rules[older + (base is not None) :]
-    kept = older if protects and any(RULES[rule].cuts for rule in may_cut) else 0
+        # where no older surface was, none that comes later forms a block
+        floors = [(level(plan, base), FLOOR) for plan in distinct_plans(stack.sheets[:older])]
+        protects = any(RULES[rule].protects for rule in stack.rules[:older])
+        # upon a base the first that comes finds nothing to cut
+        may_cut = any(RULES[rule].cuts for rule in stack.rules[older + 1 :])
+        kept = older if protects and may_cut else 0
     return Stack(
         [*stack.sheets[:kept], *(sheet for sheet, _ in floors), *stack.sheets[older:]],
         [*stack.rules[:kept], *[_DEPOSITS] * len(floors), *stack.rules[older:]],
@@ -173,3 +152,24 @@ def _emptied(
         [*stack.surfaces[:kept], *(of for _, of in floors), *stack.surfaces[older:]],
         (*stack.emptied, kept) if kept else (),
     )
+
+
+def distinct_plans(sheets: Sequence[Triangulation]) -> list[Triangulation]:
+    """Of sheets, one of each that cover the same triangles in plan."""
+    found: list[Triangulation] = []
+    for sheet in sheets:
+        if not any(_same_plan(sheet, other) for other in found):
+            found.append(sheet)
+    return found
+
+
+def _same_plan(one: Triangulation, other: Triangulation) -> bool:
+    return one is other or (
+        np.array_equal(one[1], other[1]) and np.array_equal(one[0][:, :2], other[0][:, :2])
+    )
+
+
+def level(plan: Triangulation, height: float) -> Triangulation:
+    """A level surface over what a sheet or a region covers."""
+    vertices, triangles = plan
+    return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles

@@ -336,13 +336,13 @@ def _met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> n
 
 
 def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:
-    """(N,) bool: the nodes that are on given sides of all faults, or near such a place."""
-    found = np.ones(len(on_side[0]), bool)
+    """(N,) bool: the nodes of triangles with corners on given sides of all faults, and those beside them."""
+    whole = np.ones(len(triangles), bool)
     for own, also in zip(on_side, passed, strict=True):
-        on = own | also
-        for _ in range(2):
-            on[triangles[on[triangles].any(axis=1)]] = True
-        found &= on
+        whole &= (own | also)[triangles].any(axis=1)
+    found = np.zeros(len(on_side[0]), bool)
+    found[triangles[whole]] = True
+    found[triangles[found[triangles].any(axis=1)]] = True
     return found
 
 

@@ -59,7 +59,7 @@ class Tile:
 @dataclass(eq=False)
 class TiledModel:
     """A model in tiles, over all tiles: its blocks as of Model. cells of columns count those of the tiles,
-    which borders divide. project: without shapes. patches, rounded, unequal: as of Catalog."""
+    which borders divide. project: without shapes. patches, unequal: as of Catalog."""
 
     name: str
     folder: Path
@@ -70,7 +70,6 @@ class TiledModel:
     y: np.ndarray
     project: Project
     patches: int
-    rounded: int
     unequal: int
     warnings: list[BuildWarning]
 
@@ -218,7 +217,6 @@ def tiled_model(catalog: Catalog, folder: Path) -> TiledModel:
         catalog.grid.y,
         catalog.project,
         catalog.patches,
-        catalog.rounded,
         catalog.unequal,
         catalog.warnings,
     )

@@ -108,6 +108,7 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
     rock.first_surface = first_surface;
     rock.rules = input.rules;
     rock.emptied = input.emptied;
+    rock.fills = input.fills;
     if (!rock.emptied.empty()) rock.rules.resize(input.surfaces.size(), Rule::kErosional);
     if (input.base_elevation && !is_within_limits(*input.base_elevation)) {
         throw InputError("not_finite", "the base elevation is not a number or is beyond 1e50",

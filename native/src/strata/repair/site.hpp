@@ -18,6 +18,7 @@ struct EnteredRock {
     std::vector<SurfacePlan> plans;  ///< of the surfaces
     std::vector<Rule> rules;
     std::vector<std::size_t> emptied;  ///< surfaces before which all that is there becomes air
+    std::vector<std::uint8_t> fills;   ///< of those before the last of them: 1 for tops of bodies
     std::optional<std::vector<PlanTriangle>> region;
     std::vector<BorderEdge> region_border;
     FrameTriangles region_filling;         ///< the frame around the region
@@ -36,6 +37,7 @@ struct Site {
     std::vector<EnteredRock> rocks;
     std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
     std::int32_t surfaces = 0;                   ///< in all rock masses
+    std::optional<Window> window;                ///< of a tile, or nothing
     /// Whether no surface covers a position twice, and no border of a region crosses itself.
     bool is_single_valued = true;
 

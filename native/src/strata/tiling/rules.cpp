@@ -160,6 +160,39 @@ SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, 
     return lower;
 }
 
+SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
+                            const SurfaceTiling& other, bool fills, int threads,
+                            const Progress* progress) {
+    const auto found = over_facets(
+        geometry, one, other, threads, progress,
+        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+            const PlaneId plane = one.plane[f];
+            if (plane == kSky || (plane.has_value() && fills)) {
+                out.add(one.polygons[f], plane, -1);
+                return;
+            }
+            // beneath a void nothing is below: what there is lies where `one` is not
+            const Pieces& pieces = finder.find(one.polygons[f], plane);
+            const Side changed = plane.has_value() ? Side::kBelow : Side::kNotBelow;
+            if (std::none_of(pieces.list.begin(), pieces.list.end(),
+                             [&](const Piece& p) { return p.side == changed; })) {
+                out.add(one.polygons[f], plane, -1);
+                return;
+            }
+            for (const Piece& piece : pieces.list) {
+                const PlaneId in_other = other.plane[static_cast<std::size_t>(piece.polygon)];
+                out.add(pieces.outline(piece),
+                        piece.side != changed ? plane : (fills ? kSky : in_other), -1);
+            }
+        });
+    SurfaceTiling lowest;
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
+            append(*chunk, i, lowest);
+    }
+    return lowest;
+}
+
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
     SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, threads_, progress_);
     raised.index(geometry_, threads_, progress_);
@@ -178,6 +211,20 @@ SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTili
         }
     }
     return covered;
+}
+
+SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
+                                    const SurfaceTiling& e, bool fills) const {
+    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, threads_, progress_);
+    SurfaceTiling lowest = e;
+    if (fills) std::ranges::replace_if(lowest.plane, &PlaneId::has_value, kSky);
+    return lowest;
+}
+
+SurfaceTiling TilingRaising::stays(SurfaceTiling lowest) const {
+    std::ranges::replace(lowest.plane, kSky, kVoid);
+    lowest.index(geometry_, threads_, progress_);
+    return lowest;
 }
 
 }  // namespace realmodel::strata

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,20 +20,23 @@ namespace realmodel::strata {
 ///
 /// `Raising` says how: raise(surface, bound) is the higher of the two where there is a surface,
 /// first(e) a bound that has nothing but e, and cover(bound, e, surface) a bound with e where there
-/// is a surface. One that can empty the rock also has lower(bound, bound), where there are both.
+/// is a surface. One that can empty the rock also has lower(bound, bound), where there are both,
+/// lowest(...), what is below the oldest surface, and stays(lowest), what of it stays.
 template <class Raising>
 class RuleReplay {
 public:
     using Tiling = typename Raising::Tiling;
     using Bound = typename Raising::Bound;
 
-    /// rules: of all surfaces, oldest first; what no later surface asks for is not kept.
-    RuleReplay(Raising raising, std::vector<Rule> rules)
-        : raising_(std::move(raising)), rules_(std::move(rules)) {}
+    /// rules: of all surfaces, oldest first; what no later surface asks for is not kept. fills: as
+    /// StackInput has it.
+    RuleReplay(Raising raising, std::vector<Rule> rules, std::vector<std::uint8_t> fills = {})
+        : raising_(std::move(raising)), rules_(std::move(rules)), fills_(std::move(fills)) {}
 
     /// The next surface, oldest first; returns its e_k.
     Tiling add(Tiling surface) {
-        const Rule rule = rules_[next_++];
+        const std::size_t number = next_++;
+        const Rule rule = rules_[number];
         raising_.begin(surface);
         std::optional<Tiling> raised;
         if (const std::optional<Bound> low = bound_after_emptying(rule)) {
@@ -40,6 +45,9 @@ public:
             raised = raising_.raise(surface, *bound);
         }
         const Tiling& e = raised ? *raised : surface;
+        if constexpr (kCanEmpty) {
+            if (number < fills_.size()) lowest_ = raising_.lowest(lowest_, e, fills_[number] != 0);
+        }
         const auto renew = [&](std::optional<Bound>& kept) {
             kept = kept ? raising_.cover(*kept, e, surface) : raising_.first(e);
         };
@@ -60,17 +68,27 @@ public:
         return raised ? std::move(*raised) : std::move(surface);
     }
 
-    /// All that is there becomes air; what is protected stays so. From now on the floor may be
-    /// above the top: then nothing below the top may be cut.
-    void empty() {
-        top_.reset();
+    /// All that is there becomes air, or all above what is below the oldest surface, the top of
+    /// which is the result; what is protected stays so. From now on the floor may be above the
+    /// top: then nothing below the top may be cut.
+    std::optional<Tiling> empty() {
         is_emptied_ = true;
+        top_.reset();
+        if constexpr (kCanEmpty) {
+            if (lowest_) lowest_ = raising_.stays(std::move(*lowest_));
+            top_ = lowest_;
+        }
+        return lowest_;
     }
 
 private:
+    static constexpr bool kCanEmpty = requires(Raising raising, Bound bound) {
+        raising.lower(bound, bound);
+    };
+
     /// What a surface must be raised to once the rock was emptied.
     std::optional<Bound> bound_after_emptying(Rule rule) {
-        if constexpr (requires { raising_.lower(*top_, *floor_); }) {
+        if constexpr (kCanEmpty) {
             if (!is_emptied_ || !top_) return std::nullopt;
             if (!meaning(rule).cuts) return top_;
             if (floor_) return raising_.lower(*top_, *floor_);
@@ -87,9 +105,11 @@ private:
 
     Raising raising_;
     std::vector<Rule> rules_;
+    std::vector<std::uint8_t> fills_;
     std::size_t next_ = 0;
     bool is_emptied_ = false;
     std::optional<Bound> top_, floor_;
+    std::optional<Tiling> lowest_;
 };
 
 /// The higher of a surface and a bound, where there is a surface. Polygons that are `given` are not
@@ -108,6 +128,12 @@ SurfaceTiling uncovered_part(exact::PlanArrangement& geometry, const SurfaceTili
 SurfaceTiling lower_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
                            SurfaceTiling other, int threads, const Progress* progress);
 
+/// The lower one of two tilings, and that which there is where the other one is not. Where `one`
+/// has kSky it stays, and so where it has nothing and the other one fills a body.
+SurfaceTiling lowest_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
+                            const SurfaceTiling& other, bool fills, int threads,
+                            const Progress* progress);
+
 /// Rules on whole tilings.
 class TilingRaising {
 public:
@@ -125,6 +151,12 @@ public:
     }
     SurfaceTiling cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                         const SurfaceTiling& surface) const;
+    /// The top of what is below the oldest surface, with kSky where a body was there first.
+    /// @param e  what the next surface left as the top of the rock; fills: it is one of a body
+    SurfaceTiling lowest(const std::optional<SurfaceTiling>& so_far, const SurfaceTiling& e,
+                         bool fills) const;
+    /// The same as a surface: with nothing where a body was there first.
+    SurfaceTiling stays(SurfaceTiling lowest) const;
 
 private:
     exact::PlanArrangement& geometry_;

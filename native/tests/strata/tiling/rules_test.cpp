@@ -107,6 +107,46 @@ TEST(Rules, WhereRockWasEmptiedWhatWasProtectedIsNotCut) {
     EXPECT_DOUBLE_EQ(both[2], 0);
 }
 
+/// The volume beneath the youngest surface, where all above what is below the oldest one becomes
+/// air before each of some surfaces.
+double upon_oldest(const std::vector<OwnedSurface>& surfaces, std::vector<Rule> rules,
+                   std::vector<std::size_t> emptied, std::vector<std::uint8_t> fills) {
+    StackInput input;
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.rules = std::move(rules);
+    input.emptied = std::move(emptied);
+    input.fills = std::move(fills);
+    const auto c = build_stack(input, 2, nullptr, CellKind::kColumns);
+    expect_valid(c);
+    for (std::size_t k = 0; k + 1 < c.volumes.size(); ++k)
+        EXPECT_EQ(c.volumes[k], 0);
+    for (const std::int32_t named : c.face_surface)
+        EXPECT_GE(named, kWall);
+    return c.volumes.back();
+}
+
+TEST(Rules, WhatIsBelowTheOldestSurfaceMayStayWhereRockWasEmptied) {
+    const Rule cuts = Rule::kErosional, deposits = Rule::kConformable;
+    const auto left = grid(1, 1, 0, 0, 0.5, 1, [](double, double) { return 0; });
+    // z = x, cut at 1/2
+    const std::vector<OwnedSurface> cut{rising(0, 1), flat(0.5, true), flat(2)};
+    EXPECT_DOUBLE_EQ(upon_oldest(cut, {cuts, cuts, cuts}, {2}, {0, 0}), 1.625);
+    EXPECT_DOUBLE_EQ(upon_oldest(cut, {cuts, deposits, cuts}, {2}, {0, 0}), 1.5);
+    EXPECT_DOUBLE_EQ(upon_oldest(cut, {Rule::kBase, cuts, cuts}, {2}, {0, 0}), 1.5);
+    EXPECT_DOUBLE_EQ(upon_oldest(cut, {cuts, cuts, cuts}, {1, 2}, {0, 0}), 1.625);
+    // the oldest surface is another one on either side
+    const std::vector<OwnedSurface> partial{left, flat(0.25), flat(1, true)};
+    EXPECT_DOUBLE_EQ(upon_oldest(partial, {cuts, cuts, cuts}, {2}, {0, 0}), 0.875);
+    // nothing is below a body, so what comes later has nothing to end at but a level given for that
+    const std::vector<OwnedSurface> body{left, flat(10), flat(0.25), flat(1, true)};
+    EXPECT_DOUBLE_EQ(upon_oldest(body, {cuts, deposits, cuts, cuts}, {3}, {0, 1, 0}), 0.5);
+    const std::vector<OwnedSurface> deep{left, flat(10), flat(0.25), flat(-1), flat(1, true)};
+    const std::vector<Rule> rules{cuts, deposits, cuts, deposits, cuts};
+    EXPECT_DOUBLE_EQ(upon_oldest(deep, rules, {3}, {0, 1, 0}), 1.5);
+    EXPECT_DOUBLE_EQ(upon_oldest(deep, rules, {3}, {}), 2);
+}
+
 /// Block k at one plan point by the recurrence of docs/dev/geometry.md.
 std::vector<double> thickness(const std::vector<double>& heights, const std::vector<Rule>& rules) {
     std::vector<double> e, before;

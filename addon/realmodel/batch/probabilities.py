@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What --section, --fence, --borehole and --export mean beside --ensemble: files with the probability of each
+block along them, and on a regular grid."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..core.ensembles import (
+    Ensemble,
+    borehole_samples,
+    grid_samples,
+    sample_writer,
+    section_samples,
+)
+from ..core.ensembles.samples import Samples
+from .cuts import BoreholeRequest, SectionRequest, borehole_request, fence_request, section_request
+
+
+@dataclass
+class ProbabilityRequests:
+    """The files that the options ask for. size: of cells."""
+
+    made: list[SectionRequest | BoreholeRequest | GridRequest]
+    size: Sequence[float] | None
+    exaggeration: float
+    _samples: list[Samples] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, options) -> ProbabilityRequests:
+        """Raises UsageError."""
+        return cls(
+            [
+                *(section_request(text, writer=_writer("section")) for text in options.section),
+                *(fence_request(text, writer=_writer("section")) for text in options.fence),
+                *(borehole_request(text, writer=_writer("borehole")) for text in options.borehole),
+                *(GridRequest(path) for path in options.export),
+            ],
+            options.cell_size,
+            options.exaggeration,
+        )
+
+    def places(self, model) -> np.ndarray:
+        """(N, 3) where the ensemble is to be asked. Raises UsageError."""
+        self._samples = [self._sampled(model, request) for request in self.made]
+        return np.concatenate([np.zeros((0, 3)), *(samples.places for samples in self._samples)])
+
+    def _sampled(self, model, request) -> Samples:
+        if isinstance(request, BoreholeRequest):
+            height = None if self.size is None else self.size[-1]
+            return borehole_samples(model, *request.what, height)
+        if isinstance(request, GridRequest):
+            return grid_samples(model, self.size)
+        return section_samples(model, request.cut(model), self.size)
+
+    def write(self, found: Ensemble, outputs) -> None:
+        """Stages all files."""
+        begin = 0
+        for request, samples in zip(self.made, self._samples, strict=True):
+            end = begin + len(samples.places)
+            writer = sample_writer(request.file, request.kind, self.exaggeration)
+            with outputs.file(request.file) as file:
+                writer(samples, found.at(begin, end), file)
+            begin = end
+
+
+def _writer(kind: str):
+    return functools.partial(sample_writer, kind=kind)
+
+
+@dataclass
+class GridRequest:
+    """The cells of a regular grid, and their file."""
+
+    file: Path
+    kind = "grid"
+
+    def __post_init__(self):
+        sample_writer(self.file, self.kind)
+        self.outputs, self.inputs = [self.file], []
+
+    def read(self) -> None:
+        pass

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files with the probability of each block at samples: tables (.csv), arrays (.npz), cells for ParaView
+(.vtu, .vti), and drawings of sections (.svg, .dxf, .png): each place has the mean color of its blocks."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from .. import drawing
+from ..exporters.endings import by_ending
+from ..exporters.npz import texts, write_arrays
+from ..exporters.parts import distinct_names
+from ..exporters.text_rows import write_rows
+from ..exporters.vtk_xml import write_grid, write_image
+from ..section_drawing import draw_section
+from .places import Probabilities
+from .samples import GridSamples, Samples, SectionSamples
+
+_QUADRILATERAL = 9
+_SHADES = 64.0  # of each color: cells beside one another that have the same are drawn as one
+
+
+def sample_writer(path: str | Path, kind: str, exaggeration: float = 1.0) -> Callable[..., None]:
+    """The function (samples, probabilities, file) for files of this ending. kind: "section", "borehole" or
+    "grid". exaggeration: of heights in drawings. Raises UsageError."""
+    writer = by_ending(path, _WRITERS[kind], f"the probabilities of a {kind} are not written as {{}}")
+    if writer is _write_drawing:
+        draw = drawing.WRITERS[Path(path).suffix.lower()]
+        return partial(writer, write=draw, exaggeration=exaggeration)
+    return writer
+
+
+def _named(found: Probabilities) -> list[tuple[str, np.ndarray]]:
+    """Arrays of cells, by name."""
+    shares = zip(distinct_names(found.block_names), found.probability.T, strict=True)
+    return [
+        ("entropy", found.entropy().astype("<f8")),
+        ("block", found.likeliest().astype("<i4")),
+        *((f"probability {name}", np.ascontiguousarray(share, "<f8")) for name, share in shares),
+    ]
+
+
+def _write_csv(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
+    """A row for each place where there may be rock: x, y, z, the distance along a section, the name of the
+    likeliest block, entropy, and the probability of each block."""
+    kept = np.flatnonzero(found.probability.sum(axis=1) > 0)
+    names, columns = distinct_names(found.block_names), [samples.places[kept]]
+    headings = ["x", "y", "z"]
+    if isinstance(samples, SectionSamples):
+        headings.append("distance")
+        columns.append(samples.distance[kept])
+    quoted = np.array([_cell(name) for name in [*found.block_names, ""]], object)
+    columns += [quoted[found.likeliest()[kept]], found.entropy()[kept], found.probability[kept]]
+    headings += ["block", "entropy", *(f"probability {name}" for name in names)]
+    file.write((",".join(map(_cell, headings)) + "\n").encode())
+    form = ",".join(["%r"] * (len(headings) - 2 - len(names)) + ["%s"] + ["%.9g"] * (1 + len(names)))
+    write_rows(file, form, *columns)
+
+
+def _cell(text: str) -> str:
+    """A text as a field of a CSV file."""
+    line = io.StringIO()
+    csv.writer(line, lineterminator="").writerow([text])
+    return line.getvalue() if text else ""
+
+
+def _write_npz(samples: Samples, found: Probabilities, file: BinaryIO) -> None:
+    arrays = {
+        "block_names": texts(found.block_names),
+        "places": samples.places,
+        "probability": found.probability,
+        "entropy": found.entropy(),
+    }
+    if isinstance(samples, SectionSamples):
+        arrays |= {"corners": samples.corners, "distance": samples.distance}
+    if isinstance(samples, GridSamples):
+        arrays |= {"origin": samples.origin, "size": samples.size, "counts": np.array(samples.counts)}
+    write_arrays(arrays, file)
+
+
+def _write_vtu(samples: SectionSamples, found: Probabilities, file: BinaryIO) -> None:
+    count = len(samples.places)
+    arrays = [
+        ("Points", "Points", samples.corners.reshape(-1, 3).astype("<f8")),
+        ("Cells", "connectivity", np.arange(4 * count, dtype="<i8")),
+        ("Cells", "offsets", np.arange(4, 4 * count + 1, 4, dtype="<i8")),
+        ("Cells", "types", np.full(count, _QUADRILATERAL, np.uint8)),
+    ]
+    write_grid(file, [*arrays, *(("CellData", name, values) for name, values in _named(found))])
+
+
+def _write_vti(samples: GridSamples, found: Probabilities, file: BinaryIO) -> None:
+    write_image(file, samples.origin, samples.size, samples.counts, _named(found))
+
+
+def _write_drawing(
+    samples: SectionSamples, found: Probabilities, file: BinaryIO, write, exaggeration: float
+) -> None:
+    write(draw_probabilities(samples, found, exaggeration), file)
+
+
+def draw_probabilities(
+    samples: SectionSamples, found: Probabilities, exaggeration: float = 1.0
+) -> drawing.Drawing:
+    """A section whose cells have the mean of the colors of the blocks, as probable as these are, below the
+    outlines of the interpolated blocks."""
+    cells = _joined(samples, found.colors(samples.section.block_colors))
+    return draw_section(samples.section, exaggeration, cells=cells)
+
+
+def _joined(samples: SectionSamples, colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (M, 4, 2) and colors (M, 3) of cells that are not white; those of one color in a row as one."""
+    shades = np.rint(colors * _SHADES) / _SHADES
+    differs = np.ones(len(shades), bool)
+    differs[1:] = (shades[1:] != shades[:-1]).any(axis=1)
+    differs[:: samples.columns] = True
+    first = np.flatnonzero(differs)
+    last = np.append(first[1:], len(shades)) - 1
+    a, b = samples.flat[first], samples.flat[last]
+    corners = np.stack([a[:, 0], b[:, 1], b[:, 2], a[:, 3]], axis=1)
+    seen = (shades[first] < 1.0).any(axis=1)
+    return corners[seen], shades[first][seen]
+
+
+_WRITERS: dict[str, dict[str, Callable]] = {
+    "section": {
+        ".csv": _write_csv,
+        ".npz": _write_npz,
+        ".vtu": _write_vtu,
+        **dict.fromkeys(drawing.WRITERS, _write_drawing),
+    },
+    "borehole": {".csv": _write_csv, ".npz": _write_npz},
+    "grid": {".csv": _write_csv, ".npz": _write_npz, ".vti": _write_vti},
+}

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where an ensemble is asked for its blocks: at the middles of the cells of a section, a fence, a borehole or
+a regular grid."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import UsageError
+from ..regular_cells import checked_size, frame_of
+from ..section import Fence, Section
+from ..section_drawing import directions, flattened, is_vertical
+
+MOST_PLACES = 20_000_000  # times blocks
+_COLUMNS, _ROWS = 200, 100  # of a section, where no size is given
+_BEYOND = 0.05  # of the height of a section: heights that are drawn leave those of the model
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """places: (N, 3), the middles of cells."""
+
+    places: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SectionSamples(Samples):
+    """Cells on a section or a fence, in rows from below. section: of the model. corners: (N, 4, 3) of the
+    cells; flat: (N, 4, 2), the same as sections are drawn. columns: cells in a row."""
+
+    section: Section
+    corners: np.ndarray
+    flat: np.ndarray
+    columns: int
+
+    @property
+    def distance(self) -> np.ndarray:
+        """(N,) float64: of the places from the left end of the drawing."""
+        return self.flat[:, :, 0].mean(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class BoreholeSamples(Samples):
+    """Cells of a vertical line, from above. height: of a cell."""
+
+    height: float
+
+
+@dataclass(frozen=True, eq=False)
+class GridSamples(Samples):
+    """Cells of a regular grid; x runs fastest, z slowest. As of regular_cells."""
+
+    origin: np.ndarray
+    size: np.ndarray
+    counts: tuple[int, int, int]
+
+
+def section_samples(model, section: Section, size: float | Sequence[float] | None = None) -> SectionSamples:
+    """Of a section by a plane, or a fence, of the model. size: of cells, in plan and in height (of a level
+    plane along x and y); None: 200 columns and 100 rows. Raises UsageError where the section is empty."""
+    if not len(section):
+        raise UsageError("the section does not meet the model: choose another one")
+    flat = flattened(section)
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    is_fence = isinstance(section, Fence)
+    if is_fence:
+        low[0], high[0] = 0.0, section.length
+    if is_vertical(section):
+        beyond = _BEYOND * (high[1] - low[1])
+        low[1], high[1] = low[1] - beyond, high[1] + beyond
+    extent = np.maximum(high - low, 1e-9 * max(np.abs(flat).max(), 1.0))
+    if size is None:
+        steps = extent / (_COLUMNS, _ROWS)
+    else:
+        given = checked_size(model, size)
+        steps = given[[0, 2]] if is_vertical(section) else given[:2]
+    rows = _bounds(low[1], high[1], steps[1])
+    if is_fence:
+        pieces = [_bounds(*ends, steps[0]) for ends in itertools.pairwise(section.bends.tolist())]
+        panels = np.repeat(np.arange(len(pieces)), [len(piece) - 1 for piece in pieces])
+        left, right = (np.concatenate([piece[cut] for piece in pieces]) for cut in (np.s_[:-1], np.s_[1:]))
+    else:
+        columns = _bounds(low[0], high[0], steps[0])
+        left, right = columns[:-1], columns[1:]
+        panels = np.zeros(len(left), int)
+    _check(model, len(left) * (len(rows) - 1))
+    u = np.tile(np.stack([left, right, right, left], axis=1), (len(rows) - 1, 1))
+    v = np.repeat(np.stack([rows[:-1], rows[:-1], rows[1:], rows[1:]], axis=1), len(left), axis=0)
+    cells = np.stack([u, v], axis=2)
+    corners = _in_space(section, cells, np.tile(panels, len(rows) - 1))
+    return SectionSamples(corners.mean(axis=1), section, corners, cells, len(left))
+
+
+def borehole_samples(model, x: float, y: float, height: float | None = None) -> BoreholeSamples:
+    """Of a vertical line through the whole model, as high as it is. height: of cells; None: a hundredth."""
+    low, high = float(model.vertices[:, 2].min()), float(model.vertices[:, 2].max())
+    beyond = _BEYOND * (high - low)
+    bounds = _bounds(low - beyond, high + beyond, height or (high - low + 2 * beyond) / _ROWS)
+    _check(model, len(bounds) - 1)
+    middle = (bounds[1:] + bounds[:-1])[::-1] / 2
+    return BoreholeSamples(
+        np.column_stack([np.full((len(middle), 2), (x, y)), middle]), float(bounds[1] - bounds[0])
+    )
+
+
+def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:
+    """Of cells as of regular_cells, with some more above and below. Raises UsageError."""
+    size = checked_size(model, size)
+    origin, (nx, ny, nz) = frame_of(model, size)
+    beyond = math.ceil(_BEYOND * nz)
+    origin, counts = origin - (0.0, 0.0, beyond * size[2]), (nx, ny, nz + 2 * beyond)
+    _check(model, math.prod(counts))
+    z, y, x = np.indices(counts[::-1]).reshape(3, -1)
+    places = origin + (np.column_stack([x, y, z]) + 0.5) * size
+    return GridSamples(places, origin, size, counts)
+
+
+def _check(model, places: int) -> None:
+    blocks = max(len(model.blocks), 1)
+    if places * blocks > MOST_PLACES:
+        raise UsageError(
+            f"{places} places for {blocks} blocks are more than the {MOST_PLACES // blocks} that an ensemble "
+            "takes; choose larger cells"
+        )
+
+
+def _bounds(low: float, high: float, step: float) -> np.ndarray:
+    """Of cells of equal size from low to high, about a step long."""
+    return np.linspace(low, high, max(1, round(min((high - low) / step, MOST_PLACES))) + 1)
+
+
+def _in_space(section: Section, flat: np.ndarray, panels: np.ndarray) -> np.ndarray:
+    """(N, 4, 3) of positions (N, 4, 2) in the drawing of a section; panels: (N,), of a fence."""
+    u, v = flat[:, :, 0], flat[:, :, 1]
+    if isinstance(section, Fence):
+        starts, ends = section.polyline[:-1], section.polyline[1:]
+        bends = section.bends
+        share = (u - bends[panels][:, None]) / np.diff(bends)[panels][:, None]
+        plan = starts[panels][:, None] + share[:, :, None] * (ends - starts)[panels][:, None]
+        return np.concatenate([plan, v[:, :, None]], axis=2)
+    right, up = directions(section)
+    point = np.asarray(section.plane[0])
+    if right is None:
+        return np.stack([u, v, np.full(u.shape, point[2])], axis=2)
+    # drawings begin at the lowest coordinate
+    u = u + ((section.vertices - point) @ right).min()
+    v = v + (-point[2] if is_vertical(section) else ((section.vertices - point) @ up).min())
+    return point + u[:, :, None] * right + v[:, :, None] * up
