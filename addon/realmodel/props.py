@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import preferences, props_rock, props_stage, props_structure, props_surface, props_view
+from . import preferences, props_ensemble, props_rock, props_stage, props_structure, props_surface, props_view
 from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
 from .core.units import MODEL_UNIT
 
@@ -272,6 +272,8 @@ class RealModelSettings(bpy.types.PropertyGroup):
     built_stamp: StringProperty(options={"HIDDEN"})
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
+    ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)
+    realization_slider: PointerProperty(type=props_ensemble.RealModelRealization)
 
 
 class RealModelActivity(bpy.types.PropertyGroup):
@@ -307,6 +309,7 @@ _CLASSES = (
     *props_structure.CLASSES,
     *props_view.CLASSES,
     *props_stage.CLASSES,
+    *props_ensemble.CLASSES,
     RealModelProperty,
     RealModelBlock,
     RealModelSettings,

@@ -93,14 +93,27 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
                     const std::string& cells, int threads, Progress* control) {
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
-    CellComplex complex;
+    strata::Tile tile;
+    std::vector<std::int32_t> numbers;
+    std::vector<double> nearest;
+    std::string exact;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
-                                     control, kind);
+        tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
+                                  control, kind);
+        for (const strata::BorderVertex& vertex : tile.border) {
+            numbers.push_back(vertex.vertex);
+            nearest.insert(nearest.end(), vertex.nearest.begin(), vertex.nearest.end());
+            const auto& [x, y, z] = vertex.exact;
+            exact += x + ' ' + y + ' ' + z + '\n';
+        }
     }
-    return to_dict(std::move(complex));
+    py::dict result = to_dict(std::move(tile.complex));
+    result["border_vertices"] = to_array(std::move(numbers));
+    result["border_nearest"] = to_array(std::move(nearest), 3);
+    result["border_exact"] = py::bytes(exact);
+    return result;
 }
 
 py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
@@ -185,7 +198,11 @@ surface, items, text); decisions, exact_decisions: int. Raises InputError and Ca
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                R"(build_rock_masses of what lies in a window (low x, low y, high x, high y).
 
-Borders are taken as they are: join_rock_masses is to be called before, with all of the model.)");
+Borders are taken as they are: join_rock_masses is to be called before, with all of the model. And
+what lies on the lines that bound it: border_vertices (N,) int32, ascending, no other vertex has a
+coordinate of these; border_nearest (N, 3) float64, the doubles nearest to where they are exactly;
+border_exact: bytes, a line with x, y and z of each, reduced fractions in hexadecimal, which are
+equal where points are, in all tiles.)");
     module.def("join_rock_masses", &join_rock_masses, py::arg("rocks"), py::arg("threads") = 0,
                py::arg("control") = nullptr,
                R"(What build_rock_masses does to its input before it builds.

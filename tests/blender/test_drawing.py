@@ -9,6 +9,7 @@ from blender_state import empty_file, inventory
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
 from realmodel.bl import quality, samples, settings
+from realmodel.bl.display import ensembles
 from realmodel.core.methods import METHODS
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab
 
@@ -113,6 +114,19 @@ class States(PanelCase):
         drawing = self.draw()
         self.assertIn("realmodel.section_flip", drawing.operators)
         self.assertIn("x", " ".join(drawing.labels))
+
+    def test_an_ensemble(self):
+        ops.open_sample(sample="two_layers")
+        if not len(self.model.results):
+            ops.build()
+        ops.ensemble(realizations=2)
+        for color_by, *_ in ensembles.COLORS:
+            self.model.ensemble.color_by = color_by
+            labels = " ".join(self.draw().labels)
+            self.assertIn("2 realizations, seed 0", labels)
+            self.assertIn("P90", labels)
+        ops.build()
+        self.assertIn("make the ensemble again", " ".join(self.draw().labels))
 
     def test_each_method_and_its_options(self):
         ops.open_sample(sample="two_layers")
@@ -223,6 +237,7 @@ class States(PanelCase):
         if not len(self.model.results):
             ops.build()
         ops.section_plane()
+        ops.ensemble(realizations=2)
         ops.fault_body_add(empty=True, kind="FAULT")
         ops.fault_list_add(of="ENDS_AT")
         drawn |= self.draw().operators

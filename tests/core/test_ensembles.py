@@ -158,8 +158,48 @@ def test_bounds_of_dsi_hold():
     lower = Surface("Lower", points=POINTS, method="kriging", options=dict(KRIGING))
     upper = Surface("Upper", points=POINTS + np.array([0, 0, 0.5]), method="dsi", options={"above": "Lower"})
     rock = Rock("rock", [lower, upper], region=SQUARE, edge_length=10.0, base_elevation=0.0)
-    model = Realizer(build(Project("two", [rock]), cells="blocks")).realization(0)
-    assert (heights(model, 1) >= heights(model, 0)).all()
+    realizer = Realizer(build(Project("two", [rock]), cells="blocks"))
+    for number in (0, 1):
+        model = realizer.realization(number)
+        assert (heights(model, 1) >= heights(model, 0)).all()
+    first = Realizer(realizer.model).realization(1)  # in another order the same
+    assert np.array_equal(first.vertices, model.vertices)
+
+
+def parallel(points=None, **options):
+    """A surface above an interpolated one, parallel to it."""
+    lower = Surface("Lower", points=POINTS, method="kriging", options=dict(KRIGING))
+    upper = Surface("Upper", points=points, method="parallel", options={"to": "Lower", **options})
+    rock = Rock("rock", [lower, upper], region=SQUARE, edge_length=10.0, constraints=POINTS[:, :2].tolist())
+    return build(Project("two", [rock]), cells="blocks")
+
+
+def test_a_surface_parallel_to_a_drawn_one_follows_it():
+    realizer = Realizer(parallel(thickness=3.0))
+    for number in (0, 1):
+        model = realizer.realization(number)
+        assert heights(model, 1) == pytest.approx(heights(model, 0) + 3.0)
+        assert np.abs(heights(model) - heights(realizer.model)).max() > 0.1
+
+
+def test_thicknesses_are_drawn_where_points_tell_them():
+    points = POINTS + np.array([0, 0, 3.0]) + np.random.default_rng(5).uniform(0, 1, (12, 1)) * [[0, 0, 1]]
+    base = parallel(points, thickness_method="kriging")
+    realizer, nodes = Realizer(base), base.rock_inputs[0].region[0]
+    at = [int(np.flatnonzero((nodes == point).all(axis=1))[0]) for point in POINTS[:, :2]]
+    thicknesses = []
+    for number in (0, 1):
+        model = realizer.realization(number)
+        thicknesses.append(heights(model, 1) - heights(model, 0))
+        assert heights(model, 1)[at] == pytest.approx(points[:, 2])
+    assert np.abs(thicknesses[0] - thicknesses[1]).max() > 0.05
+
+
+def test_what_is_prepared_changes_nothing():
+    first, prepared = (Realizer(parallel(thickness=3.0)) for _ in range(2))
+    prepared.prepare()
+    second = prepared.realization(4)
+    assert np.array_equal(first.realization(4).vertices, second.vertices)
 
 
 def test_few_points_and_ready_meshes_stay():
@@ -179,10 +219,11 @@ def test_a_realization_depends_on_seed_and_number_alone():
 
 
 def test_realizations_with_faults_are_valid():
-    vertices, triangles = plane_fault(50.0, 10.0, y=(-20.0, 120.0), z=(-30.0, 40.0))
+    vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
     points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 3]], 0.0)
     given = project(points=points, faults=[Fault("F", vertices=vertices, triangles=triangles)])
     base = build(given, cells="blocks")
+    assert len(base.compartment_names) == 2
     realizer = Realizer(base)
     volumes = set()
     for number in range(2):
@@ -191,6 +232,26 @@ def test_realizations_with_faults_are_valid():
         assert model.compartment_names == base.compartment_names
         volumes.add(model.blocks[0].volume)
     assert len(volumes) == 2
+
+
+def test_heights_of_surfaces_that_faults_displace():
+    """At the vertices of all sheets; a younger surface has one."""
+    vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
+    points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 3]], 0.0)
+    given = two_surfaces(0.5)
+    given.rocks[0].surfaces[0] = replace(given.rocks[0].surfaces[0], points=points)
+    given = replace(given, faults=[Fault("F", vertices=vertices, triangles=triangles, youngest="Lower")])
+    found = ensemble(given, 4, seed=3)
+    realizer = Realizer(found.model, 3)
+    models = [realizer.realization(number) for number in range(4)]
+    assert len(found.surface_mean[0]) == 2 * len(found.surface_mean[1])
+    for number in (0, 1):
+        nodes = found.model.surface(number)[0]
+        z = np.array([model.surface(number)[0][:, 2] for model in models])
+        assert (models[0].surface(number)[0][:, :2] == nodes[:, :2]).all()
+        assert found.surface_mean[number] == pytest.approx(z.mean(axis=0))
+        assert found.surface_deviation[number] == pytest.approx(z.std(axis=0, ddof=1), abs=1e-9)
+        assert found.surface_deviation[number].max() > 0.3
 
 
 def test_what_is_refused_names_the_realization():

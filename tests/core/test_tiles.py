@@ -56,7 +56,7 @@ def assert_same_blocks(tiled, whole, allowed=None):
     for number, (one, other) in enumerate(zip(tiled.blocks, whole.blocks, strict=True)):
         assert (one.surface, one.rock, one.property) == (other.surface, other.rock, other.property)
         assert one.components == other.components, one
-        limit = 2e-12 * other.volume if allowed is None else allowed[number]
+        limit = 1e-12 * other.volume if allowed is None else allowed[number]
         assert abs(one.volume - other.volume) <= limit, (one, other)
         if tiled.cell_kind == "blocks":
             assert one.cells == other.cells
@@ -103,7 +103,7 @@ HOLE = [[40.0, 35.0], [63.0, 41.0], [52.0, 58.0]]
         ("two_layers", (1000, 1000), "columns"),
         ("gravel_plain", (600, 350), "columns"),
         ("gravel_plain", (600, 350), "blocks"),
-        ("haut_barr", (130, 60), "blocks"),
+        ("haut_barr", (50, 40), "blocks"),
     ],
 )
 def test_samples(name, size, cells, tmp_path):
@@ -111,7 +111,6 @@ def test_samples(name, size, cells, tmp_path):
     tiled = build_tiles(project, tmp_path / "t", size, cells=cells)
     whole = build(project, cells=cells)
     assert_same_blocks(tiled, whole)
-    assert tiled.rounded == 0
     if size[0] == 1000:
         assert len(tiled.tiles) == 1
         assert tiled.blocks == whole.blocks

@@ -117,8 +117,8 @@ def tiles_table(model) -> str:
     sums = _sums(model)
     told = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
     told += "equal on both sides"
-    if model.rounded or model.unequal:
-        told += f" but for {model.rounded} up to rounding and {model.unequal} beyond it"
+    if model.unequal:
+        told += f" but for {model.unequal}"
     return f"{_table(_HEADINGS[: len(sums)], rows, sums)}\n{told}"
 
 

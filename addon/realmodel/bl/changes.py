@@ -36,6 +36,7 @@ coloring = _unless_filling(display.colors_changed)
 view = _unless_filling(display.mode_changed)  # what is drawn in the display modes
 boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
+ensemble = _unless_filling(display.ensemble_changed)
 exaggeration = _unless_filling(display.exaggeration_changed)
 section = _unless_filling(display.section_changed)  # another plane, or none
 

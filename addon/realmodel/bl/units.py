@@ -47,7 +47,7 @@ def area_text(scene, value):
 
 def volume_text(scene, row):
     """The volume of a row without its unit, which `unit_text` gives once for a whole column."""
-    return number_text(results.volume(row) * _shown(scene, 3)[1])
+    return number_text(results.volume(row) * shown_unit(scene, 3)[1])
 
 
 def full_volume_text(scene, row):
@@ -80,15 +80,15 @@ def number_text(value):
 
 def unit_text(scene, power):
     """The unit of lengths (power 1), areas or volumes, as it is shown."""
-    return _shown(scene, power)[0]
+    return shown_unit(scene, power)[0]
 
 
 def _text(scene, value, power, number=number_text):
-    unit, factor = _shown(scene, power)
+    unit, factor = shown_unit(scene, power)
     return f"{number(value * factor)} {unit}"
 
 
-def _shown(scene, power):
+def shown_unit(scene, power):
     """The unit of the model, or where the scene is set to the other system its base unit; and the factor to
     it."""
     unit, system = scene.realmodel.units, scene.unit_settings.system

@@ -61,6 +61,7 @@ def ensemble(
     todo = [numbers for numbers in batches(realizations) if not store.has(numbers)]
     done = realizations - sum(map(len, todo))
     if todo:
+        realizer.prepare()
         with client_of(client) as workers:
             for numbers, sums in in_any_order(workers, _batch, (realizer, points), todo, cancel):
                 store.put(numbers, sums)

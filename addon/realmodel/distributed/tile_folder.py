@@ -36,6 +36,7 @@ from ..core.tiles.borders import (
 )
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.grid import checked_size, tile_grid
+from ..core.tiles.settling import BorderVertices, settled
 from ..core.tiles.tile_model import (
     Frame,
     TileParts,
@@ -257,15 +258,22 @@ def _neighbors(frame: Frame, name: Name, names: Iterable[Name]) -> list[tuple]:
     return shared
 
 
+def _around(name: Name, names: frozenset) -> list[Name]:
+    """A tile, then those that share its sides or corners."""
+    near = ((name[0] + column, name[1] + row) for column in (-1, 0, 1) for row in (-1, 0, 1))
+    return [name, *(other for other in near if other in names and other != name)]
+
+
 def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model = run(lambda work: build_tile(work, frame, box, store.file("parts", name), threads=1))
-    sides = {}
+    model, border = run(lambda work: build_tile(work, frame, box, store.file("parts", name), threads=1))
+    sides = border.arrays()
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, side)
-        sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": found.ends}
+        ends = np.searchsorted(border.numbers, found.ends)
+        sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": ends}
     write_model(model, store.file("built", name))
     store.write(store.file("sides", name), sides)
     store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
@@ -275,17 +283,22 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
     store, frame, names = shared
     model = read_model(frame.project, store.file("built", name))
+    around = _around(name, names)
+    sides = {other: read_arrays(store.file("sides", other)) for other in around}
+    borders = {other: BorderVertices.of_arrays(arrays) for other, arrays in sides.items()}
+    places = dict(zip(around, settled(frame.grid.box(*name), borders.values()), strict=True))
+    model.vertices[borders[name].numbers] = places[name]
     theirs = {}
     for side, other in _neighbors(frame, name, names):
-        arrays = read_arrays(store.file("sides", other))
-        theirs[side.name] = Interfaces(*(arrays[f"{OPPOSITE[side.name]}_{key}"] for key in ("on", "ends")))
-        model = with_vertices_of(model, side, theirs[side.name])
+        keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
+        theirs[side.name] = Interfaces(*(sides[other][key] for key in keys)), places[other]
+        model = with_vertices_of(model, side, *theirs[side.name])
     report = model.validate(PLACES_OF_REPORT, threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
     patches = {}
     for side, _ in _neighbors(frame, name, names):
-        found = patches_on(model, side, positions_on(model, side, theirs[side.name]))
+        found = patches_on(model, side, positions_on(model, side, *theirs[side.name]))
         part = model.cell_component[found.cell]
         patches |= {
             f"{side.name}_shape": found.shape,
@@ -348,7 +361,7 @@ class _Parts:
 def _catalog(prepared: _Prepared, store: _Store, names: list[Name]) -> Catalog:
     """The table of the whole."""
     frame = prepared.frame
-    parts, patches, warnings = _Parts(), np.zeros(3, np.int64), list(prepared.warnings)
+    parts, patches, warnings = _Parts(), np.zeros(2, np.int64), list(prepared.warnings)
     for name in names:
         arrays = read_arrays(store.file("patches", name))
         for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
@@ -367,7 +380,7 @@ def _catalog(prepared: _Prepared, store: _Store, names: list[Name]) -> Catalog:
                     f"{near}; the parts of blocks were joined by their areas there"
                 )
                 warnings.append(BuildWarning(text, "borders"))
-            patches += [found.patches, found.rounded, found.unequal]
+            patches += [found.patches, found.unequal]
             for one, another in found.cells.tolist():
                 parts.join((*name, one), (*other, another))
     told = [store.told("joined", name) for name in names]

@@ -26,7 +26,9 @@ def connected(address: str):
 
 @contextlib.contextmanager
 def client_of(given):
-    """`given`, or a client of processes of this machine, one for each processor, which end with it."""
+    """`given`, or a client of processes of this machine, one for each processor, which end with it.
+
+    They listen on free ports of this machine alone. There is no dashboard, whose port may be taken."""
     if given is not None:
         yield given
         return

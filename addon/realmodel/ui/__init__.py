@@ -2,9 +2,37 @@
 """The tab "RealModel" of the 3D viewport's sidebar: one module for each of its panels, in their order."""
 
 from ..registration import register_modules, unregister_modules
-from . import booleans, build, judge, library, lists, menu, results, rocks, start, structures, surfaces, view
+from . import (
+    booleans,
+    build,
+    ensemble,
+    judge,
+    library,
+    lists,
+    menu,
+    results,
+    rocks,
+    start,
+    structures,
+    surfaces,
+    view,
+)
 
-_MODULES = (lists, start, rocks, surfaces, structures, judge, build, view, library, results, booleans, menu)
+_MODULES = (
+    lists,
+    start,
+    rocks,
+    surfaces,
+    structures,
+    judge,
+    build,
+    view,
+    library,
+    results,
+    ensemble,
+    booleans,
+    menu,
+)
 
 
 def register():

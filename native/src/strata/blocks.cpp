@@ -113,7 +113,7 @@ void replay_rules(Site& site, const EnteredRock& rock, const Surfaces& surfaces,
 
 }  // namespace
 
-CellComplex build_blocks(Site& site, int threads, Progress* progress) {
+BuiltCells build_blocks(Site& site, int threads, Progress* progress) {
     Surfaces surfaces = make_surfaces(site, threads, progress);
     const BorderEdges borders(site.geometry, PlanTiles(surfaces.box, surfaces.tiles),
                               std::move(surfaces.links.border));
@@ -153,8 +153,8 @@ CellComplex build_blocks(Site& site, int threads, Progress* progress) {
             footprints.add(site.geometry, construction.faces, first_face, progress);
     }
     const BlockLinks links{surfaces.links, wholes, borders};
-    return build_cells(site.geometry, construction, &links, site.surface_of_plane, threads,
-                       progress);
+    return build_cells(site.geometry, construction, &links, site.surface_of_plane, site.window,
+                       threads, progress);
 }
 
 }  // namespace realmodel::strata

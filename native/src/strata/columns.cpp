@@ -107,7 +107,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
 
 }  // namespace
 
-CellComplex build_columns(Site& site, int threads, Progress* progress) {
+BuiltCells build_columns(Site& site, int threads, Progress* progress) {
     // of triangulations of these vertices, and one is crossed by a trace here and there
     site.geometry.expect_lines(4 * site.geometry.point_count());
     Construction construction;
@@ -122,8 +122,8 @@ CellComplex build_columns(Site& site, int threads, Progress* progress) {
         if (site.rocks.size() > 1)
             footprints.add(site.geometry, construction.faces, first_face, progress);
     }
-    return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, threads,
-                       progress);
+    return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, site.window,
+                       threads, progress);
 }
 
 }  // namespace realmodel::strata

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "strata/cells/built_cells.hpp"
 #include "strata/repair/site.hpp"
 
 namespace realmodel::strata {
 
 /// The complex of all rock masses with a cell for each column.
 /// @throws InputError kinds double_valued, base_not_below, rocks_overlap, too_large
-CellComplex build_columns(Site& site, int threads, Progress* progress);
+BuiltCells build_columns(Site& site, int threads, Progress* progress);
 
 }  // namespace realmodel::strata

@@ -68,24 +68,25 @@ Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* p
     return entered;
 }
 
-CellComplex build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells,
-                       int threads, Progress* progress) {
+Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells, int threads,
+                Progress* progress) {
     site.check_regions();
-    CellComplex result;
+    BuiltCells built;
+    CellComplex& result = built.complex;
     if (site.is_empty()) {
         result.face_offsets.push_back(0);
     } else {
-        result = cells == CellKind::kBlocks ? build_blocks(site, threads, progress)
-                                            : build_columns(site, threads, progress);
+        built = cells == CellKind::kBlocks ? build_blocks(site, threads, progress)
+                                           : build_columns(site, threads, progress);
     }
     result.cell_kind = cells;
-    result.volumes =
-        block_volumes(result, static_cast<std::size_t>(site.surfaces), threads, progress);
+    result.volumes = block_volumes(result, static_cast<std::size_t>(site.surfaces), threads,
+                                   progress, {built.offsets.data(), built.offsets.size()});
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
     begin_step(progress, 1.0, 0.0, "done");
-    return result;
+    return {std::move(result), std::move(built.border)};
 }
 
 }  // namespace
@@ -94,11 +95,11 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Pr
                               CellKind cells) {
     const page_store::Keeper keeper;
     const Entered entered = enter_joined(rocks, threads, progress);
-    return build_site(*entered.site, entered.warnings, cells, threads, progress);
+    return build_site(*entered.site, entered.warnings, cells, threads, progress).complex;
 }
 
-CellComplex build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
-                       Progress* progress, CellKind cells) {
+Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
+                Progress* progress, CellKind cells) {
     const page_store::Keeper keeper;
     const std::array corners{window.low_x,  window.low_y,  window.high_x, window.low_y,
                              window.high_x, window.high_y, window.low_x,  window.high_y};
@@ -113,6 +114,7 @@ CellComplex build_tile(std::span<const StackInput> rocks, const Window& window, 
     }
     std::vector<Warning> warnings;
     const auto site = enter_as_given(in_window, {}, warnings, threads, progress);
+    site->window = window;
     return build_site(*site, warnings, cells, threads, progress);
 }
 

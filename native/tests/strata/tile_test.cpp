@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "complex_checks.hpp"
 
@@ -39,7 +43,7 @@ TEST_P(TileOf, FourTilesHaveTheVolumesOfTheWhole) {
         for (const auto& [x0, x1] : {std::pair{-2.0, 2.3}, std::pair{2.3, 8.0}}) {
             for (const auto& [y0, y1] : {std::pair{-2.0, 1.7}, std::pair{1.7, 8.0}}) {
                 const CellComplex tile =
-                    build_tile({&input, 1}, {x0, y0, x1, y1}, 2, nullptr, GetParam());
+                    build_tile({&input, 1}, {x0, y0, x1, y1}, 2, nullptr, GetParam()).complex;
                 expect_valid(tile, GetParam() == CellKind::kBlocks);
                 for (const auto& v : tile.vertices) {
                     EXPECT_TRUE(v[0] >= x0 && v[0] <= x1 && v[1] >= y0 && v[1] <= y1);
@@ -56,9 +60,47 @@ TEST_P(TileOf, FourTilesHaveTheVolumesOfTheWhole) {
 TEST_P(TileOf, AWindowBesideTheRegionIsEmpty) {
     const Input owned;
     const StackInput input = owned.view(true);
-    const CellComplex tile = build_tile({&input, 1}, {5, 5, 7, 7}, 1, nullptr, GetParam());
+    const CellComplex tile = build_tile({&input, 1}, {5, 5, 7, 7}, 1, nullptr, GetParam()).complex;
     EXPECT_TRUE(tile.cell_block.empty());
     EXPECT_EQ(tile.volumes, std::vector<double>(3, 0.0));
+}
+
+/// The exact places of a tile's border vertices on the line x = 2.3, and where they are.
+std::map<std::array<std::string, 3>, std::array<double, 3>> on_line(const Tile& tile) {
+    std::map<std::array<std::string, 3>, std::array<double, 3>> found;
+    for (const BorderVertex& vertex : tile.border) {
+        const auto& at = tile.complex.vertices[static_cast<std::size_t>(vertex.vertex)];
+        EXPECT_EQ(at, vertex.nearest);  // nothing is so close here that it would move
+        if (at[0] != 2.3) continue;
+        EXPECT_EQ(vertex.exact[0], "9333333333333/4000000000000");
+        EXPECT_TRUE(found.emplace(vertex.exact, at).second);
+    }
+    return found;
+}
+
+TEST_P(TileOf, NeighborsHaveTheSameExactPlacesOnTheirLine) {
+    const Input owned;
+    for (const bool has_region : {true, false}) {
+        const StackInput input = owned.view(has_region);
+        const Tile west = build_tile({&input, 1}, {-2, -2, 2.3, 8}, 1, nullptr, GetParam()),
+                   east = build_tile({&input, 1}, {2.3, -2, 8, 8}, 1, nullptr, GetParam());
+        const auto one = on_line(west), other = on_line(east);
+        std::size_t both = 0;
+        for (const auto& [exact, at] : one) {
+            const auto same = other.find(exact);
+            if (same == other.end()) continue;
+            EXPECT_EQ(same->second, at);
+            ++both;
+        }
+        EXPECT_GT(both, 10U);
+        // no other vertex has a coordinate of a line
+        for (const Tile* tile : {&west, &east}) {
+            const auto& vertices = tile->complex.vertices;
+            const auto count =
+                std::ranges::count_if(vertices, [](const auto& v) { return v[0] == 2.3; });
+            EXPECT_EQ(static_cast<std::size_t>(count), tile == &west ? one.size() : other.size());
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, TileOf, testing::Values(CellKind::kColumns, CellKind::kBlocks));

@@ -12,6 +12,7 @@ bodies, cells  objects that are only for viewing
 drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
 colors        what the colors tell
+ensembles      the section of an ensemble
 cuts, sections the movable plane; sections as mesh objects
 preparing      what takes long, in a thread
 viewpoints     where the viewports look from
@@ -33,6 +34,7 @@ from . import (
     coordinates,
     cuts,
     drawing,
+    ensembles,
     explosion,
     modes,
     preparing,
@@ -132,6 +134,14 @@ def boreholes_changed(scene):
     else:
         bodies.remove(scene, bodies.BOREHOLES)
     exaggeration_changed(scene)
+
+
+def ensemble_changed(scene):
+    """Another coloring of the ensemble's section, or another realization."""
+    try:
+        ensembles.recolor(scene)
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
 
 
 def colors_changed(scene):

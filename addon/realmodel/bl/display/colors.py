@@ -50,7 +50,7 @@ def apply(scene):
             item.data.materials.append(None)
         _put_into_slot(item, material)
     bodies.follow_materials(scene)
-    _remove_unused()
+    remove_unused()
 
 
 def take_off(scene):
@@ -109,7 +109,7 @@ def forget(scene):
             slot.material = None
             slot.link = "DATA"
     shades.apply(scene, None)
-    _remove_unused()
+    remove_unused()
 
 
 def shown_color(item):
@@ -204,6 +204,7 @@ def _is_of_user(slot):
     return given is not None and not {KEY, materials.KEY, shades.ATTRIBUTE} & set(given.keys())
 
 
-def _remove_unused():
+def remove_unused():
+    """Removes the materials of colors that nothing has any more."""
     for material in [m for m in bpy.data.materials if (KEY in m or shades.ATTRIBUTE in m) and not m.users]:
         bpy.data.materials.remove(material)

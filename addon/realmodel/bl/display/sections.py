@@ -67,14 +67,19 @@ def add(current, found, name, flat=False):
     attribute.data.foreach_set("value", np.ascontiguousarray(found.block, np.int32))
     mesh.update()
     item = bpy.data.objects.new(name, mesh)
-    item[scene.TAG] = "section"
     if flat:
         item[FLAT] = True
-    elif found.plane is not None:
-        normal = np.asarray(found.plane[1], np.float64)
+    stand(current, item, None if flat else found.plane)
+    return item
+
+
+def stand(current, item, plane):
+    """Puts the object of a section into the scene. plane: of the section, where it is one."""
+    item[scene.TAG] = "section"
+    if plane is not None:
+        normal = np.asarray(plane[1], np.float64)
         item.location = _AWAY * _size(current) * normal / np.linalg.norm(normal)
     bodies.view_collection(current).objects.link(item)
-    return item
 
 
 def _size(current):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from .. import caches, exaggeration, project_settings
-from ..display import colors, explosion, residuals
+from ..display import colors, ensembles, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by what they are made of: a viewport is drawn again and again
@@ -63,7 +63,9 @@ def _keys(scene):
     """The core's ColorKeys of what colors are to be seen."""
     if not (len(scene.realmodel.results) and scene.realmodel.view.show_legend):
         return ()
-    return tuple(key for key in (colors.key(scene), residuals.key(scene)) if key is not None)
+    return tuple(
+        key for key in (colors.key(scene), residuals.key(scene), ensembles.key(scene)) if key is not None
+    )
 
 
 def legend_share(scene, size):

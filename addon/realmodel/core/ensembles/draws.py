@@ -32,22 +32,25 @@ _NUGGET = -1  # where a noise has the numbers of the nugget; those of lines coun
 @dataclass(frozen=True)
 class _Known:
     """What does not change from one realization to the next: the interpolated heights, the method and the
-    options that reproduce them, the variogram."""
+    options that reproduce them from the points that count, (P,) bool, and the variogram. Of a surface that is
+    parallel to another one: of its thickness."""
 
     result: Interpolation
     method: str
     settings: dict
     variogram: Variogram | None
+    counts: np.ndarray
 
 
 @dataclass(frozen=True)
 class Draw:
     """A realization of one surface. known: by points and nodes, filled as they come, shared by all
-    realizations of the surface."""
+    realizations of the surface. given: the interpolated heights, where no fault displaces the surface."""
 
     frame: Frame
     noise: Noise
     known: dict[bytes, _Known]
+    given: Interpolation | None = None
 
     def heights(
         self, work: Work, points, nodes, method: str, settings: dict, threads: int, triangles, surfaces
@@ -56,33 +59,54 @@ class Draw:
         own = self._known(work, points, nodes, method, settings, threads, triangles, surfaces)
         if own.variogram is None:
             return own.result
-        points, _ = without_mis_ties(points)
+        points, _ = without_mis_ties(points[own.counts])
         at_points, at_nodes = self._field(work, own, points[:, :2], nodes, threads)
         drawn = np.column_stack([points[:, :2], at_points])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
         told = heights(work, drawn, nodes, own.method, plain, threads, triangles)
         z = own.result.z + (at_nodes - told.z)
-        return replace(own.result, z=_bounded(z, own, work, nodes, threads, triangles, surfaces))
+        return replace(own.result, z=_bounded(z, settings, own, work, nodes, threads, triangles, surfaces))
 
     def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
+        """Of a surface that is made from others, which are drawn too, not kept."""
+        if any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS):
+            result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
+            return self._found(work, points, nodes, method, settings, threads, surfaces, result)
         key = hashlib.sha256(np.ascontiguousarray(points)).digest() + hashlib.sha256(nodes).digest()
-        if key in self.known:
-            return self.known[key]
-        result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
-        if result.method != method:
-            settings = {**checked_options(result.method, {}), "extrapolate": settings["extrapolate"]}
+        if key not in self.known:
+            result = self.given
+            if result is None:
+                result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
+            self.known[key] = self._found(work, points, nodes, method, settings, threads, surfaces, result)
+        return self.known[key]
+
+    def _found(self, work, points, nodes, method, settings, threads, surfaces, result) -> _Known:
+        counts = np.ones(len(points), bool)
+        if "thickness_method" in settings:
+            if settings["thickness"] is not None:
+                return _Known(result, method, settings, None, counts)
+            task = Task(work, points, nodes, settings, threads, surfaces=surfaces or {})
+            under = heights_of(task, settings["to"], np.ascontiguousarray(points[:, :2]), "to")
+            counts = np.isfinite(under)
+            points = points - np.column_stack([np.zeros((len(points), 2)), under])
+            method = settings["thickness_method"]
+            settings = checked_options(method, {})
+        elif result.method != method:
+            method = result.method
+            settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
         variogram = result.variogram
-        plain, _ = without_mis_ties(points)
+        plain, _ = without_mis_ties(points[counts])
         if variogram is None and len(np.unique(plain[:, :2], axis=0)) >= _LEAST_POINTS:
             asked = checked_options("kriging", {})
             variogram = structure(Task(work, plain, nodes, asked, threads)).variogram
         if variogram is not None and "variogram" in settings:
-            settings = {**settings, "variogram": variogram.settings(), "neighbours": result.neighbours}
+            settings = {**settings, "variogram": variogram.settings()}
+            if result.neighbours is not None:
+                settings["neighbours"] = result.neighbours
         if variogram is not None and variogram.sill <= 0:
             variogram = None
-        self.known[key] = _Known(result, result.method, settings, variogram)
-        return self.known[key]
+        return _Known(result, method, settings, variogram, counts)
 
     def _field(self, work, own: _Known, points, nodes, threads) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
@@ -106,9 +130,8 @@ class Draw:
         return at_points, at_nodes
 
 
-def _bounded(z, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
+def _bounded(z, settings, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
     """Heights that keep to the surfaces that the options name, as the interpolated ones do."""
-    settings = own.settings
     task = Task(work, np.empty((0, 3)), nodes, settings, threads, triangles, surfaces=surfaces or {})
     for option, limit in (("above", np.fmax), ("below", np.fmin)):
         if settings.get(option) is not None:

@@ -60,13 +60,25 @@ class Realizer:
         except InputRefused as error:
             raise error.within(f"realization {number}") from error
 
+    def prepare(self, threads: int = 0) -> None:
+        """Finds what all realizations share, so that workers that are given this do not find it again."""
+        run(lambda work: self._interpolated(work, 0, threads))
+
     def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
         began = time.perf_counter()
-        given = self.model
-        inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(given.rock_inputs)]
-        project = given.project
+        inputs, structures = self._interpolated(work, number, threads)
+        interpolated = time.perf_counter()
+        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
+        timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
+        project = self.model.project
+        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+
+    def _interpolated(self, work: Work, number: int, threads: int) -> tuple:
+        """The rock masses with heights drawn, and the structures or None."""
+        inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
+        project = self.model.project
         structures = None
-        if given.structures is not None:
+        if self.model.structures is not None:
             structures = make_structures(
                 work, project, project.faults, project.bodies, inputs, threads, None, 0.0, _INTERPOLATED
             )
@@ -74,10 +86,7 @@ class Realizer:
             steps = np.linspace(0.0, _INTERPOLATED, len(inputs) + 1).tolist()
             for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
                 interpolate_rock(work, entry, start, end, threads)
-        interpolated = time.perf_counter()
-        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
-        timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
-        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+        return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:
         """Of the errors of each surface of a rock mass with those of the next older one."""
@@ -90,7 +99,8 @@ class Realizer:
         draws, noise = [], None
         for each, correlation in enumerate(self.correlations(entry)):
             noise = Noise((self.seed, number, rock, each), noise, correlation)
-            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {})))
+            given = None if self.model.structures is not None else entry.interpolations[each]
+            draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {}), given))
         return replace(
             entry,
             surfaces=[

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algebra import norm
 from ..work import Work, native_module
 from .between_sheets import torn_triangles
 from .sides import FaultShape, Triangulation, fault_sides
@@ -98,7 +99,7 @@ def _where_sides_change(
 def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
     vertices, triangles = fault.vertices, fault.triangles
-    near = _ON * float(np.linalg.norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
+    near = _ON * float(norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
     boxes = np.stack([points - near, points + near, points], axis=1)
     found = np.zeros(len(points), bool)
     low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near

@@ -3,6 +3,7 @@
 
 grid          the lines that divide the plan, and which triangles each tile needs
 tile_model    one tile: built, written, read
+settling      where the vertices on the border of a tile are, in all tiles alike
 borders       what two tiles have on the line between them: vertices exchanged, blocks matched
 catalog       tiles.toml, the table of the whole
 tiled_model   the whole, opened from its folder

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 _BASE = -2  # face_surface of the flat base
-_MOVED = 16  # units in the last place that rounding may have moved a vertex off the line (geometry.md)
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,7 @@ def sides_of(box: tuple[float, float, float, float]) -> list[Side]:
 @dataclass(frozen=True)
 class Interfaces:
     """The edges of interfaces on a side: what each lies on (E,) int64, a surface or below -1 the base of a
-    block; and its ends (E, 6): of each the position along the line, the height, and the coordinate across the
-    line, which is the line's but where rounding moved a vertex; the lesser position first."""
+    block; and its ends (E, 2), vertices."""
 
     on: np.ndarray
     ends: np.ndarray
@@ -68,9 +66,7 @@ class _Edges:
 
 def _edges_on(model, side: Side) -> _Edges:
     vertices = model.vertices
-    across = vertices[:, side.axis]
-    reach = _MOVED * np.spacing(np.abs(across).max(initial=abs(side.line)))
-    on = np.abs(across - side.line) <= reach
+    on = vertices[:, side.axis] == side.line
     corners = model.face_vertices
     at = np.flatnonzero(on[corners])
     face = np.searchsorted(model.face_offsets, at, "right") - 1
@@ -100,45 +96,32 @@ def _interfaces_of(model, edges: _Edges) -> tuple[np.ndarray, np.ndarray]:
 def interfaces_on(model, side: Side) -> Interfaces:
     """The interfaces of a model on one side of it."""
     pairs, on = _interfaces_of(model, _edges_on(model, side))
-    ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
-    turned = model.vertices[ends[:, 0], side.along] > model.vertices[ends[:, 1], side.along]
-    ends[turned] = ends[turned, ::-1]
-    coordinates = [side.along, 2, side.axis]
-    return Interfaces(on, model.vertices[ends][:, :, coordinates].reshape(-1, 6))
+    return Interfaces(on, np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF]))
 
 
-def with_vertices_of(model, side: Side, other: Interfaces):
+def with_vertices_of(model, side: Side, other: Interfaces, places: np.ndarray):
     """The model with the vertices that a neighbor has on its interfaces on a side, in all faces there; the
-    model itself where there are none.
-
-    Points that differ may be rounded to one position, and each tile may have another of them there: then
-    those of the tile in the west or south count."""
+    model itself where there are none. places: (N, 3) of the neighbor's vertices."""
     edges = _edges_on(model, side)
     pairs, on = _interfaces_of(model, edges)
     if not len(pairs):
         return model
     ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
-    if side.name in ("west", "south"):
-        model = _with_heights_of(model, side, ends, on, other)
     along = np.sort(model.vertices[ends, side.along], axis=1)
     begin, count = np.zeros((2, len(pairs)), np.int64)
     points = []
     for number in np.unique(on):
-        theirs = other.ends[other.on == number].reshape(-1, 3)
-        theirs = theirs[np.unique(theirs[:, 0], return_index=True)[1]]  # and ascending
+        theirs = places[np.unique(other.ends[other.on == number])]
+        theirs = theirs[np.unique(theirs[:, side.along], return_index=True)[1]]  # and ascending
         own = on == number
-        theirs = theirs[~_among(theirs, model.vertices[ends[own].ravel()][:, [side.along, 2, side.axis]])]
-        start = np.searchsorted(theirs[:, 0], along[own, 0], "right")
-        stop = np.searchsorted(theirs[:, 0], along[own, 1], "left")
+        theirs = theirs[~_among(theirs, model.vertices[ends[own].ravel()])]
+        start = np.searchsorted(theirs[:, side.along], along[own, 0], "right")
+        stop = np.searchsorted(theirs[:, side.along], along[own, 1], "left")
         begin[own], count[own] = start + sum(map(len, points)), np.maximum(stop - start, 0)
         points.append(theirs)
     if not count.any():
         return model
-    theirs = np.concatenate(points)
-    new = _spread(begin, count)
-    added = np.empty((len(new), 3))
-    added[:, [side.along, 2, side.axis]] = theirs[new]
-    added, numbers = _numbered(model, side, added)
+    added, numbers = _numbered(model, side, np.concatenate(points)[_spread(begin, count)])
     first_new = np.cumsum(count) - count
     # of each edge of a face the new vertices in its direction
     place = np.searchsorted(pairs, _pairs(edges))
@@ -168,24 +151,6 @@ def with_vertices_of(model, side: Side, other: Interfaces):
         face_vertices=corners,
         face_offsets=offsets.astype(np.int64),
     )
-
-
-def _with_heights_of(model, side: Side, ends: np.ndarray, on: np.ndarray, other: Interfaces):
-    """The model with the heights that a neighbor's vertices have in the same positions on the same
-    interfaces, where they differ by a rounding. ends: (E, 2) vertices of its edges, on what they lie."""
-    vertices = model.vertices.copy()
-    for number in np.unique(on):
-        theirs = other.ends[other.on == number].reshape(-1, 3)
-        theirs = theirs[np.unique(theirs[:, 0], return_index=True)[1]]
-        if not len(theirs):
-            continue
-        own = np.unique(ends[on == number])
-        at = np.searchsorted(theirs[:, 0], vertices[own, side.along]).clip(0, len(theirs) - 1)
-        apart = np.abs(theirs[at, 1] - vertices[own, 2])
-        reach = _MOVED * np.spacing(np.maximum(np.abs(theirs[at, 1]), np.abs(vertices[own, 2])))
-        same = (theirs[at, 0] == vertices[own, side.along]) & (apart <= reach)
-        vertices[own[same], 2] = theirs[at[same], 1]
-    return replace(model, vertices=vertices)
 
 
 def _among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -245,13 +210,12 @@ def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
     share = (divided - along[:, :1]) / (along[:, 1:] - along[:, :1])
     between = height[:, :1] + share * (height[:, 1:] - height[:, :1])
     height = np.where(share == 0, height[:, :1], np.where(share == 1, height[:, 1:], between))
-    order = np.lexsort((height.sum(axis=1), part, face))
+    order = np.lexsort((*height.T, height.sum(axis=1), part, face))
     face, part, cell, height, divided = (each[order] for each in (face, part, cell, height, divided))
     start = np.ones(len(face), bool)
     start[1:] = (face[1:] != face[:-1]) | (part[1:] != part[:-1])
     begin = np.flatnonzero(start)
     size = np.diff([*begin, len(face)])
-    # More than two are where rounding moved a vertex past another: both tiles have them.
     lowest, highest = begin[size > 1], (begin + size - 1)[size > 1]
     shape = np.column_stack([divided[lowest], height[lowest], height[highest]]).reshape(-1, 6)
     cell = cell[lowest]
@@ -260,12 +224,11 @@ def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
     return Patches(shape[order], model.cell_block[cell[order]], cell[order], alone)
 
 
-def positions_on(model, side: Side, other: Interfaces | None = None) -> np.ndarray:
+def positions_on(model, side: Side, other: Interfaces, places: np.ndarray) -> np.ndarray:
     """Where on a side a model has vertices, or its neighbor, ascending."""
     edges = _edges_on(model, side)
     own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
-    theirs = np.empty(0) if other is None else other.ends[:, ::3].ravel()
-    return np.unique(np.concatenate([own, theirs]))
+    return np.unique(np.concatenate([own, places[other.ends.ravel(), side.along]]))
 
 
 def _ends(model, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -279,12 +242,10 @@ def _ends(model, side: Side, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @dataclass(frozen=True)
 class Matched:
     """Two tiles at their line. cells: (N, 2) of both tiles, which one block connects. patches: how many
-    quadrilaterals there are; rounded: those that are equal on both sides up to rounding only, or have no
-    extent beyond it; unequal: those that one side alone has. place: of the first of these."""
+    quadrilaterals there are; unequal: those that one side alone has. place: of the first of these."""
 
     cells: np.ndarray
     patches: int
-    rounded: int = 0
     unequal: int = 0
     place: tuple[float, float, float] | None = None
 
@@ -295,51 +256,24 @@ def matched(one: Patches, other: Patches, side: Side) -> Matched:
     if same and one.open == other.open == 0:
         cells = np.unique(np.column_stack([one.cell, other.cell]), axis=0)
         return Matched(cells, len(one.cell))
-    return _matched_up_to_rounding(one, other, side)
-
-
-def _matched_up_to_rounding(one: Patches, other: Patches, side: Side) -> Matched:
     rows = {row: k for k, row in enumerate(_rows(other))}
     found = [rows.get(row, -1) for row in _rows(one)]
     pairs = [(k, m) for k, m in enumerate(found) if m >= 0]
     alone = [k for k, m in enumerate(found) if m < 0]
     left = sorted(set(range(len(other.cell))).difference(found))
-    columns = np.abs(np.concatenate([one.shape, other.shape, np.zeros((1, 6))]))
-    reach = _MOVED * np.spacing(np.array([columns[:, :2].max(), columns[:, 2:].max()]))
-    limit = reach[[0, 0, 1, 1, 1, 1]]
-    rounded = 0
-    for k in alone[:]:
-        near = [
-            m
-            for m in left
-            if one.block[k] == other.block[m] and (np.abs(one.shape[k] - other.shape[m]) <= limit).all()
-        ]
-        if near:
-            pairs.append((k, near[0]))
-            alone.remove(k)
-            left.remove(near[0])
-            rounded += 1
     pairs += [(k, m) for k in alone for m in left if _overlap(one, k, other, m)]
-    wrong = [(one, k) for k in alone] + [(other, m) for m in left]
-    wide = [(patches, k) for patches, k in wrong if _has_extent(patches.shape[k], reach)]
+    wrong = [one.shape[k] for k in alone] + [other.shape[m] for m in left]
     place = None
-    if wide:
-        patches, k = wide[0]
-        at = (side.line, float(patches.shape[k, 0]))
-        place = (*(at if side.axis == 0 else at[::-1]), float(patches.shape[k, 2]))
+    if wrong:
+        at = (side.line, float(wrong[0][0]))
+        place = (*(at if side.axis == 0 else at[::-1]), float(wrong[0][2]))
     cells = [(one.cell[k], other.cell[m]) for k, m in pairs]
     return Matched(
         np.unique(np.array(cells, np.int64).reshape(-1, 2), axis=0),
         max(len(one.cell), len(other.cell)),
-        rounded + len(wrong) - len(wide),
-        len(wide) + one.open + other.open,
+        len(wrong) + one.open + other.open,
         place,
     )
-
-
-def _has_extent(shape: np.ndarray, reach: np.ndarray) -> bool:
-    """Whether a patch is wider and higher than rounding is."""
-    return bool(shape[1] - shape[0] > reach[0] and (shape[4:] - shape[2:4]).max() > reach[1])
 
 
 def _rows(patches: Patches) -> Sequence[tuple]:

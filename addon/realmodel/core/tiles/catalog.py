@@ -42,8 +42,8 @@ class TileEntry:
 @dataclass(frozen=True)
 class Catalog:
     """What tiles.toml says. project: without shapes. digest: of the input. patches: quadrilaterals of
-    blocks on the borders between tiles, which were compared double for double; rounded: those that both sides
-    have up to rounding only; unequal: those that one side alone has."""
+    blocks on the borders between tiles, which were compared double for double; unequal: those that one side
+    alone has."""
 
     project: Project
     cell_kind: str
@@ -52,7 +52,6 @@ class Catalog:
     blocks: list[Block]
     tiles: list[TileEntry]
     patches: int = 0
-    rounded: int = 0
     unequal: int = 0
     warnings: list[BuildWarning] = field(default_factory=list)
 
@@ -69,7 +68,6 @@ def write_catalog(catalog: Catalog, folder: Path) -> None:
             cell_kind=catalog.cell_kind,
             digest=catalog.digest,
             border_patches=catalog.patches,
-            rounded_patches=catalog.rounded,
             unequal_patches=catalog.unequal,
             x=catalog.grid.x,
             y=catalog.grid.y,
@@ -134,7 +132,6 @@ def read_catalog(folder: Path) -> Catalog:
             [Block(**block) for block in content.get("block", [])],
             [TileEntry(**tile) for tile in content.get("tile", [])],
             content["border_patches"],
-            content["rounded_patches"],
             content["unequal_patches"],
             [
                 BuildWarning(**{**warning, "items": tuple(warning["items"])})

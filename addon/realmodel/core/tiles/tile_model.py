@@ -21,6 +21,7 @@ from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
 from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
+from .settling import BorderVertices
 
 _REGION = "region"  # in the place of a surface's number
 Box = tuple[float, float, float, float]
@@ -89,8 +90,8 @@ def _parts(frame: Frame, path: Path) -> dict[tuple, Part]:
     return {(r, k): Part(*(arrays[f"{n}_{r}_{k}"] for n in Part.__dataclass_fields__)) for r, k in keys}
 
 
-def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> Model:
-    """The model of a tile, with borders as they come. path: what TileParts wrote."""
+def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> tuple[Model, BorderVertices]:
+    """The model of a tile, with borders as they come, and its vertices there. path: what TileParts wrote."""
     parts = _parts(frame, path)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
@@ -100,21 +101,14 @@ def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> 
         if frame.clips[r]:
             region = (parts[r, _REGION].vertices[:, :2].copy(), parts[r, _REGION].triangles)
             seen = clipped_region(region, box)
-        rules = [surface.rule for surface in rock.surfaces]
-        rocks.append((shapes, region, rock.base_elevation, rules))
         given = [
             replace(surface, vertices=vertices, triangles=triangles)
             for surface, (vertices, triangles) in zip(rock.surfaces, shapes, strict=True)
         ]
-        inputs.append(
-            RockInput(
-                replace(rock, surfaces=given),
-                shapes,
-                seen,
-                [None] * len(shapes),
-                [None] * len(shapes),
-            )
-        )
+        nothing = [None] * len(shapes)
+        entry = RockInput(replace(rock, surfaces=given), shapes, region, nothing, nothing)
+        rocks.append(entry.native())
+        inputs.append(replace(entry, region=seen))
     numbers = [
         parts[r, k].numbers for r, rock in enumerate(frame.project.rocks) for k in range(len(rock.surfaces))
     ]
@@ -129,7 +123,7 @@ def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> 
     timings = {"intersect": time.perf_counter() - began}
     model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
     model.warnings = _warnings(inputs, built, numbers)
-    return model
+    return model, BorderVertices.of_built(built)
 
 
 class _NumberedError(Exception):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..algebra import dot
 from ..blocks import Block
 from ..build_warning import BuildWarning
 from ..errors import InputRefused, UsageError
@@ -58,7 +59,7 @@ class Tile:
 @dataclass(eq=False)
 class TiledModel:
     """A model in tiles, over all tiles: its blocks as of Model. cells of columns count those of the tiles,
-    which borders divide. project: without shapes. patches, rounded, unequal: as of Catalog."""
+    which borders divide. project: without shapes. patches, unequal: as of Catalog."""
 
     name: str
     folder: Path
@@ -69,7 +70,6 @@ class TiledModel:
     y: np.ndarray
     project: Project
     patches: int
-    rounded: int
     unequal: int
     warnings: list[BuildWarning]
 
@@ -95,7 +95,7 @@ class TiledModel:
             point = self._off_borders(point[None])[0]
 
         def meets(tile: Tile) -> bool:
-            away = (self._corners(tile) - point) @ normal
+            away = dot(self._corners(tile) - point, normal)
             return away.min() <= 0 <= away.max()
 
         return self._joined(meets, lambda model: model.section(point, normal, threads))
@@ -217,7 +217,6 @@ def tiled_model(catalog: Catalog, folder: Path) -> TiledModel:
         catalog.grid.y,
         catalog.project,
         catalog.patches,
-        catalog.rounded,
         catalog.unequal,
         catalog.warnings,
     )

@@ -99,11 +99,27 @@ using realmodel::Warning;
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
                               CellKind cells = CellKind::kColumns);
 
-/// What of rock masses lies in a window. Borders are taken as they are: whoever divides a model has
-/// joined them in all of it (join_rock_masses), so that all its tiles have the same.
+/// A vertex of a tile on a line that bounds it.
+struct BorderVertex {
+    std::int32_t vertex;
+    std::array<double, 3> nearest;  ///< the doubles nearest to where it is exactly
+    /// Where it is exactly: reduced fractions, hexadecimal. Equal points have equal ones in all
+    /// tiles.
+    std::array<std::string, 3> exact;
+};
+
+/// What of rock masses lies in a window, and its vertices on the lines that bound it, by number.
+struct Tile {
+    CellComplex complex;
+    std::vector<BorderVertex> border;
+};
+
+/// What of rock masses lies in a window. No vertex but those in `border` has a coordinate of a
+/// line. Borders are taken as they are: whoever divides a model has joined them in all of it
+/// (join_rock_masses), so that all its tiles have the same.
 /// @throws as build_rock_masses
-CellComplex build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
-                       Progress* progress, CellKind cells = CellKind::kColumns);
+Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
+                Progress* progress, CellKind cells = CellKind::kColumns);
 
 /// Rock masses whose plan coordinates and borders differ nowhere by rounding alone.
 struct JoinedInput {

@@ -11,6 +11,7 @@
 #include "strata/cells/closedness.hpp"
 #include "strata/cells/distinct_positions.hpp"
 #include "strata/cells/node_cells.hpp"
+#include "strata/cells/plan_offsets.hpp"
 #include "strata/cells/whole_faces.hpp"
 #include "strata/conform/walls.hpp"
 #include "strata/steps.hpp"
@@ -76,15 +77,21 @@ Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex)
 
 }  // namespace
 
-CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construction,
-                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
-                        int threads, Progress* progress) {
+BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
+                       const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
+                       const std::optional<Window>& window, int threads, Progress* progress) {
     // The peak of memory is still to come, and what chunks of overlays were made in is free.
     geometry.forget_names();
     constexpr std::size_t kManyPoints = 1000000;
     if (geometry.point_count() > kManyPoints) give_back_memory();
     Conformed c = conform(geometry, construction, blocks, threads, progress);
     FaceList& faces = construction.faces;
+    std::optional<TileBorder> border;
+    if (window) {
+        border = find_tile_border(geometry, faces, c.plan_vertices, c.conformed, *window, threads,
+                                  progress);
+    }
+    Array<PlanOffset> plan_off = find_plan_offsets(geometry, c.plan_vertices, threads, progress);
     // What comes out takes the memory of what it was made of.
     if (blocks == nullptr) {
         c.conformed.entries = {};
@@ -108,11 +115,18 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
         }
     }
     const std::vector<FlatCell> flat =
-        make_distinct(geometry, faces, c.plan_vertices, c.conformed, threads, progress);
+        make_distinct(geometry, faces, c.plan_vertices, c.conformed, border ? &*border : nullptr,
+                      threads, progress);
+    Array<PlanOffset> vertex_off =
+        vertex_offsets(plan_off, c.plan_vertices, c.conformed, threads, progress);
+    plan_off = {};
     std::optional<UntouchedTriangles> untouched;
     if (blocks != nullptr) {
-        c.walls.walls.assign(1, join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
-                                               c.plan_vertices, c.conformed, threads, progress));
+        JoinedWalls joined = join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
+                                            c.plan_vertices, c.conformed, threads, progress);
+        c.walls.walls.assign(1, std::move(joined.walls));
+        if (border) border->renumber(joined.number);
+        renumber(vertex_off, joined.number);
         untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.conformed, threads,
                           progress);
     }
@@ -124,7 +138,9 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
     if (untouched) untouched->add_to(complex, cell_of_node);
     assert(are_closed(complex));
     if (!flat.empty()) complex.warnings.push_back(left_flat(flat, complex));
-    return complex;
+    BuiltCells built{std::move(complex), {}, std::move(vertex_off)};
+    if (border) built.border = std::move(border->vertices);
+    return built;
 }
 
 }  // namespace realmodel::strata

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "realmodel/strata/stack.hpp"
+#include "strata/cells/built_cells.hpp"
 #include "strata/overlay/border_edges.hpp"
 #include "strata/overlay/sheet_links.hpp"
 
@@ -19,8 +20,9 @@ struct BlockLinks {
 /// Joins the faces of a construction to a complex: without `blocks` each node is a cell, a column;
 /// else what hangs together is one. Gives back what is done with on the way, so that afterwards
 /// only the geometry's counts are there.
-CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construction,
-                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
-                        int threads, Progress* progress);
+/// @param window  of a tile, or nothing
+BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
+                       const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
+                       const std::optional<Window>& window, int threads, Progress* progress);
 
 }  // namespace realmodel::strata

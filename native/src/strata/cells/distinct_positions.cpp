@@ -17,8 +17,9 @@ namespace {
 /// Moves plan vertices to free positions beside them.
 class Spreader {
 public:
-    Spreader(const exact::PlanArrangement& geometry, const PlanVertices& plan_vertices)
-        : geometry_(geometry), plan_vertices_(plan_vertices) {}
+    Spreader(const exact::PlanArrangement& geometry, const PlanVertices& plan_vertices,
+             const TileBorder* border)
+        : geometry_(geometry), plan_vertices_(plan_vertices), border_(border) {}
 
     bool movable(std::size_t vertex) const {
         return !geometry_.is_vertex(plan_vertices_.representative[vertex]);
@@ -38,6 +39,11 @@ public:
         // input vertices come first among equals, so these are crossings
         for (const PlanVertexId vertex : plan_vertices_.coincident)
             move(static_cast<std::size_t>(vertex), [](int, int) { return true; });
+        if (border_ == nullptr) return;
+        for (const auto& [number, is_on] : border_->plan_vertices) {
+            const auto vertex = static_cast<std::size_t>(number);
+            if (!border_->allows(vertex, at(vertex))) move(vertex, [](int, int) { return true; });
+        }
     }
 
     /// Moves a plan vertex by as little as possible, but along the given axis.
@@ -61,6 +67,7 @@ private:
                 for (int y = -reach; y <= reach; ++y) {
                     if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
                     const PlanPosition to{moved_by_ulps(from[0], x), moved_by_ulps(from[1], y)};
+                    if (border_ != nullptr && !border_->allows(vertex, to)) continue;
                     if (!take(to)) continue;
                     moved_[vertex] = to;
                     return;
@@ -71,6 +78,7 @@ private:
 
     const exact::PlanArrangement& geometry_;
     const PlanVertices& plan_vertices_;
+    const TileBorder* border_;
     std::map<std::size_t, PlanPosition> moved_;
     std::set<PlanPosition> taken_;  ///< besides the plan vertices' own positions
 };
@@ -229,8 +237,9 @@ private:
 
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices, ConformedFaces& conformed,
-                                    int threads, const Progress* progress) {
-    Spreader spreader(geometry, plan_vertices);
+                                    const TileBorder* border, int threads,
+                                    const Progress* progress) {
+    Spreader spreader(geometry, plan_vertices, border);
     spreader.separate();
     // Moving one cell's vertex may flatten its neighbor; a few rounds settle it.
     constexpr int kRounds = 16;

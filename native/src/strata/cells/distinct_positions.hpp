@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "strata/cells/tile_border.hpp"
 #include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
@@ -17,10 +18,13 @@ struct FlatCell {
 /// become neighboring doubles: constructed ones move (input vertices never do) by the least number
 /// of units in the last place that makes them unlike all others, whole verticals at a time, so that
 /// walls stay vertical. Plan vertices of a cell that all rounded to one x, or one y, are spread
-/// likewise. (The heights on each vertical are different already, see conform_faces.)
+/// likewise. (The heights on each vertical are different already, see conform_faces.) What is on
+/// the border of a tile stays on it, and what only rounded to it moves inside.
+/// @param border  nothing unless this is a tile
 /// @return the cells that are flat still, after some rounds or because nothing of them may move
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& places, ConformedFaces& conformed,
-                                    int threads, const Progress* progress);
+                                    const TileBorder* border, int threads,
+                                    const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -118,10 +118,10 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
     return cell_of_node;
 }
 
-WallBatch join_stretches(std::span<const WallStretch> stretches,
-                         const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
-                         std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
-                         ConformedFaces& conformed, int threads, const Progress* progress) {
+JoinedWalls join_stretches(std::span<const WallStretch> stretches,
+                           const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
+                           std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
+                           ConformedFaces& conformed, int threads, const Progress* progress) {
     std::vector<std::uint8_t> is_needed(conformed.positions.size(), 0), may_bend(is_needed);
     for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
         is_needed[static_cast<std::size_t>(conformed.vertices[conformed.entries.first(c)])] = 1;
@@ -150,10 +150,10 @@ WallBatch join_stretches(std::span<const WallStretch> stretches,
         walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
         walls.cells.push_back({wall.left, wall.right});
     });
-    const auto number = keep_vertices(is_needed, conformed, threads, progress);
+    auto number = keep_vertices(is_needed, conformed, threads, progress);
     for (std::int32_t& v : walls.vertices)
         v = number[static_cast<std::size_t>(v)];
-    return walls;
+    return {std::move(walls), std::move(number)};
 }
 
 }  // namespace realmodel::strata

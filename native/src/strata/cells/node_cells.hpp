@@ -20,14 +20,20 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                                          Array<std::int32_t>& cell_block, int threads,
                                          const Progress* progress);
 
+/// Walls, and the new number of each vertex; -1 of those that are gone.
+struct JoinedWalls {
+    WallBatch walls;
+    std::vector<std::int32_t> number;
+};
+
 /// Walls between cells from their stretches: those that go on without a change are joined, and only
 /// vertices that faces or ends of walls need are kept. Afterwards the vertices of the conformed
 /// faces and their positions are those that are left.
 /// @param cell_of_node  of the nodes that stretches name
 /// @param crossings  where heights of two columns cross, no face has a corner
-WallBatch join_stretches(std::span<const WallStretch> stretches,
-                         const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
-                         std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
-                         ConformedFaces& conformed, int threads, const Progress* progress);
+JoinedWalls join_stretches(std::span<const WallStretch> stretches,
+                           const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
+                           std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
+                           ConformedFaces& conformed, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

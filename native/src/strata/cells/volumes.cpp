@@ -27,7 +27,8 @@ struct Projection {
     double area = 0, volume = 0;
 };
 
-Projection project(const CellComplex& complex, std::size_t face) {
+Projection project(const CellComplex& complex, std::size_t face,
+                   std::span<const PlanOffset> offsets) {
     const auto corner = [&](std::int64_t i) -> const std::array<double, 3>& {
         return complex
             .vertices[static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)])];
@@ -37,13 +38,22 @@ Projection project(const CellComplex& complex, std::size_t face) {
     constexpr std::int64_t kAhead = 40;  // corners
     for (std::int64_t i = begin + kAhead; i < std::min(end + kAhead, corners); ++i)
         prefetch(&corner(i));
+    const auto offset = [&](std::int64_t i) {
+        const auto v = static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)]);
+        return v < offsets.size() ? offsets[v] : PlanOffset{0, 0};
+    };
     const auto& origin = corner(begin);
+    const PlanOffset off = offset(begin);
+    const auto from_origin = [&](std::int64_t i) {
+        const auto& at = corner(i);
+        const PlanOffset moved = offset(i);
+        return std::array{at[0] - origin[0] + (moved[0] - off[0]),
+                          at[1] - origin[1] + (moved[1] - off[1]), at[2] - origin[2]};
+    };
     Projection sum;
-    const auto* last = &corner(begin + 1);
-    double x = (*last)[0] - origin[0], y = (*last)[1] - origin[1], z = (*last)[2] - origin[2];
+    auto [x, y, z] = from_origin(begin + 1);
     for (std::int64_t i = begin + 2; i < end; ++i) {
-        const auto& next = corner(i);
-        const double u = next[0] - origin[0], v = next[1] - origin[1], w = next[2] - origin[2];
+        const auto [u, v, w] = from_origin(i);
         const double twice_area = x * v - u * y;
         sum.area += twice_area;
         sum.volume += twice_area * (z + w);
@@ -84,7 +94,7 @@ struct BlockSum {
 // A face within a block adds to one cell what it takes from the other. Walls between blocks count
 // too: the rounded corners of one are in line in plan only up to rounding.
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
-                                  const Progress* progress) {
+                                  const Progress* progress, std::span<const PlanOffset> offsets) {
     const auto block_of = [&](std::int32_t cell) {
         return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
     };
@@ -98,7 +108,7 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
         for (std::size_t f = begin; f < end; ++f) {
             const auto [inside, outside] = complex.face_cells[f];
             if (outside >= 0 && block_of(inside) == block_of(outside)) continue;
-            const Projection below = project(complex, f);
+            const Projection below = project(complex, f, offsets);
             const auto first = static_cast<std::size_t>(complex.face_offsets[f]);
             const double height =
                 complex.vertices[static_cast<std::size_t>(complex.face_vertices[first])][2];

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+
 #include "realmodel/base/progress.hpp"
-#include "realmodel/strata/stack.hpp"
+#include "strata/cells/built_cells.hpp"
 
 namespace realmodel::strata {
 
 /// Volume of every block: what lies beneath the faces that bound it from above, less what lies
 /// beneath those that bound it from below. Heights are counted from a corner of each cell, so that
 /// coordinates far from the origin cost no digits. The same for any number of threads.
+/// @param offsets  of the first vertices: where they are exactly
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
-                                  const Progress* progress);
+                                  const Progress* progress,
+                                  std::span<const PlanOffset> offsets = {});
 
 }  // namespace realmodel::strata

@@ -37,6 +37,7 @@ struct Site {
     std::vector<EnteredRock> rocks;
     std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
     std::int32_t surfaces = 0;                   ///< in all rock masses
+    std::optional<Window> window;                ///< of a tile, or nothing
     /// Whether no surface covers a position twice, and no border of a region crosses itself.
     bool is_single_valued = true;
 

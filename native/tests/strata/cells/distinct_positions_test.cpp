@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace realmodel::strata {
 namespace {
 
@@ -13,7 +15,9 @@ protected:
     /// @param inputs  so many of the points are input vertices, which never move
     DistinctPositionsTest() = default;
 
-    std::vector<FlatCell> spread(const std::array<PlanPosition, 3>& at, int inputs) {
+    /// @param border  of a tile, or nothing
+    std::vector<FlatCell> spread(const std::array<PlanPosition, 3>& at, int inputs,
+                                 const TileBorder* border = nullptr) {
         for (int i = 0; i < inputs; ++i)
             geometry_.add_vertex(at[static_cast<std::size_t>(i)][0] + 10 * (i + 1), i);
         geometry_.freeze_vertices();
@@ -34,7 +38,7 @@ protected:
         loops_.vertex_offsets[3] = 3;
         FaceList faces;
         faces.add(corners, PlaneId(0), 0, kOutsideCell, 0);
-        return make_distinct(geometry_, faces, places_, loops_, 1, nullptr);
+        return make_distinct(geometry_, faces, places_, loops_, border, 1, nullptr);
     }
 
     exact::PlanArrangement geometry_;
@@ -61,6 +65,28 @@ TEST_F(DistinctPositionsTest, WhereNothingMayMoveTheCellIsReported) {
     EXPECT_EQ(left[0].cell, 0);
     EXPECT_EQ(left[0].at, (PlanPosition{1, 0}));
     EXPECT_EQ(loops_.positions[2][0], 1.0);
+}
+
+TEST_F(DistinctPositionsTest, WhatIsOnTheBorderOfATileStaysThere) {
+    const TileBorder border{{0, 0, 4, 4}, {{0, {true, false}}, {1, {true, false}}}, {}};
+    spread({{{4, 2}, {4, 2}, {1, 0.5}}}, 0, &border);
+    // the second one is coincident
+    places_.coincident = {1};
+    make_distinct(geometry_, {}, places_, loops_, &border, 1, nullptr);
+    EXPECT_EQ(loops_.positions[0], (std::array<double, 3>{4, 2, 0}));
+    EXPECT_EQ(loops_.positions[1][0], 4.0);
+    EXPECT_NE(loops_.positions[1][1], 2.0);
+    EXPECT_NEAR(loops_.positions[1][1], 2.0, 1e-15);
+}
+
+TEST_F(DistinctPositionsTest, WhatRoundedToTheBorderOfATileMovesInside) {
+    const TileBorder border{{0, 0, 4, 4}, {{1, {false, false}}, {2, {false, true}}}, {}};
+    EXPECT_TRUE(spread({{{1, 3}, {4, 2}, {0, 0}}}, 0, &border).empty());
+    EXPECT_EQ(loops_.positions[1][0], std::nextafter(4.0, 0.0));
+    EXPECT_NEAR(loops_.positions[1][1], 2.0, 1e-15);
+    EXPECT_GT(loops_.positions[2][0], 0.0);
+    EXPECT_LT(loops_.positions[2][0], 1e-300);
+    EXPECT_EQ(loops_.positions[2][1], 0.0);
 }
 
 }  // namespace

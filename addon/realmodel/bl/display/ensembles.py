@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ensemble of a model in the scene: a table of volumes, and a section whose colors show how certain the
+blocks are, or one realization. The section keeps the block of each of its cells in each realization."""
+
+import json
+
+import bpy
+import numpy as np
+
+from ...core import layer_values
+from ...core.drawing.overlay import ColorKey
+from ...core.ensembles import PERCENTILES, Probabilities
+from ...core.polygon_mesh import PolygonMesh
+from .. import library_rows, meshes, project_settings, scene, stored_arrays
+from ..origin import offsets_from
+from . import bodies, colors, sections
+
+BLOCKS = "realmodel_ensemble"  # on the object: the blocks (R, N) int16, as stored_arrays.pack has them
+ENTROPY, PROBABILITY, REALIZATION = "ENTROPY", "PROBABILITY", "REALIZATION"
+COLORS = (  # items of an enum
+    (ENTROPY, "Entropy", "How uncertain the block is, in bits: 0 where all realizations have the same"),
+    (PROBABILITY, "Probability", "The share of the realizations in which a block is there"),
+    (REALIZATION, "Realization", "The blocks of one realization"),
+)
+_STEPS = 15  # of the color scales: each is a material, which all ways of shading show
+_OUTSIDE = ("Outside", "#ffffff")
+
+
+def put(current, found, samples, blocks, seed):
+    """Shows an ensemble in place of an earlier one. found: core.Ensemble. samples: SectionSamples. blocks:
+    (R, N) int16, the block of each cell in each realization, -1 for none."""
+    remove(current)
+    rows = list(_rows(current, found))
+    kept = np.flatnonzero((blocks >= 0).any(axis=0))
+    places = offsets_from(project_settings.model_origin(current), samples.corners[kept].reshape(-1, 3))
+    ends = np.arange(0, 4 * len(kept) + 1, 4, dtype=np.int32)
+    shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
+    item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
+    item[BLOCKS] = stored_arrays.pack(blocks=blocks[:, kept])
+    sections.stand(current, item, samples.section.plane)
+    group = current.realmodel.ensemble
+    group.object = item
+    group.table = json.dumps(
+        {
+            "stamp": current.realmodel.built_stamp,
+            "count": len(blocks),
+            "seed": seed,
+            "most_entropy": float(_entropy(blocks, len(rows)).max(initial=0.0)),
+            "blocks": rows,
+        }
+    )
+    if group.block not in [row["name"] for row in rows]:
+        group.block = max(rows, key=lambda row: row["deviation"] / (row["mean"] or 1.0))["name"]
+    group.realization = min(group.realization, len(blocks))
+    recolor(current)
+
+
+def _rows(current, found):
+    percentiles = found.percentiles()
+    for number, block in enumerate(found.model.blocks):
+        drawn = found.volumes[:, number]
+        yield {
+            "name": block.name,
+            "rock": found.model.project.rocks[block.rock].name,
+            "property": int(block.property),
+            "interpolated": block.volume,
+            "mean": float(drawn.mean()),
+            "deviation": float(drawn.std(ddof=1)),
+            "percentiles": percentiles[:, number].tolist(),
+        }
+
+
+def table(current):
+    """{"count", "seed", "stamp" of the model, "most_entropy" of a cell, "blocks": of each its name, rock,
+    property, interpolated volume, mean, deviation and percentiles}; None where there is no ensemble."""
+    text = current.realmodel.ensemble.table
+    return json.loads(text) if text else None
+
+
+def is_outdated(current):
+    """Whether another model was built since."""
+    found = table(current)
+    return found is not None and found["stamp"] != current.realmodel.built_stamp
+
+
+def item_of(current):
+    """The object of the section, or None."""
+    item = current.realmodel.ensemble.object
+    there = item is not None and BLOCKS in item and item.type == "MESH" and current in item.users_scene
+    return item if there else None
+
+
+def remove(current):
+    """Takes the ensemble out of a scene."""
+    group, item = current.realmodel.ensemble, item_of(current)
+    group.object, group.table = None, ""
+    if item is not None:
+        scene.remove_objects([item])
+        bodies.remove_collection_if_empty(current)
+        colors.remove_unused()
+
+
+def recolor(current):
+    """Gives the section its colors. Raises InputRefused where the .blend is damaged."""
+    item = item_of(current)
+    if item is None or item.mode != "OBJECT" or item.data.library is not None:
+        return
+    blocks = stored_arrays.unpack(item[BLOCKS])["blocks"]
+    if blocks.shape[1] != len(item.data.polygons):
+        return  # its mesh was edited
+    if current.realmodel.ensemble.color_by == REALIZATION:
+        materials, slots = _of_realization(current, blocks)
+    else:
+        materials, slots = _of_scale(current, blocks)
+    mesh = item.data
+    mesh.materials.clear()
+    for material in materials:
+        mesh.materials.append(material)
+    mesh.polygons.foreach_set("material_index", np.ascontiguousarray(slots, np.int32))
+    mesh.update()
+    colors.remove_unused()
+
+
+def _of_realization(current, blocks):
+    rows = table(current)["blocks"]
+    number = min(current.realmodel.ensemble.realization, len(blocks)) - 1
+    ids = sorted({row["property"] for row in rows})
+    slots = np.append([ids.index(row["property"]) for row in rows], len(ids))[blocks[number]]
+    materials = [library_rows.material_of(current, property_id) for property_id in ids]
+    return [*materials, colors.plain_material(*_OUTSIDE)], slots
+
+
+def _of_scale(current, blocks):
+    values = _values(current, blocks)
+    codes = [library_rows.hex_color(color) for color in _colors(_STEPS)[:, :3].tolist()]
+    materials = [colors.plain_material(f"Scale {code}", code) for code in codes]
+    return materials, np.rint(values / _most(current) * (_STEPS - 1))
+
+
+def _values(current, blocks):
+    """What the colors show of each cell."""
+    names = [row["name"] for row in table(current)["blocks"]]
+    if current.realmodel.ensemble.color_by == PROBABILITY:
+        wanted = current.realmodel.ensemble.block
+        return (blocks == (names.index(wanted) if wanted in names else len(names))).mean(axis=0)
+    return _entropy(blocks, len(names))
+
+
+def _entropy(blocks, count):
+    shares = np.stack([(blocks == number).mean(axis=0) for number in range(count)], axis=1)
+    return Probabilities([], shares).entropy()
+
+
+def _most(current):
+    """The value at the upper end of the scale; at the lower one it is 0."""
+    is_entropy = current.realmodel.ensemble.color_by == ENTROPY
+    return max(1.0, table(current)["most_entropy"]) if is_entropy else 1.0
+
+
+def key(current):
+    """The core's ColorKey of the section, or None."""
+    group, item = current.realmodel.ensemble, item_of(current)
+    if item is None or group.color_by == REALIZATION or item.hide_viewport:
+        return None
+    title = f"Probability of {group.block}" if group.color_by == PROBABILITY else "Entropy (bits)"
+    return ColorKey(title, limits=(0.0, _most(current)), colors=_colors(_STEPS))
+
+
+def _colors(count):
+    return layer_values.colors(np.linspace(0.0, 1.0, count), (0.0, 1.0))
+
+
+def headings():
+    return [f"P{percent}" for percent in PERCENTILES]

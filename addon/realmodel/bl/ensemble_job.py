@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An ensemble of the built model, made in a thread and put into the scene by the main thread: its volumes,
+and the blocks of each realization on a section."""
+
+import bpy
+import numpy as np
+
+from ..core import BuildFailed
+from ..core.ensembles import Realizer, section_samples
+from ..core.ensembles.ensemble import realized
+from . import project_settings, settings, shapes
+from .display import cuts, ensembles, explosion, shown_models
+from .thread_job import ThreadJob
+
+_BUILT = 0.1  # of the progress: the model, where it is not at hand
+
+
+class EnsembleJob(ThreadJob):
+    """So many realizations of the model of a scene.
+
+    line: a curve or mesh object along which the section goes; None: the section plane, or where there is
+    none a plane through the middle of the model, seen from the south. `finish()` puts the ensemble into the
+    scene and returns it, or raises what went wrong and leaves the scene as it was.
+    """
+
+    def __init__(self, current, realizations, seed, line=None, depsgraph=None):
+        """Raises InputRefused."""
+        self._scene, self._count, self._seed = current.name, realizations, seed
+        self._done = 0
+        self._recipe = shown_models.Recipe(current, settings.last_stage(current))
+        self._plane = self._line = None
+        origin = project_settings.model_origin(current)
+        if line is not None:
+            self._line = shapes.polyline(line, depsgraph) + origin[:2]
+        elif cuts.plane_of(current) is not None:
+            self._plane = cuts.plane_in_model(current)
+        else:
+            low, high = explosion.bounds(current)
+            self._plane = (np.asarray(low) + high) / 2 + origin, (0.0, -1.0, 0.0)
+
+    def run(self):
+        """Makes the ensemble in this thread and puts it into the scene."""
+        return self._put(super().run())
+
+    def finish(self):
+        return self._put(super().finish())
+
+    def state(self):
+        fraction, text = super().state()
+        return fraction, f"{self._done} of {self._count} realizations" if self._done else text
+
+    def _work(self, job):
+        with job.part(0.0, _BUILT):
+            model = self._recipe.make()
+        with job.part(_BUILT, 1.0):
+            cut = model.section(*self._plane) if self._line is None else model.fence(self._line)
+            samples = section_samples(model, cut)
+            blocks = []
+
+            def each(sums):
+                there = sums.counts.any(axis=1)
+                blocks.append(np.where(there, sums.counts.argmax(axis=1), -1).astype(np.int16))
+                self._done += 1
+
+            realizer = Realizer(model, self._seed)
+            found = realized(job, realizer, self._count, samples.places, self._threads, each)
+        return found, samples, np.stack(blocks)
+
+    def _put(self, made):
+        current = bpy.data.scenes.get(self._scene)
+        if current is None:
+            raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
+        if current.realmodel.built_stamp != self._recipe.stamp or not len(current.realmodel.results):
+            raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
+        self._recipe.keep()
+        ensembles.put(current, *made, self._seed)
+        return made[0]

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the vertices on the border of a tile are: decided alike in all tiles that share them.
+
+Points that differ can round to the same doubles, and then one of them moves to the next ones. On a border
+each tile may have points that its neighbors have not. So what moves there follows from the exact points that
+all of them have together, and from nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import groupby
+from math import inf, nextafter
+
+import numpy as np
+
+from .borders import sides_of
+
+
+@dataclass(frozen=True)
+class BorderVertices:
+    """The vertices of a tile on its border: their numbers (N,), ascending; the doubles nearest to where they
+    are, (N, 3); and the exact x, y and z: fractions in hexadecimal, equal where points are, in all tiles."""
+
+    numbers: np.ndarray
+    nearest: np.ndarray
+    exact: list[tuple[str, str, str]]
+
+    @classmethod
+    def of_built(cls, built: dict) -> BorderVertices:
+        """Of what the native build_tile gives."""
+        return cls(built["border_vertices"], built["border_nearest"], _lines(built["border_exact"]))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        text = "\n".join(map(" ".join, self.exact)).encode()
+        return {"numbers": self.numbers, "nearest": self.nearest, "exact": np.frombuffer(text, np.uint8)}
+
+    @classmethod
+    def of_arrays(cls, arrays: dict[str, np.ndarray]) -> BorderVertices:
+        return cls(arrays["numbers"], arrays["nearest"], _lines(arrays["exact"].tobytes()))
+
+
+def settled(box: tuple[float, float, float, float], tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
+    """Where vertices are that lie on the border of a tile. tiles: those of the tile, and of all that share
+    its sides or corners. Returns (N, 3) float64 for each, NaN where a neighbor's is not on this border."""
+    tiles = list(tiles)
+    heights: dict[tuple[str, str], dict[str, float]] = {}
+    on_sides = []
+    for side in sides_of(box):
+        along = {_text(end): end for end in (box[side.along], box[side.along + 2])}
+        on_side = [_on_side(vertices, side, box) for vertices in tiles]
+        for vertices, found in zip(tiles, on_side, strict=True):
+            for number in found:
+                x, y, z = exact = vertices.exact[number]
+                heights.setdefault((x, y), {})[z] = float(vertices.nearest[number, 2])
+                along[exact[side.along]] = float(vertices.nearest[number, side.along])
+        _separate(along)
+        on_sides.append((side, along, on_side))
+    for of_vertical in heights.values():
+        _separate(of_vertical)
+    positions = [np.full((len(vertices.exact), 3), np.nan) for vertices in tiles]
+    for side, along, on_side in on_sides:
+        for vertices, found, at in zip(tiles, on_side, positions, strict=True):
+            for number in found:
+                exact = vertices.exact[number]
+                at[number, side.axis] = side.line
+                at[number, side.along] = along[exact[side.along]]
+                at[number, 2] = heights[exact[:2]][exact[2]]
+    return positions
+
+
+def _on_side(vertices: BorderVertices, side, box) -> list[int]:
+    """Which vertices are exactly on a side of a box, its ends included."""
+    low, high = box[side.along], box[side.along + 2]
+    near = vertices.nearest[:, side.along]
+    on = (vertices.nearest[:, side.axis] == side.line) & (near >= low) & (near <= high)
+    line = _text(side.line)
+
+    def is_there(number: int) -> bool:
+        exact = vertices.exact[number]
+        if exact[side.axis] != line:
+            return False
+        return near[number] not in (low, high) or low <= _fraction(exact[side.along]) <= high
+
+    return [number for number in np.flatnonzero(on).tolist() if is_there(number)]
+
+
+def _separate(values: dict[str, float]) -> None:
+    """Makes the doubles of exact values distinct, in their order, by as little as possible. What is a double
+    itself stays as long as there is room."""
+    if len(set(values.values())) == len(values):
+        return
+    order = []
+    for _, equal in groupby(sorted(values, key=values.__getitem__), values.__getitem__):
+        order += sorted(equal, key=_fraction)
+    at = [values[exact] for exact in order]
+
+    def is_double(number: int) -> bool:
+        return _fraction(order[number]) == values[order[number]]
+
+    for number in range(1, len(at)):
+        low = number
+        if at[number] <= at[number - 1] and is_double(number):
+            while low > 0 and at[low - 1] >= at[low] and not is_double(low - 1):
+                at[low - 1] = nextafter(at[low], -inf)
+                low -= 1
+        while 0 < low <= number and at[low] <= at[low - 1]:
+            at[low] = nextafter(at[low - 1], inf)
+            low += 1
+    values.update(zip(order, at, strict=True))
+
+
+def _lines(text: bytes) -> list[tuple[str, str, str]]:
+    return [tuple(line.split()) for line in text.decode().splitlines()]
+
+
+def _text(value: float) -> str:
+    """A double as exact coordinates are written."""
+    numerator, denominator = value.as_integer_ratio()
+    return f"{numerator:x}" if denominator == 1 else f"{numerator:x}/{denominator:x}"
+
+
+def _fraction(exact: str) -> Fraction:
+    numerator, _, denominator = exact.partition("/")
+    return Fraction(int(numerator, 16), int(denominator or "1", 16))

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ensembles: many realizations of the model, with progress and Esc."""
+
+import bpy
+from bpy.props import EnumProperty, IntProperty
+
+from ..bl import ensemble_job, live
+from ..bl.display import ensembles, visible
+from ..core import InputRefused
+from ..props_ensemble import MOST
+from .background import InBackground
+from .reporting import Reporting, a_model, an_outline_object, not_building
+
+
+class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
+    """Build the model many times, each time with other elevations between the points, as these and the
+    variograms allow: how certain are the volumes, and which block is where? Esc cancels and leaves the scene
+    unchanged"""
+
+    bl_idname = "realmodel.ensemble"
+    bl_label = "Make Ensemble"
+    needs = (not_building, a_model)
+
+    realizations: IntProperty(
+        name="Realizations", description="How often the model is built", default=40, min=2, max=MOST
+    )
+    seed: IntProperty(name="Seed", description="Of the random numbers", min=0)
+    along: EnumProperty(
+        name="Along",
+        description="Where the blocks are shown",
+        items=(
+            ("PLANE", "Section Plane", "The section plane, or a plane through the middle of the model"),
+            ("LINE", "Active Curve", "Vertical sections along the active curve or mesh of edges"),
+        ),
+    )
+
+    def begin(self, context):
+        live.stop_work()
+        line = None
+        if self.along == "LINE":
+            if reason := an_outline_object(context):
+                raise InputRefused(reason)
+            line = context.active_object
+        group = context.scene.realmodel.ensemble
+        count, seed = (
+            getattr(self if self.properties.is_property_set(key) else group, key)
+            for key in ("realizations", "seed")
+        )
+        return ensemble_job.EnsembleJob(context.scene, count, seed, line, context.evaluated_depsgraph_get())
+
+    def tell_done(self, found):
+        item = ensembles.item_of(bpy.context.scene)
+        if item is not None:
+            visible.select_alone(bpy.context, item)
+        self.report({"INFO"}, f"Made {len(found.volumes)} realizations")
+
+
+def _an_ensemble(context):
+    there = ensembles.table(context.scene) is not None
+    return None if there else "there is no ensemble; make one first"
+
+
+class REALMODEL_OT_ensemble_remove(Reporting, bpy.types.Operator):
+    """Remove the ensemble with its section and its table; the model stays"""
+
+    bl_idname = "realmodel.ensemble_remove"
+    bl_label = "Remove Ensemble"
+    needs = (_an_ensemble, not_building)
+
+    def act(self, context):
+        ensembles.remove(context.scene)
+
+
+CLASSES = (REALMODEL_OT_ensemble, REALMODEL_OT_ensemble_remove)
