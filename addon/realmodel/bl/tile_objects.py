@@ -22,8 +22,9 @@ TILES, TILE = "tiles", "tile"
 
 
 def add_whole(current, tiled, size, step):
-    """One coarse object for each block of a model in tiles; a tile is in memory at a time. size: of the squares
-    that have a vertex each, model units. step: called with the share that is done. Returns the objects."""
+    """One coarse object for each block of a model in tiles; a tile is in memory at a time. size: of the
+    squares that have a vertex each, model units. step: called with the share that is done. Returns the
+    objects."""
     parts = [[] for _ in tiled.blocks]
     origin = _origin(current, tiled)
     for number, tile in enumerate(tiled.tiles):
