@@ -15,7 +15,7 @@ from pathlib import Path
 
 LENGTH, WIDTH = 3000.0, 2000.0
 CELL = 50.0  # of the terrain model
-BASE = 250.0
+BASE = 280.0
 HOLES = 28
 APART = 230.0  # nobody drills nearer to another hole
 

@@ -219,10 +219,11 @@ def test_a_realization_depends_on_seed_and_number_alone():
 
 
 def test_realizations_with_faults_are_valid():
-    vertices, triangles = plane_fault(50.0, 10.0, y=(-20.0, 120.0), z=(-30.0, 40.0))
+    vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
     points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 3]], 0.0)
     given = project(points=points, faults=[Fault("F", vertices=vertices, triangles=triangles)])
     base = build(given, cells="blocks")
+    assert len(base.compartment_names) == 2
     realizer = Realizer(base)
     volumes = set()
     for number in range(2):
@@ -231,6 +232,26 @@ def test_realizations_with_faults_are_valid():
         assert model.compartment_names == base.compartment_names
         volumes.add(model.blocks[0].volume)
     assert len(volumes) == 2
+
+
+def test_heights_of_surfaces_that_faults_displace():
+    """At the vertices of all sheets; a younger surface has one."""
+    vertices, triangles = plane_fault(50.0, 0.5, y=(-20.0, 120.0), z=(-30.0, 40.0))
+    points = POINTS + np.where(POINTS[:, :1] > 50, [[0, 0, 3]], 0.0)
+    given = two_surfaces(0.5)
+    given.rocks[0].surfaces[0] = replace(given.rocks[0].surfaces[0], points=points)
+    given = replace(given, faults=[Fault("F", vertices=vertices, triangles=triangles, youngest="Lower")])
+    found = ensemble(given, 4, seed=3)
+    realizer = Realizer(found.model, 3)
+    models = [realizer.realization(number) for number in range(4)]
+    assert len(found.surface_mean[0]) == 2 * len(found.surface_mean[1])
+    for number in (0, 1):
+        nodes = found.model.surface(number)[0]
+        z = np.array([model.surface(number)[0][:, 2] for model in models])
+        assert (models[0].surface(number)[0][:, :2] == nodes[:, :2]).all()
+        assert found.surface_mean[number] == pytest.approx(z.mean(axis=0))
+        assert found.surface_deviation[number] == pytest.approx(z.std(axis=0, ddof=1), abs=1e-9)
+        assert found.surface_deviation[number].max() > 0.3
 
 
 def test_what_is_refused_names_the_realization():

@@ -183,3 +183,55 @@ def test_what_runs_within_a_job_is_a_part_of_it():
     may_end.set()
     with pytest.raises(Cancelled):
         job.result()
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_items_give_their_results_in_order_on_any_number_of_threads(threads):
+    def square(work, number, own_threads):
+        assert own_threads >= 1
+        with work.phase(0.0, 1.0, f"item {number}"):
+            work.step(0.5)
+            return run(lambda inner: inner is work), number**2
+
+    def task(work):
+        with work.phase(0.2, 0.8, "items"):
+            return work.each(square, range(7), threads)
+
+    assert run(task) == [(True, number**2) for number in range(7)]
+
+
+@pytest.mark.parametrize("threads", [1, 4])
+def test_the_first_item_that_fails_tells(threads):
+    def fail(work, number, _threads):
+        with work.phase(0.0, 1.0, "failing"):
+            if number > 1:
+                time.sleep(0.01 * (5 - number))
+                raise InputRefused(f"item {number}")
+
+    with pytest.raises(InputRefused, match="item 2"):
+        run(lambda work: work.each(fail, range(5), threads))
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_cancelling_and_progress_reach_all_items(threads):
+    calls, ended = [], []
+
+    def endless(work, number, _threads):
+        try:
+            with work.phase(0.0, 1.0, f"item {number}"):
+                for step in range(ENDLESS):
+                    time.sleep(0.01)
+                    work.step(step / 20)
+        finally:
+            ended.append(number)
+
+    with pytest.raises(Cancelled):
+        run(
+            lambda work: work.each(endless, range(3), threads),
+            progress=lambda fraction, text: calls.append((fraction, text)),
+            cancel=lambda: bool(calls) and calls[-1][0] > 0.15,
+        )
+    run(lambda _work: None)  # waits for what was stopped
+    assert sorted(ended) == list(range(min(3, threads)))
+    assert [fraction for fraction, _ in calls] == sorted(fraction for fraction, _ in calls)
+    assert "item 0" in {text for _, text in calls}

@@ -11,7 +11,8 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TypeVar
 
@@ -20,6 +21,7 @@ from .errors import BuildFailed, Cancelled
 
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
+Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
@@ -33,6 +35,7 @@ class Work:
     def __init__(self):
         self._lock = threading.Lock()
         self._control = None
+        self._works: list[Work] = []  # of the items of `each`, while it runs
         self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
         self._part = 0.0, 1.0
         self._share = 0.0
@@ -99,6 +102,45 @@ class Work:
             with self._lock:
                 self._control = None
 
+    def each(
+        self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
+    ) -> list[Result]:
+        """[task(work, item, threads) for item in items] as the present phase, several items at once where
+        `threads`, 0 for all, allows that. Each has a Work of its own, whose phases go from 0 to 1, and a
+        share of the threads. Raises what the first item raised that raised anything."""
+        items = list(items)
+        all_threads = threads or os.cpu_count() or 1
+        at_once = min(len(items), all_threads)
+        if at_once > 1:
+            # twice as many as there are: where one item has work for one thread only, another goes on
+            threads = -(-2 * all_threads // at_once)
+        works = [Work() for _ in items]
+
+        def done(number: int) -> Result:
+            before = getattr(_current, "work", None)
+            _current.work = works[number]
+            try:
+                return task(works[number], items[number], threads)
+            except BaseException:
+                for later in works[number + 1 :]:  # their results are not wanted any more
+                    later.cancel()
+                raise
+            finally:
+                _current.work = before
+
+        with self._lock:
+            self._works = works
+        try:
+            self.check()
+            if at_once < 2:
+                return [done(number) for number in range(len(items))]
+            with ThreadPoolExecutor(at_once, "realmodel work") as pool:
+                futures = [pool.submit(done, number) for number in range(len(items))]
+            return [future.result() for future in futures]
+        finally:
+            with self._lock:
+                self._works = []
+
     # -- in the caller's thread
 
     def state(self) -> tuple[float, str]:
@@ -107,16 +149,23 @@ class Work:
             share = self._share
             if self._control is not None:
                 share = max(share, self._control.fraction)
+            text = self._text
+            if self._works:
+                states = [work.state() for work in self._works]
+                share = max(share, sum(told for told, _ in states) / len(states))
+                text = next((text for told, text in states if text and told < 1.0), text)
             low, high = self._part
             share = self._start + (self._end - self._start) * share
             self._told = max(self._told, low + (high - low) * share)
-            return self._told, self._text
+            return self._told, text
 
     def cancel(self) -> None:
         with self._lock:
             self._cancelled = True
             if self._control is not None:
                 self._control.cancel()
+            for work in self._works:
+                work.cancel()
 
 
 class Job:

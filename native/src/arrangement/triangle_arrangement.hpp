@@ -139,17 +139,15 @@ private:
                                                const Progress* progress) const;
     bool do_cross(const Triangle& t, const SegmentPair& pair) const;
     void intersect_segments(int threads, const Progress* progress);
-    void exchange_points(int threads, const Progress* progress);
-    void messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
-                     std::vector<Message>& messages) const;
+    std::vector<std::vector<Edge>> exchange_points(int threads, const Progress* progress);
+    void messages_of(std::int32_t triangle, NodesOnLines& nodes_on, std::vector<Message>& messages,
+                     std::vector<Edge>& edges) const;
     void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
-                     std::size_t end, std::vector<Message>& messages) const;
-    static void find_edges(const Triangle& t, const NodesOnLines& nodes_on, std::size_t begin,
-                           std::size_t end, std::vector<Edge>& edges);
+                     std::size_t end, std::vector<Message>& messages,
+                     std::vector<Edge>& edges) const;
     class RegionFinder;
-    void find_all_regions(int threads, const Progress* progress);
-    std::vector<Regions> regions_of_large(std::span<const std::int32_t> large, int threads,
-                                          const Progress* progress) const;
+    void find_all_regions(std::vector<std::vector<Edge>>& edges, int threads,
+                          const Progress* progress);
 
     exact::SpacePoints& points_;
     std::vector<Triangle> triangles_;

@@ -277,20 +277,24 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
     }
 }
 
-/// The points on the edges and segments of a triangle, for the others that share these.
+/// The points on the edges and segments of a triangle, for the others that share these; and what
+/// they divide it into.
 void TriangleArrangement::messages_of(std::int32_t triangle, NodesOnLines& nodes_on,
-                                      std::vector<Message>& messages) const {
+                                      std::vector<Message>& messages,
+                                      std::vector<Edge>& edges) const {
     const Triangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
     nodes_on.take(t);
-    messages_of(triangle, nodes_on, 0, t.line_count(), messages);
+    edges.clear();
+    messages_of(triangle, nodes_on, 0, t.line_count(), messages, edges);
 }
 
 /// The points on some lines of a triangle.
 void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
                                       std::size_t begin, std::size_t end,
-                                      std::vector<Message>& messages) const {
+                                      std::vector<Message>& messages,
+                                      std::vector<Edge>& edges) const {
     const Triangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
         const Triangle& other = triangles_[index(to)];
@@ -302,14 +306,20 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
     };
     std::vector<SpacePointId> on;
     for (std::size_t i = begin; i < end; ++i) {
-        nodes_on.find(t.line(i), on);
+        const auto [a, b] = t.line(i);
+        nodes_on.find({a, b}, on);
+        SpacePointId last = a;
+        for (const SpacePointId p : on) {
+            edges.push_back(unordered(last, p));
+            last = p;
+        }
+        edges.push_back(unordered(last, b));
         if (i < t.segments.size()) {
             for (const SpacePointId p : on)
                 send(t.segments[i].other, p);
             continue;
         }
         if (on.empty()) continue;
-        const auto [a, b] = t.line(i);
         const auto edge = unordered(a, b);
         for (auto other = std::lower_bound(of_edge_.begin(), of_edge_.end(), std::pair(edge, 0));
              other != of_edge_.end() && other->first == edge; ++other) {
@@ -321,7 +331,10 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
 
 /// Sends the points on edges and segments to the other triangles that share these, until all of
 /// them know them.
-void TriangleArrangement::exchange_points(int threads, const Progress* progress) {
+/// @return for each triangle what its lines are divided into; none where nothing divides it
+std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchange_points(
+    int threads, const Progress* progress) {
+    std::vector<std::vector<Edge>> edges(triangles_.size());
     std::vector<std::int32_t> changed(triangles_.size());
     std::iota(changed.begin(), changed.end(), 0);
     while (!changed.empty()) {
@@ -332,20 +345,25 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
                             NodesOnLines nodes_on(*this);
                             for (std::size_t i = begin; i < end; ++i) {
                                 if (!std::ranges::binary_search(large, changed[i]))
-                                    messages_of(changed[i], nodes_on, messages[begin / kChunk]);
+                                    messages_of(changed[i], nodes_on, messages[begin / kChunk],
+                                                edges[index(changed[i])]);
                             }
                         });
         for (const std::int32_t triangle : large) {
             const Triangle& t = triangles_[index(triangle)];
             const NodesOnLines nodes_on(*this, t);
             const std::size_t first = messages.size();
-            messages.resize(first + (t.line_count() + kChunk - 1) / kChunk);
+            const std::size_t chunks = (t.line_count() + kChunk - 1) / kChunk;
+            messages.resize(first + chunks);
+            std::vector<std::vector<Edge>> own(chunks);
             parallel_ranges(
                 t.line_count(), kChunk, threads, progress,
                 [&](std::size_t begin, std::size_t end) {
-                    messages_of(triangle, nodes_on, begin, end, messages[first + begin / kChunk]);
+                    messages_of(triangle, nodes_on, begin, end, messages[first + begin / kChunk],
+                                own[begin / kChunk]);
                 },
                 0.02);
+            edges[index(triangle)] = joined(own);
         }
         changed.clear();
         for (const auto& chunk : messages) {
@@ -360,47 +378,25 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
         std::sort(changed.begin(), changed.end());
         changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     }
-}
-
-/// What some lines of a triangle are divided into.
-void TriangleArrangement::find_edges(const Triangle& t, const NodesOnLines& nodes_on,
-                                     std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
-    std::vector<SpacePointId> on;
-    for (std::size_t i = begin; i < end; ++i) {
-        const auto [a, b] = t.line(i);
-        nodes_on.find({a, b}, on);
-        SpacePointId last = a;
-        for (const SpacePointId p : on) {
-            edges.push_back(unordered(last, p));
-            last = p;
-        }
-        edges.push_back(unordered(last, b));
-    }
+    return edges;
 }
 
 /// Finds the regions of one triangle after another in the same memory.
 class TriangleArrangement::RegionFinder {
 public:
     explicit RegionFinder(const TriangleArrangement& arrangement)
-        : arrangement_(arrangement), nodes_on_(arrangement), graph_(arrangement.points_) {}
+        : arrangement_(arrangement), graph_(arrangement.points_) {}
 
-    void add_regions(std::int32_t triangle, Regions& regions) {
+    /// @param edges  all that its lines are divided into; put in order. None: nothing divides it
+    void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
         const Triangle& t = arrangement_.triangles_[index(triangle)];
         if (t.facing == 0) return;
-        if (t.points.empty() && t.segments.empty()) {
+        if (edges.empty()) {
             regions.loops.add_loop(t.corners);
             regions.loops.end_region();
             regions.triangles.push_back(triangle);
             return;
         }
-        edges_.clear();
-        nodes_on_.take(t);
-        find_edges(t, nodes_on_, 0, t.line_count(), edges_);
-        add_regions(triangle, edges_, regions);
-    }
-    /// @param edges  all that its lines are divided into; put in order
-    void add_regions(std::int32_t triangle, std::vector<Edge>& edges, Regions& regions) {
-        const Triangle& t = arrangement_.triangles_[index(triangle)];
         std::sort(edges.begin(), edges.end());
         edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
         graph_.add_regions({t.axis, t.facing}, edges, regions.loops);
@@ -409,35 +405,8 @@ public:
 
 private:
     const TriangleArrangement& arrangement_;
-    NodesOnLines nodes_on_;
     PlaneGraph graph_;
-    std::vector<Edge> edges_;
 };
-
-/// The regions of each large triangle.
-std::vector<Regions> TriangleArrangement::regions_of_large(std::span<const std::int32_t> large,
-                                                           int threads,
-                                                           const Progress* progress) const {
-    std::vector<std::vector<Edge>> edges(large.size());
-    for (std::size_t n = 0; n < large.size(); ++n) {
-        const Triangle& t = triangles_[index(large[n])];
-        const NodesOnLines nodes_on(*this, t);
-        std::vector<std::vector<Edge>> found((t.line_count() + kChunk - 1) / kChunk);
-        parallel_ranges(
-            t.line_count(), kChunk, threads, progress,
-            [&](std::size_t begin, std::size_t end) {
-                find_edges(t, nodes_on, begin, end, found[begin / kChunk]);
-            },
-            0.02);
-        edges[n] = joined(found);
-    }
-    std::vector<Regions> regions(large.size());
-    parallel_chunks(
-        large.size(), threads, progress,
-        [&](std::size_t n) { RegionFinder(*this).add_regions(large[n], edges[n], regions[n]); },
-        0.02);
-    return regions;
-}
 
 namespace {
 
@@ -472,35 +441,31 @@ Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progre
 
 }  // namespace
 
-void TriangleArrangement::find_all_regions(int threads, const Progress* progress) {
+/// @param edges  of each triangle, as exchange_points() gives them
+void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges, int threads,
+                                           const Progress* progress) {
     std::vector<std::int32_t> all(triangles_.size());
     std::iota(all.begin(), all.end(), 0);
     const std::vector<std::int32_t> large = large_triangles(all);
-    auto of_large = regions_of_large(large, threads, progress);
-    // large triangles are ranges of their own
-    struct Range {
-        std::size_t begin, end, large;
-    };
-    constexpr std::size_t kSmall = SIZE_MAX;
-    std::vector<Range> ranges;
-    for (std::size_t begin = 0, next = 0; begin < triangles_.size();) {
-        if (next < large.size() && index(large[next]) == begin) {
-            ranges.push_back({begin, begin + 1, next++});
+    // large triangles are ranges of their own, and begun first
+    std::vector<std::array<std::size_t, 2>> ranges;
+    std::vector<std::size_t> order;
+    for (std::size_t begin = 0, next = 0; begin < triangles_.size(); begin = ranges.back()[1]) {
+        const std::size_t to = next < large.size() ? index(large[next]) : triangles_.size();
+        if (to == begin) {
+            order.insert(order.begin() + static_cast<std::ptrdiff_t>(next++), ranges.size());
+            ranges.push_back({begin, begin + 1});
         } else {
-            const std::size_t end = next < large.size() ? index(large[next]) : triangles_.size();
-            ranges.push_back({begin, std::min(end, begin + kChunk), kSmall});
+            order.push_back(ranges.size());
+            ranges.push_back({begin, std::min(to, begin + kChunk)});
         }
-        begin = ranges.back().end;
     }
     std::vector<Regions> found(ranges.size());
     parallel_workers(ranges.size(), threads, progress, [&] {
-        return [&, finder = RegionFinder(*this)](std::size_t r) mutable {
-            if (ranges[r].large != kSmall) {
-                found[r] = std::move(of_large[ranges[r].large]);
-                return;
-            }
-            for (std::size_t i = ranges[r].begin; i < ranges[r].end; ++i)
-                finder.add_regions(static_cast<std::int32_t>(i), found[r]);
+        return [&, finder = RegionFinder(*this)](std::size_t at) mutable {
+            const std::size_t r = order[at];
+            for (std::size_t i = ranges[r][0]; i < ranges[r][1]; ++i)
+                finder.add_regions(static_cast<std::int32_t>(i), edges[i], found[r]);
         };
     });
     regions_ = joined(found, threads, progress);
@@ -513,8 +478,8 @@ void TriangleArrangement::divide(int threads, const Progress* progress) {
     sort_all(threads, progress);
     intersect_segments(threads, progress);
     sort_all(threads, progress);
-    exchange_points(threads, progress);
-    find_all_regions(threads, progress);
+    auto edges = exchange_points(threads, progress);
+    find_all_regions(edges, threads, progress);
 }
 
 }  // namespace realmodel::arrangement

@@ -246,16 +246,48 @@ namespace {
 
 constexpr std::size_t kFaces = 1 << 9;  // triangulated at a time
 
+std::size_t chunks_of(std::span<const std::int32_t> faces) {
+    return (faces.size() + kFaces - 1) / kFaces;
+}
+
+}  // namespace
+
+/// Divides a face into triangles of which few pass the surface: those beside the first of its
+/// triangles that the face may meet are cut off first.
+void SurfaceOverlay::triangulate(std::size_t face,
+                                 std::vector<std::array<std::int32_t, 3>>& triangles) const {
+    const auto corners = model_.face(face);
+    std::int32_t first = INT32_MAX;
+    if (corners.size() > 3 && is_active(face)) {
+        Box box;
+        for (const NodeId v : corners)
+            box.include(model_.vertex(v));
+        tree_->find(box, [&](std::int32_t t) {
+            if (t < first && !is_beside(face, t)) first = t;
+        });
+    }
+    if (first == INT32_MAX) {
+        triangulate_face(model_, face, triangles);
+        return;
+    }
+    const Position a = corner(first, 0);
+    const Position normal = polygon_normal(std::array{a, corner(first, 1), corner(first, 2)});
+    std::vector<std::int8_t> sides;
+    for (const NodeId v : corners)
+        sides.push_back(dot(normal, minus(model_.vertex(v), a)) > 0 ? kAbove : kBelow);
+    triangulate_face_beside(model_, face, sides, triangles);
+}
+
 /// Calls visit(chunk, face, triangle) for the triangles of some faces, on several threads.
 template <class Visit>
-void each_triangle_of(const ComplexView& model, std::span<const std::int32_t> faces, int threads,
-                      const Progress* progress, const Visit& visit) {
+void SurfaceOverlay::each_triangle_of(std::span<const std::int32_t> faces,
+                                      const Visit& visit) const {
     parallel_ranges(
-        faces.size(), kFaces, threads, progress,
+        faces.size(), kFaces, threads_, progress_,
         [&](std::size_t begin, std::size_t end) {
             std::vector<std::array<std::int32_t, 3>> triangles;
             for (std::size_t i = begin; i < end; ++i) {
-                triangulate_face(model, index(faces[i]), triangles);
+                triangulate(index(faces[i]), triangles);
                 for (const auto& t : triangles)
                     visit(begin / kFaces, faces[i], t);
             }
@@ -263,27 +295,20 @@ void each_triangle_of(const ComplexView& model, std::span<const std::int32_t> fa
         0.02);
 }
 
-std::size_t chunks_of(std::span<const std::int32_t> faces) {
-    return (faces.size() + kFaces - 1) / kFaces;
-}
-
-}  // namespace
-
 /// The edges of triangles without area; the vertices of the faces have exact points.
 std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     std::span<const std::int32_t> faces) const {
     std::vector<std::vector<std::array<NodeId, 2>>> found(chunks_of(faces));
-    each_triangle_of(model_, faces, threads_, progress_,
-                     [&](std::size_t chunk, std::int32_t, const std::array<std::int32_t, 3>& t) {
-                         const SpacePointId a = vertex_point_[index(t[0])],
-                                            b = vertex_point_[index(t[1])],
-                                            c = vertex_point_[index(t[2])];
-                         bool flat = true;
-                         for (std::size_t axis = 0; axis < 3 && flat; ++axis)
-                             flat = exact::orient2d(points_, axis, a, b, c) == 0;
-                         for (std::size_t i = 0; flat && i < 3; ++i)
-                             found[chunk].push_back(unordered(t[i], t[(i + 1) % 3]));
-                     });
+    each_triangle_of(
+        faces, [&](std::size_t chunk, std::int32_t, const std::array<std::int32_t, 3>& t) {
+            const SpacePointId a = vertex_point_[index(t[0])], b = vertex_point_[index(t[1])],
+                               c = vertex_point_[index(t[2])];
+            bool flat = true;
+            for (std::size_t axis = 0; axis < 3 && flat; ++axis)
+                flat = exact::orient2d(points_, axis, a, b, c) == 0;
+            for (std::size_t i = 0; flat && i < 3; ++i)
+                found[chunk].push_back(unordered(t[i], t[(i + 1) % 3]));
+        });
     std::vector<std::array<NodeId, 2>> edges;
     for (const auto& chunk : found)
         edges.insert(edges.end(), chunk.begin(), chunk.end());
@@ -364,13 +389,11 @@ void SurfaceOverlay::add_triangles() {
         std::vector<std::int32_t> faces;
     };
     std::vector<Triangles> found(chunks_of(active_faces_));
-    each_triangle_of(
-        model_, active_faces_, threads_, progress_,
-        [&](std::size_t chunk, std::int32_t face, const auto& t) {
-            found[chunk].corners.push_back({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
-                                            vertex_point_[index(t[2])]});
-            found[chunk].faces.push_back(face);
-        });
+    each_triangle_of(active_faces_, [&](std::size_t chunk, std::int32_t face, const auto& t) {
+        found[chunk].corners.push_back(
+            {vertex_point_[index(t[0])], vertex_point_[index(t[1])], vertex_point_[index(t[2])]});
+        found[chunk].faces.push_back(face);
+    });
     std::vector<std::array<SpacePointId, 3>> corners;
     for (const Triangles& own : found) {
         corners.insert(corners.end(), own.corners.begin(), own.corners.end());

@@ -99,6 +99,9 @@ private:
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
     bool is_beside(std::size_t face, std::int32_t triangle) const;
+    void triangulate(std::size_t face, std::vector<std::array<std::int32_t, 3>>& triangles) const;
+    template <class Visit>
+    void each_triangle_of(std::span<const std::int32_t> faces, const Visit& visit) const;
     std::optional<SpacePointId> confirmed(SpacePointId found, const Position& p) const;
     std::optional<SpacePointId> point_on_edge(const Position& p, const Position& a,
                                               const Position& b);
@@ -148,7 +151,7 @@ void SurfaceOverlay::each_triangle(std::size_t axis, SpacePointId p, const Visit
             meets = at[(axis + k) % 3] >= low - margin_ && at[(axis + k) % 3] <= high + margin_;
         }
         if (!meets) continue;
-        triangulate_face(model_, f, triangles);
+        triangulate(f, triangles);
         for (const auto& t : triangles)
             visit(f, std::array{exact(t[0]), exact(t[1]), exact(t[2])});
     }

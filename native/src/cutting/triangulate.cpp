@@ -33,7 +33,11 @@ public:
     Ring(const PlanePosition& rounding, const CornerTurns& turns, std::vector<Triangle>& triangles)
         : rounding_(rounding), turns_(turns), triangles_(triangles) {}
 
-    void take(const Loop& outline) { entry_ = append(outline); }
+    /// @param sides  of its corners; ears on one side alone are cut off first. Empty: not known
+    void take(const Loop& outline, std::span<const std::int8_t> sides = {}) {
+        entry_ = append(outline);
+        sides_ = sides;
+    }
     /// `others`: loops that the bridge must not cross, the hole among them.
     void join_hole(const Loop& hole, std::span<const Loop> others);
     /// False where an ear had to be cut off that is none.
@@ -44,7 +48,7 @@ private:
         LoopCorner corner;
         std::int32_t previous, next;
     };
-    enum class Care { kFat, kProper, kStrict, kNone };
+    enum class Care { kBeside, kFat, kProper, kStrict, kNone };
     static constexpr std::size_t kFew = 64;
 
     Link& link(std::int32_t i) { return links_[index(i)]; }
@@ -60,6 +64,7 @@ private:
     }
     bool is_ear(std::int32_t tip, Care care);
     bool blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, Care care);
+    Care first_care() const { return sides_.empty() ? Care::kFat : Care::kBeside; }
     void enter_corners();
     void remove(std::int32_t i);
 
@@ -67,6 +72,7 @@ private:
     const CornerTurns& turns_;
     std::vector<Triangle>& triangles_;
     std::vector<Link> links_;
+    std::span<const std::int8_t> sides_;
     std::int32_t entry_ = -1;
     std::size_t count_ = 0;
     std::optional<spatial::CornerGrid> grid_;  ///< of the ring's corners, where they are many
@@ -207,6 +213,11 @@ bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int
 
 bool Ring::is_ear(std::int32_t tip, Care care) {
     const std::int32_t a = link(tip).previous, c = link(tip).next;
+    if (care == Care::kBeside) {
+        if (sides_[index(a)] != sides_[index(tip)] || sides_[index(tip)] != sides_[index(c)])
+            return false;
+        care = Care::kFat;
+    }
     if (node(a) == node(tip) || node(tip) == node(c) || node(a) == node(c)) return false;
     if (care == Care::kNone) return true;
     if (turn(a, tip, c) <= 0) return false;
@@ -237,7 +248,7 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
 bool Ring::cut_ears() {
     bool clean = true;
     enter_corners();
-    Care care = Care::kFat;
+    Care care = first_care();
     std::int32_t tip = entry_, stop = entry_;
     while (count_ > 2) {
         if (is_ear(tip, care)) {
@@ -245,7 +256,7 @@ bool Ring::cut_ears() {
             triangles_.push_back({link(a).corner, link(tip).corner, link(c).corner});
             clean = clean && care != Care::kNone;
             remove(tip);
-            care = Care::kFat;
+            care = first_care();
             tip = stop = link(c).next;  // leaving out the next corner makes fewer needles
             continue;
         }
@@ -265,7 +276,7 @@ bool Ring::cut_ears() {
         stop = link(beyond).next;
         remove(tip);
         tip = stop;
-        care = Care::kFat;
+        care = first_care();
     }
     return clean;
 }
@@ -323,6 +334,15 @@ std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const
 
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
     return exact::orient2d(a.at, b.at, c.at);
+}
+
+bool triangulate_beside(const Loop& loop, std::span<const std::int8_t> sides,
+                        const PlanePosition& rounding,
+                        std::vector<std::array<LoopCorner, 3>>& triangles) {
+    const CornerTurns turns;
+    Ring ring(rounding, turns, triangles);
+    ring.take(loop, sides);
+    return ring.cut_ears();
 }
 
 bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,

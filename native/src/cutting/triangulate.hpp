@@ -42,6 +42,13 @@ public:
 bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
                  std::vector<std::array<LoopCorner, 3>>& triangles, const CornerTurns& turns = {});
 
+/// The same for one loop, of whose corners is known on which side of something they lie: triangles
+/// on one side are cut off first, so that few are left that reach across.
+/// @param sides  of the loop's corners
+bool triangulate_beside(const Loop& loop, std::span<const std::int8_t> sides,
+                        const PlanePosition& rounding,
+                        std::vector<std::array<LoopCorner, 3>>& triangles);
+
 /// The same region in convex polygons, up to `rounding`: triangles merged wherever that leaves a
 /// convex one (S. Hertel and K. Mehlhorn 1983). `slits` are edges that must stay, as (lesser,
 /// greater) node, sorted.

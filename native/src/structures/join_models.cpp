@@ -149,6 +149,11 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
         complex.cell_block.push_back(together.cell_block[index(cell.cell)]);
     const std::size_t own = together.vertices.size();
     std::vector<std::int32_t> number(own + new_positions.size(), -1);
+    const cutting::Pieces& near = pieces.near();
+    complex.face_offsets.reserve(together.face_surface.size() + near.size() + 1);
+    complex.face_vertices.reserve(together.face_vertices.size() + near.polygons.nodes.size());
+    complex.face_cells.reserve(together.face_surface.size() + near.size());
+    complex.face_surface.reserve(together.face_surface.size() + near.size());
     complex.face_offsets.push_back(0);
     std::size_t visited = 0;
     pieces.each([&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {

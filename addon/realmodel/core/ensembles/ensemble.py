@@ -16,6 +16,7 @@ from ..project import Project
 from ..work import Cancel, Progress, Work, run
 from .places import Probabilities, blocks_at
 from .realization import Realizer
+from .surface_heights import differences, heights
 
 BATCH = (
     8  # realizations that are summed before others are added: so sums do not depend on the number of workers
@@ -27,8 +28,8 @@ Places = np.ndarray | Callable[[Model], np.ndarray]
 @dataclass
 class Sums:
     """Of some realizations, in order. volumes: (K, B) float64 of the blocks. heights, squares: for each
-    surface the sum of differences (V,) from its interpolated heights, and of their squares; None where it has
-    no points or a fault displaces it. counts: (N, B) int32: how often each block is at each place."""
+    surface the sum of differences (V,) from its interpolated heights, and of their squares; None for ready
+    meshes. counts: (N, B) int32: how often each block is at each place."""
 
     volumes: np.ndarray
     heights: list[np.ndarray | None]
@@ -54,16 +55,13 @@ def batches(realizations: int) -> list[range]:
 
 def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 0) -> Sums:
     """Those of one realization. places: (N, 3)."""
-    base, model = realizer.model, realizer.realization(number, threads=threads)
-    differences = [
-        None if drawn is None or base.structures is not None else drawn.z - given.z
-        for drawn, given in zip(model.interpolations, base.interpolations, strict=True)
-    ]
+    model = realizer.realization(number, threads=threads)
+    found = differences(realizer.model, model, threads)
     blocks = blocks_at(model, places, threads)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
-        differences,
-        [None if each is None else each**2 for each in differences],
+        found,
+        [None if each is None else each**2 for each in found],
         (blocks[:, None] == np.arange(len(model.blocks))).astype(np.int32),
     )
 
@@ -78,8 +76,9 @@ class Ensemble:
     """Realizations of a model.
 
     model: with the interpolated heights. volumes: (R, B) float64, of each block in each realization.
-    surface_mean, surface_deviation: for each surface (V,) float64 at its vertices, the mean of the heights
-    and their standard deviation; None for ready meshes and surfaces that faults displace. places: (N, 3).
+    surface_mean, surface_deviation: for each surface (V,) float64 at the nodes of the planar mesh, or where
+    faults divide the rock mass at the vertices of its sheets, the mean of the heights and their standard
+    deviation, NaN where not all realizations have a height; None for ready meshes. places: (N, 3).
     probability: (N, B) float64, of each block at each place.
     """
 
@@ -96,14 +95,12 @@ class Ensemble:
     def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
         count = len(sums.volumes)
         means, deviations = [], []
-        for given, total, squares in zip(
-            realizer.model.interpolations, sums.heights, sums.squares, strict=True
-        ):
+        for given, total, squares in zip(heights(realizer.model), sums.heights, sums.squares, strict=True):
             if total is None:
                 means.append(None)
                 deviations.append(None)
                 continue
-            means.append(given.z + total / count)
+            means.append(given + total / count)
             rest = np.maximum(squares - total**2 / count, 0.0)
             deviations.append(np.sqrt(rest / max(1, count - 1)))
         return cls(

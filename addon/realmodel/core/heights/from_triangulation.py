@@ -3,13 +3,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
+
 from ..work import native_module
+from .extrapolation import outside_hull
 from .interpolation import Result, Task
 
 
 def linear(task: Task) -> Result:
-    return Result(task.run(native_module().tin, task.points, task.nodes))
+    return _inside_hull(task, native_module().tin)
 
 
 def natural_neighbour(task: Task) -> Result:
-    return Result(task.run(native_module().natural_neighbour, task.points, task.nodes))
+    return _inside_hull(task, native_module().natural_neighbour)
+
+
+def _inside_hull(task: Task, function: Callable) -> Result:
+    """Heights of all nodes; outside the hull of the points only where the method is to extrapolate."""
+    if task.settings.get("extrapolate", "method") == "method":
+        return Result(task.run(function, task.points, task.nodes))
+    outside = outside_hull(task)
+    z = np.full(len(task.nodes), np.nan)
+    if not outside.all():
+        z[~outside] = task.run(function, task.points, np.ascontiguousarray(task.nodes[~outside]))
+    return Result(z, outside=outside)

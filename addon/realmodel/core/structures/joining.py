@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from ..stack_refusals import refused_stack
@@ -36,10 +34,15 @@ def build_joined(
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
     models, parts, warnings = [], [], {}
     reach = Reach(work, structures, threads)
-    steps = np.linspace(start, start + _BUILT * (end - start), len(structures.sides) + 1)
-    for part, (begin, finish) in enumerate(itertools.pairwise(steps)):
-        with work.phase(float(begin), float(finish), "intersecting and cutting"):
-            built = _part_model(work, inputs, structures, reach, part, cells, threads)
+    begin = start + _BUILT * (end - start)
+
+    def built_in(own_work: Work, part: int, own_threads: int) -> dict | None:
+        with own_work.phase(0.0, 1.0, "intersecting and cutting"):
+            return _part_model(own_work, inputs, structures, reach, part, cells, own_threads)
+
+    with work.phase(start, begin, "intersecting and cutting"):
+        made = work.each(built_in, range(len(structures.sides)), threads)
+    for part, built in enumerate(made):
         if built is not None and len(built["cell_block"]):
             warnings |= dict.fromkeys((w[0], w[1], tuple(w[2]), w[3]) for w in built.pop("warnings"))
             models.append((built, structures.sides[part].tolist()))
@@ -48,7 +51,7 @@ def build_joined(
         return _nothing(inputs, structures)
     native = native_module()
     divides = acts(inputs, structures)
-    with work.phase(float(steps[-1]), end, "joining the compartments"):
+    with work.phase(begin, end, "joining the compartments"):
         try:
             joined = work.native(
                 native.join_structured, models, structures.native(), divides, threads=threads

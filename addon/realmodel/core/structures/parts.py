@@ -177,22 +177,26 @@ def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
 def box_around(inputs: list, structures: Structures) -> np.ndarray:
     """(2, 3) corners of a box around all rock that there may be: around RockInputs and bodies, with a margin
     for what is not interpolated yet."""
-    plan, heights = [], [body.vertices[:, 2] for body in structures.bodies]
+    x, y, z = [], [], [body.vertices[:, 2] for body in structures.bodies]
     for entry in inputs:
         if entry.region is not None:
-            plan.append(entry.region[0])
+            x.append(entry.region[0][:, 0])
+            y.append(entry.region[0][:, 1])
         for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
             given = surface.points if shape is None else shape[0]
             given = np.asarray(given, np.float64).reshape(-1, 3)
-            heights.append(given[:, 2])
+            z.append(given[:, 2])
             if entry.region is None:
-                plan.append(given[:, :2])
+                x.append(given[:, 0])
+                y.append(given[:, 1])
         if entry.rock.base_elevation is not None:
-            heights.append(np.array([entry.rock.base_elevation]))
-    if not any(map(len, heights)):
-        heights = [fault.vertices[:, 2] for fault in structures.faults]
-    places, z = np.concatenate(plan), np.concatenate(heights)
-    low, high = (np.append(corner(places, axis=0), corner(z)) for corner in (np.min, np.max))
+            z.append(np.array([entry.rock.base_elevation]))
+    if not any(map(len, z)):
+        z = [fault.vertices[:, 2] for fault in structures.faults]
+    low, high = (
+        np.array([corner([corner(each) for each in axis if len(each)]) for axis in (x, y, z)])
+        for corner in (np.min, np.max)
+    )
     made = all(shape is not None for entry in inputs for shape in entry.surfaces)
     margin = np.array([0.0, 0.0, 0.0 if made else _BEYOND * (high[2] - low[2])])
     margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])

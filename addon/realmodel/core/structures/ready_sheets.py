@@ -104,6 +104,8 @@ class ReadyMesh:
         for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
+                if not side:
+                    continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing

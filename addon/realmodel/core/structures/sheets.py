@@ -4,6 +4,7 @@ displace it, from what lies in these compartments."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -30,21 +31,35 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
     rock = entry.rock
     count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
     interpolated = interpolation_order(rock, stage)
-    order = [*(number for number in range(count) if number not in interpolated), *interpolated]
-    for at, number in enumerate(order):
-        begin, finish = (start + (end - start) * part / len(order) for part in (at, at + 1))
+    ready = [number for number in range(count) if number not in interpolated]
+    steps = np.linspace(start, end, count + 1).tolist()[len(ready) :]
+
+    def sheets_of(part: Work, number: int, own_threads: int) -> list:
+        with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
+            return _make_named(ReadyMesh, part, entry, number, own_threads)
+
+    # ready meshes need no others
+    with work.phase(start, steps[0], "interpolating surfaces"):
+        for warnings in work.each(sheets_of, ready, threads):
+            entry.structure.warnings += warnings
+    for number, (begin, finish) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
-            kind = InterpolatedSurface if number in interpolated else ReadyMesh
-            try:
-                _make(entry, number, kind(work, entry, number, threads))
-            except InputRefused as error:
-                if error.item is not None and error.item.startswith("rock '"):
-                    raise
-                surface = rock.surfaces[number]
-                file, line = surface.shape_source()
-                raise error.within(surface_item(rock, surface), file=file, line=line) from error
+            entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads)
     for number in sorted(interpolated):
         _tell_of_points_too_low(work, entry, number, threads)
+
+
+def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
+    """_make, whose refusals name the surface."""
+    rock = entry.rock
+    try:
+        return _make(entry, number, kind(work, entry, number, threads))
+    except InputRefused as error:
+        if error.item is not None and error.item.startswith("rock '"):
+            raise
+        surface = rock.surfaces[number]
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
 
 
 def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
@@ -68,8 +83,10 @@ def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             structure.tell([compartment], warning)
 
 
-def _make(entry, number: int, surface) -> None:
-    structure = entry.structure
+def _make(entry, number: int, surface) -> list:
+    """Makes the sheets of a surface. Returns warnings, as a RockStructure has them, of compartments without
+    data."""
+    structure, warnings = entry.structure, []
     every = families(structure, number)
     with_data = [family for family in every if surface.has_data(family)]
     if not with_data:
@@ -87,7 +104,8 @@ def _make(entry, number: int, surface) -> None:
         for family in lacking:
             if (source := sources[family.key]) is not None:
                 made[family.key] = _taken_over(surface, family, made[source])
-                _tell(entry, number, surface, family, next(each for each in every if each.key == source))
+                origin = next(each for each in every if each.key == source)
+                warnings.append(_taken_over_warning(entry, number, surface, family, origin))
         lacking = [family for family in lacking if family.key not in made]
     for family in every:
         for compartment, sides in family.members.items():
@@ -100,6 +118,7 @@ def _make(entry, number: int, surface) -> None:
     sheets = structure.distinct(number)
     entry.surfaces[number] = joined(sheets)
     surface.finish(sheets)
+    return warnings
 
 
 def _neighbor(key, made, counts):
@@ -124,9 +143,9 @@ def _drawn_together(surface, family: Family, sheets: dict) -> dict:
     }
 
 
-def _tell(entry, number: int, surface, family: Family, source: Family) -> None:
+def _taken_over_warning(entry, number: int, surface, family: Family, source: Family):
     names = entry.structure.names
     here, there = (names[next(iter(each.members))] for each in (family, source))
     text = f"it has no {surface.data} in compartment '{here}': there it goes on as in compartment '{there}'"
     warning = BuildWarning(text, "compartment", entry.rock.name, entry.rock.surfaces[number].name)
-    entry.structure.warnings.append((list(family.members), warning))
+    return list(family.members), warning
