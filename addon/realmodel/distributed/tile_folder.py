@@ -283,10 +283,10 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
     store, frame, names = shared
     model = read_model(frame.project, store.file("built", name))
-    around = _around(name, names)
+    around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
-    borders = {other: BorderVertices.of_arrays(arrays) for other, arrays in sides.items()}
-    places = dict(zip(around, settled(frame.grid.box(*name), borders.values()), strict=True))
+    borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
+    places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
     theirs = {}
     for side, other in _neighbors(frame, name, names):

@@ -21,10 +21,9 @@ from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
 from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
-from .settling import BorderVertices
+from .settling import BorderVertices, Box
 
 _REGION = "region"  # in the place of a surface's number
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
