@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .rock_structure import RockStructure
+from .sides import RockFaults
 
 DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 
@@ -29,6 +30,18 @@ class Family:
     def dying(self) -> list[int]:
         """The faults that die out here."""
         return [fault for fault, side in enumerate(self.key) if side == DIES_OUT]
+
+    def with_ends(self, some: list[int], faults: RockFaults) -> list[int]:
+        """Some of the faults that die out here, as numbers among these, and those at which they end: where
+        these are not themselves, sheets beside the others may still differ on their two sides."""
+        dying, found = self.dying, set(some)
+        waiting = list(some)
+        while waiting:
+            for other, _ in faults.ends[dying[waiting.pop()]]:
+                if other in dying and (number := dying.index(other)) not in found:
+                    found.add(number)
+                    waiting.append(number)
+        return sorted(found)
 
 
 def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:

@@ -104,6 +104,7 @@ class InterpolatedSurface:
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
+        met = family.with_ends(met, self.entry.structure.faults)
         hidden = {
             (number, side): own
             & (self.sides[:, family.dying[number]] == -side)

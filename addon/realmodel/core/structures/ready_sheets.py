@@ -94,6 +94,7 @@ class ReadyMesh:
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
+        met = family.with_ends(met, self.entry.structure.faults)
         self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles

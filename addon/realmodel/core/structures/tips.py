@@ -16,7 +16,8 @@ import numpy as np
 from ..algebra import norm
 from ..work import Work, native_module
 from .between_sheets import torn_triangles
-from .sides import FaultShape, Triangulation, fault_sides
+from .rock_structure import Triangulation
+from .sides import FaultShape, fault_sides
 from .triangles import (
     crossing_pairs,
     distances_of_pairs,
