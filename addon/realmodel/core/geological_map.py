@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .algebra import dot, norm
 from .booleans import intersect
 from .errors import BuildFailed, InputRefused
 from .plan_rings import covers_once, net_edges, polygons_of
@@ -180,8 +181,8 @@ def _vertices_on_edges(
         if len(near) < 3:
             continue
         way, to = plan[b] - plan[a], plan[near] - plan[a]
-        length = np.hypot(*way)
-        along, across = to @ way / length, (to[:, 0] * way[1] - to[:, 1] * way[0]) / length
+        length = norm(way)
+        along, across = dot(to, way) / length, (to[:, 0] * way[1] - to[:, 1] * way[0]) / length
         on = (np.abs(across) <= apart) & (along > 0) & (along < length) & (near != a) & (near != b)
         if on.any():
             found[a, b] = near[on][np.argsort(along[on], kind="stable")].tolist()

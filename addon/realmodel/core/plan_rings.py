@@ -7,6 +7,7 @@ from collections import defaultdict
 
 import numpy as np
 
+from .algebra import dot
 from .errors import BuildFailed
 from .structures.exact import orient2d
 
@@ -126,7 +127,7 @@ def _half(points: np.ndarray, at: int, origin: int, way: int) -> int:
     itself."""
     side = _side(points, at, origin, way)
     if side == 0:
-        away = np.dot(points[origin] - points[at], points[way] - points[at]) < 0
+        away = dot(points[origin] - points[at], points[way] - points[at]) < 0
         return 1 if away else 3
     return 0 if side < 0 else 2
 

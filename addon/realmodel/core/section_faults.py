@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .algebra import dot
+
 if TYPE_CHECKING:
     from .model import Model
 
@@ -54,7 +56,7 @@ def _segments(model: Model, point: np.ndarray, normal: np.ndarray) -> tuple[np.n
     following = np.arange(1, len(corners) + 1)
     following[offsets[1:] - 1] = offsets[:-1]
     here = model.vertices[corners]
-    away = (here - point) @ normal
+    away = dot(here - point, normal)
     crossing = np.flatnonzero((away >= 0) != (away[following] >= 0))
     share = away[crossing] / (away[crossing] - away[following[crossing]])
     at = here[crossing] + share[:, None] * (here[following[crossing]] - here[crossing])
@@ -70,7 +72,7 @@ def _on_panel(model: Model, start: np.ndarray, end: np.ndarray) -> tuple[np.ndar
     """The segments on the plane through two points in plan, between these."""
     step = end - start
     ends, surface = _segments(model, np.array([*start, 0.0]), np.array([step[1], -step[0], 0.0]))
-    share = (ends[:, :, :2] - start) @ step / (step @ step)
+    share = dot(ends[:, :, :2] - start, step) / dot(step, step)
     kept = (share.min(axis=1) < 1.0) & (share.max(axis=1) > 0.0)
     ends, share, surface = ends[kept], share[kept], surface[kept]
     length = share[:, 1:] - share[:, :1]

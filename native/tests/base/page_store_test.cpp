@@ -23,10 +23,16 @@ using page_store::kBlock;
 
 constexpr std::size_t kLarge = 5 * kBlock / sizeof(std::uint64_t);  // elements
 
-/// Under AddressSanitizer, and where the system is not Linux, arrays come from malloc: they behave
-/// the same, and nothing is kept.
+/// Under AddressSanitizer, and on other systems than Linux and Windows, arrays come from malloc:
+/// they behave the same, and nothing is kept. Windows keeps up to a quarter of what was used more.
 void expect_kept(std::size_t blocks) {
-    EXPECT_EQ(page_store::kept(), page_store::kIsThere ? blocks * kBlock : 0);
+    const std::size_t bytes = page_store::kIsThere ? blocks * kBlock : 0;
+#if defined(_WIN64)
+    EXPECT_GE(page_store::kept(), bytes);
+    EXPECT_LE(page_store::kept(), bytes + 4 * kBlock);
+#else
+    EXPECT_EQ(page_store::kept(), bytes);
+#endif
 }
 
 std::uint64_t mixed(std::uint64_t i) {

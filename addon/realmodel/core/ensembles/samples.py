@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algebra import dot
 from ..errors import UsageError
 from ..regular_cells import checked_size, frame_of
 from ..section import Fence, Section
@@ -148,6 +149,6 @@ def _in_space(section: Section, flat: np.ndarray, panels: np.ndarray) -> np.ndar
     if right is None:
         return np.stack([u, v, np.full(u.shape, point[2])], axis=2)
     # drawings begin at the lowest coordinate
-    u = u + ((section.vertices - point) @ right).min()
-    v = v + (-point[2] if is_vertical(section) else ((section.vertices - point) @ up).min())
+    u = u + (dot(section.vertices - point, right)).min()
+    v = v + (-point[2] if is_vertical(section) else (dot(section.vertices - point, up)).min())
     return point + u[:, :, None] * right + v[:, :, None] * up

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algebra import norm
 from ..elementary import cos, exp, hypot, sin
 from ..variogram import NO_ANISOTROPY, Structure, Variogram
 from ..work import Work, native_module
@@ -100,9 +101,11 @@ def gaussian_field(
 def _of_structure(
     work, part: Structure, anisotropy, frame, local, noise: Noise, number, threads
 ) -> np.ndarray:
-    directions = _directions() @ _to_isotropic(part.anisotropy or anisotropy or NO_ANISOTROPY)
+    east, north = _directions().T[:, :, None]
+    along, across = _to_isotropic(part.anisotropy or anisotropy or NO_ANISOTROPY)
+    directions = east * along + north * across
     reach = hypot(*(frame.high - frame.low)) / 2
-    reach *= float(np.linalg.norm(directions, axis=1).max())  # how far lines go, both ways
+    reach *= float(norm(directions).max())  # how far lines go, both ways
     # half of it is as far as covariances count; a process as smooth as these needs them to end near 0
     length = 2 * max(2 * reach, _ENDS * part.range)
     samples = int(min(_MOST_SAMPLES, 2 ** math.ceil(math.log2(length / part.range * _STEPS))))

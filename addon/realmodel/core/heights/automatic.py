@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..algebra import principal_axes
 from ..methods import checked_options
 from . import from_neighbours
 from .interpolation import Result, Task, run_method
@@ -81,7 +82,7 @@ def choose(task: Task) -> tuple[Trial, str]:
     if len(places) == 2:
         why = "there are two points only: the slope between them is all they show"
         return _trial(task, Candidate("plane", {})), why
-    spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
+    spread, _ = principal_axes(places)
     if len(places) < _FEW and spread[1] < _IN_LINE * spread[0]:
         why = f"there are {len(places)} points, nearly in one line"
         return _trial(task, Candidate("plane", {})), why

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..algebra import dot, norm
 from .triangles import crossing_pairs
 from .within import Within, box_of, middles_of_parts
 
@@ -72,7 +73,7 @@ def common_lines(one: np.ndarray, other: np.ndarray) -> np.ndarray:
         polygon = polygon + _INSET * (polygon.mean(axis=0) - polygon)
     normal = np.cross(other[1] - other[0], other[2] - other[0])
     end = polygon.copy()
-    end[:, 2] = other[0, 2] - (polygon - other[0])[:, :2] @ normal[:2] / normal[2]
+    end[:, 2] = other[0, 2] - dot((polygon - other[0])[:, :2], normal[:2]) / normal[2]
     return np.stack([polygon, end])
 
 
@@ -92,7 +93,7 @@ def _clipped(polygon: np.ndarray, planes: list[tuple[np.ndarray, np.ndarray]]) -
     for at, inward in planes:
         if not len(polygon):
             break
-        off = (polygon - at) @ inward
+        off = dot(polygon - at, inward)
         after = np.roll(polygon, -1, axis=0)
         off_after = np.roll(off, -1)
         crosses = (off < 0) != (off_after < 0)
@@ -107,6 +108,6 @@ def _is_narrow(polygon: np.ndarray, width: float) -> bool:
     if len(polygon) < 3:
         return True
     spokes = polygon - polygon[0]
-    area = np.linalg.norm(np.cross(spokes[1:-1], spokes[2:]).sum(axis=0))
-    length = np.linalg.norm(polygon - np.roll(polygon, -1, axis=0), axis=1).sum()
+    area = norm(np.cross(spokes[1:-1], spokes[2:]).sum(axis=0))
+    length = norm(polygon - np.roll(polygon, -1, axis=0)).sum()
     return bool(area <= width * length)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..algebra import norm
 from ..errors import InputRefused, place_text
 from .entries import Fault, fault_item
 from .triangles import distances, meet, open_edges
@@ -19,7 +20,7 @@ def require_meeting(faults: list[Fault]) -> None:
         for name in fault.ends_at:
             other = named[name]
             both = np.concatenate([fault.vertices, other.vertices])
-            _require_meeting(fault, other, _TOUCHES * float(np.linalg.norm(np.ptp(both, axis=0))))
+            _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
 
 
 def _require_meeting(branch: Fault, other: Fault, near: float) -> None:

@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..algebra import dot
 from ..rules import RULES
 from ..work import native_module
+from ..wrong_sides import Triangulation
 from .exact import orient2d, orient3d
 from .sides import FaultShape, RockFaults
 from .triangles import distances_of_pairs, open_edges
-
-Triangulation = tuple[np.ndarray, np.ndarray]
 
 AIR = -1
 _BASEMENT = -2  # below the first surface: no block, but there to be cut
@@ -298,7 +298,7 @@ def _to_segments(points: np.ndarray, ends: np.ndarray) -> np.ndarray:
     found = np.full(len(points), np.inf)
     for begin, end in ends:
         along = end - begin
-        share = np.clip((points - begin) @ along / (along @ along), 0.0, 1.0)
+        share = np.clip(dot(points - begin, along) / dot(along, along), 0.0, 1.0)
         found = np.minimum(found, np.linalg.norm(points - begin - share[:, None] * along, axis=1))
     return found
 

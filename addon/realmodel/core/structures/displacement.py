@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algebra import dot, norm, principal_axes
 from ..work import Work, run
 from .rock_structure import Triangulation
 from .sides import fault_sides
@@ -92,17 +93,17 @@ def _along(work: Work, model, entry, fault: int, surface: int, below: int, above
     if len(low) < 2 or len(high) < 2:
         return nothing
     normal = _normals(low, shape)
-    level = np.linalg.norm(normal[:, :2], axis=1)
+    level = norm(normal[:, :2])
     steep = level > 1e-9
     low, normal = low[steep], normal[steep]
     across = normal[:, :2] / level[steep, None]
     along = np.column_stack([-across[:, 1], across[:, 0]])
     places, throw, heave = [], [], []
-    apart = np.diff(high[np.argsort(high @ _main(high))], axis=0)
-    step = _ALONG * float(np.median(np.linalg.norm(apart, axis=1)))
+    apart = np.diff(high[np.argsort(dot(high, principal_axes(high)[1][0]))], axis=0)
+    step = _ALONG * float(np.median(norm(apart)))
     for place, direction, sideways in zip(low, along, across, strict=True):
         away = high - place
-        shift = away[:, :2] @ direction
+        shift = dot(away[:, :2], direction)
         before, after = np.where(shift <= 0, shift, -np.inf), np.where(shift >= 0, shift, np.inf)
         one, other = int(before.argmax()), int(after.argmin())
         if before[one] < -step or after[other] > step:
@@ -111,7 +112,7 @@ def _along(work: Work, model, entry, fault: int, surface: int, below: int, above
         there = away[one] + share * (away[other] - away[one])
         places.append(place)
         throw.append(-there[2])
-        heave.append(abs(there[:2] @ sideways))
+        heave.append(abs(dot(there[:2], sideways)))
     return (np.array(places).reshape(-1, 3), np.array(throw), np.array(heave)) if places else nothing
 
 
@@ -122,15 +123,10 @@ def _trace(work: Work, sheet: Triangulation, shape, within, threads: int) -> np.
     return places[within(places)] if len(places) else places
 
 
-def _main(places: np.ndarray) -> np.ndarray:
-    """The direction in which places spread most."""
-    return np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2][0]
-
-
 def _normals(places: np.ndarray, shape: Triangulation) -> np.ndarray:
     """(N, 3) of length 1: those of the fault's triangles whose middles are nearest."""
     corners = shape[0][shape[1]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    normals /= norm(normals)[:, None]
     middles = corners.mean(axis=1)
     return normals[[int(((middles - place) ** 2).sum(axis=1).argmin()) for place in places]]

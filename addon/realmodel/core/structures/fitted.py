@@ -7,6 +7,7 @@ import itertools
 
 import numpy as np
 
+from ..algebra import dot, norm, principal_axes
 from ..elementary import cos, sin
 from ..errors import InputRefused
 from ..heights import heights
@@ -15,8 +16,7 @@ from ..meshers import DEFAULT_MESHER
 from ..methods import checked_options
 from ..planar_mesh import mesh_rings
 from ..work import Work
-
-Triangulation = tuple[np.ndarray, np.ndarray]
+from ..wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
@@ -69,12 +69,12 @@ def _without_repeats(stick: np.ndarray) -> np.ndarray:
 def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
     """Along the fault: of a few orders that with the shortest way over the middles of the sticks."""
     middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
-    _, _, axes = np.linalg.svd(middles - middles.mean(axis=0), full_matrices=False)
-    along = middles @ axes[0]
+    _, axes = principal_axes(middles)
+    along = dot(middles, axes[0])
     orders = [list(range(len(sticks))), np.argsort(along, kind="stable").tolist()]
     starts = range(len(sticks)) if len(sticks) <= _TRIED else (int(along.argmin()), int(along.argmax()))
     orders += [_nearest_first(middles, start) for start in starts]
-    lengths = [np.linalg.norm(np.diff(middles[order], axis=0), axis=1).sum() for order in orders]
+    lengths = [norm(np.diff(middles[order], axis=0)).sum() for order in orders]
     return [sticks[number] for number in orders[int(np.argmin(lengths))]]
 
 
@@ -82,7 +82,7 @@ def _nearest_first(middles: np.ndarray, start: int) -> list[int]:
     order, free = [start], np.ones(len(middles), bool)
     free[start] = False
     while free.any():
-        away = np.where(free, np.linalg.norm(middles - middles[order[-1]], axis=1), np.inf)
+        away = np.where(free, norm(middles - middles[order[-1]]), np.inf)
         order.append(int(away.argmin()))
         free[order[-1]] = False
     return order
@@ -93,7 +93,8 @@ def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
     found, before = [], np.array([0.0, 0.0, -1.0])
     for stick in sticks:
         direction = stick[-1] - stick[0]
-        if direction @ before < 0 or (direction @ before == 0 and direction[2] > 0):
+        same = dot(direction, before)
+        if same < 0 or (same == 0 and direction[2] > 0):
             stick, direction = stick[::-1], -direction
         found.append(stick)
         before = _unit(direction)
@@ -101,7 +102,7 @@ def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _unit(direction: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(direction)
+    length = norm(direction)
     return direction / length if length > 0 else direction
 
 
@@ -134,7 +135,7 @@ def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: 
 
 def _shares(stick: np.ndarray) -> np.ndarray:
     """Where each point lies on the way along a stick, from 0 to 1."""
-    way = np.concatenate([[0.0], np.linalg.norm(np.diff(stick, axis=0), axis=1).cumsum()])
+    way = np.concatenate([[0.0], norm(np.diff(stick, axis=0)).cumsum()])
     return way / way[-1]
 
 
@@ -148,24 +149,24 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     """
     points = np.asarray(points, np.float64).reshape(-1, 3)
     middle = points.mean(axis=0)
-    _, spread, axes = np.linalg.svd(points - middle, full_matrices=False)
+    spread, axes = principal_axes(points)
     if len(points) < 3 or spread[1] <= _IN_LINE * spread[0]:
         what = "its points lie in one line: they show no surface"
         raise InputRefused(what, advice="give points on the whole fault, or sticks")
     along, down, normal = plane_axes(axes[2])
-    local = (points - middle) @ np.column_stack([along, down, normal])
+    local = np.column_stack([dot(points - middle, axis) for axis in (along, down, normal)])
     outline = _outline(local[:, :2], extend, extend_sideways)
     nodes, triangles = mesh_rings(work, [outline], AUTO, DEFAULT_MESHER, points=local[:, :2])
     options = checked_options(_METHOD, {})
     found = heights(work, np.ascontiguousarray(local), nodes, _METHOD, options, threads, triangles)
-    vertices = middle + np.column_stack([nodes, found.z]) @ np.array([along, down, normal])
+    vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
     return vertices, triangles
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of a plane: its strike, its dip (downward), and its normal, each of length 1 and at right angles."""
     along = np.array([-normal[1], normal[0], 0.0])
-    along = _unit(along) if np.linalg.norm(along) > _IN_LINE else np.array([1.0, 0.0, 0.0])
+    along = _unit(along) if norm(along) > _IN_LINE else np.array([1.0, 0.0, 0.0])
     down = np.cross(normal, along)
     if down[2] > 0:
         along, down = -along, -down

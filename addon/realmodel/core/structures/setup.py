@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..algebra import norm
 from ..project import Project
 from ..work import Work, native_module
 from .branches import require_meeting
@@ -64,7 +65,7 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
     corners = fault.vertices[fault.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.linalg.norm(normals, axis=1).argmax())
-    size = np.linalg.norm(normals[largest])
+    size = norm(normals[largest])
     beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
     native = native_module()
     try:

@@ -7,6 +7,7 @@ import itertools
 
 import numpy as np
 
+from ..algebra import dot
 from .exact import orient2d
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
@@ -280,6 +281,6 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         corners = vertices[result]
         normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         facing = np.array([normals[part == number].sum(axis=0) for number in range(parts)])
-        away = (facing @ facing[0] < 0)[part]
+        away = (dot(facing, facing[0]) < 0)[part]
         result = np.where(away[:, None], result[:, ::-1], result)
     return np.ascontiguousarray(result, np.int32)

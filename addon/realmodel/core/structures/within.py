@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..algebra import norm
 from ..work import Work, native_module
 from .families import DIES_OUT, Family, keys_of
 from .sides import sides_of
@@ -73,7 +74,7 @@ def parts_of_lines(
     first, last = begin[line], end[line]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normal, axis=1)
-    near = _ON * np.linalg.norm(np.ptp(box_of(begin, end, walls), axis=0)) * size
+    near = _ON * norm(np.ptp(box_of(begin, end, walls), axis=0)) * size
     off = [np.abs(((at - corners[:, 0]) * normal).sum(axis=1)) for at in (first, last)]
     flat = (off[0] <= near) & (off[1] <= near)
     hit = ~flat & segments_hit(first, last, corners)

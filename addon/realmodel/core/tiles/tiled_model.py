@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..algebra import dot
 from ..blocks import Block
 from ..build_warning import BuildWarning
 from ..errors import InputRefused, UsageError
@@ -94,7 +95,7 @@ class TiledModel:
             point = self._off_borders(point[None])[0]
 
         def meets(tile: Tile) -> bool:
-            away = (self._corners(tile) - point) @ normal
+            away = dot(self._corners(tile) - point, normal)
             return away.min() <= 0 <= away.max()
 
         return self._joined(meets, lambda model: model.section(point, normal, threads))

@@ -7,14 +7,14 @@
 /// The memory of arrays. That of large ones comes in blocks of pages: a build makes and drops
 /// arrays many times as large as what it holds at once, and a system hands out pages one by one,
 /// cleared, which takes an eighth of the build's time. So while a Keeper lives, the blocks of
-/// dropped arrays stay in the process and are moved, not copied, to where the next array needs
-/// them (Linux; elsewhere all memory comes from malloc).
+/// dropped arrays stay in the process: on Linux they are moved to where the next array needs them,
+/// on Windows it is put where they are. Elsewhere all memory comes from malloc.
 namespace realmodel::page_store {
 
 inline constexpr std::size_t kBlock = std::size_t{2} << 20;  ///< bytes
 
 // AddressSanitizer watches what comes from malloc.
-#if !defined(__linux__) || defined(__SANITIZE_ADDRESS__)
+#if !(defined(__linux__) || defined(_WIN64)) || defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kIsThere = false;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)

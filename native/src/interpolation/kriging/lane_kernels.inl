@@ -4,7 +4,7 @@
 // function of a header that others call as well, whose copy the linker could take for all, but
 // templates on a vector of this width, which nobody else uses.
 
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !defined(REALMODEL_PLAIN_DOUBLE)
 #include <immintrin.h>
 #endif
 
@@ -40,7 +40,7 @@ inline Vector root(Vector v) {
     return _mm512_maskz_sqrt_pd(0xff, v);  // g++ 12 warns of what _mm512_sqrt_pd leaves open
 #elif LANES_WIDTH == 4 && defined(__AVX__)
     return _mm256_sqrt_pd(v);
-#elif LANES_WIDTH == 2 && defined(__SSE2__)
+#elif LANES_WIDTH == 2 && defined(__SSE2__) && !defined(REALMODEL_PLAIN_DOUBLE)
     return _mm_sqrt_pd(v);
 #else
     for (int lane = 0; lane < LANES_WIDTH; ++lane)

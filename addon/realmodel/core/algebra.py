@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Products, lengths and axes of vectors for what reaches a model: the same bytes on every system.
+
+`@`, `np.dot`, `np.linalg.svd` and `np.linalg.norm` without an axis are of a library that takes other
+instructions on other processors, and differ in the last digit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .elementary import hypot
+
+_ROUNDING = 2.0**-50  # of the lengths of two columns: so small a product, or one of them, is rounding only
+_SWEEPS = 60  # over all pairs of columns; six are enough for nearly all points
+
+
+def dot(a, b) -> np.ndarray:
+    """(...) the products of vectors (..., D)."""
+    return np.multiply(a, b).sum(axis=-1)
+
+
+def norm(vector: np.ndarray) -> np.ndarray:
+    """(...) the lengths of vectors (..., D)."""
+    return np.sqrt(dot(vector, vector))
+
+
+def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far points (N, D) spread around their mean along D directions, and these, in rows.
+
+    The widest first. Directions have length 1 and are at right angles; the largest component of each is
+    positive. The spread is the square root of the sum of the squares, exact to rounding also where it is
+    small (one-sided Jacobi rotations; Demmel and Veselic 1992).
+    """
+    moved = points - points.mean(axis=0)
+    size = float(np.abs(moved).max(initial=0.0)) or 1.0
+    columns, axes = list((moved / size).T.copy()), list(np.eye(points.shape[1]))
+    pairs = [(p, q) for q in range(len(axes)) for p in range(q)]
+    for _ in range(_SWEEPS):
+        turned = [_turn(columns, axes, p, q) for p, q in pairs]
+        if not any(turned):
+            break
+    spread = size * norm(np.array(columns))
+    order = np.argsort(-spread, kind="stable")
+    found = np.array(axes)[order]
+    largest = found[np.arange(len(found)), np.abs(found).argmax(axis=1)]
+    return spread[order], found * np.where(largest < 0, -1.0, 1.0)[:, None]
+
+
+def _turn(columns: list[np.ndarray], axes: list[np.ndarray], p: int, q: int) -> bool:
+    """Turns two columns so that they are at right angles, and their axes with them; whether they were not."""
+    one, other = dot(columns[p], columns[p]), dot(columns[q], columns[q])
+    both = dot(columns[p], columns[q])
+    if min(one, other) <= _ROUNDING**2 * max(one, other) or abs(both) <= _ROUNDING * np.sqrt(one * other):
+        return False
+    half = float((other - one) / (2 * both))
+    tangent = (1.0 if half >= 0 else -1.0) / (abs(half) + hypot(1.0, half))
+    cosine = 1.0 / hypot(1.0, tangent)
+    for rows in (columns, axes):
+        rows[p], rows[q] = cosine * (rows[p] - tangent * rows[q]), cosine * (rows[q] + tangent * rows[p])
+    return True
