@@ -80,6 +80,17 @@ class EnsembleInTheScene(PanelCase):
         setattr(slider, f"of_{COUNT}", 2)
         self.assertEqual(self.group.realization, 2)
 
+    def height_factor(self):
+        bpy.context.view_layer.update()
+        return ensembles.item_of(self.scene).matrix_world[2][2]
+
+    def test_it_is_exaggerated_with_the_model(self):
+        self.model.view.exaggeration = 3.0
+        ops.ensemble(realizations=2)
+        self.assertAlmostEqual(self.height_factor(), 3.0, places=5)
+        self.model.view.exaggeration = 1.0
+        self.assertAlmostEqual(self.height_factor(), 1.0, places=5)
+
     def test_removed_it_leaves_nothing(self):
         before = inventory()
         ops.ensemble(realizations=2)

@@ -8,6 +8,7 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "rock_add": "begins a model where there is none",
     "surface_add": "adds a rock mass where there is none",
     "boreholes_read": "as surface_add",
+    "tiles_read": "a model in tiles comes beside the one of the scene",
     "fault_body_add": "faults and bodies may be there before the surfaces",
     "library_add": "the library may be there before the model",
     "library_import": "as library_add",

@@ -4,6 +4,7 @@ of a real reservoir and of California, where these are there."""
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -93,22 +94,24 @@ def test_a_real_reservoir_with_six_faults_that_die_out(tmp_path):
 
 @pytest.mark.skipif(not REAL.is_dir(), reason="the real data are not there")
 def test_a_fault_leaves_the_throw_of_one_beside_it():
-    """Two edges of the mesh apart, and on sides of both there is no rock: what such a sheet would be counts
-    nowhere."""
+    """F2 is two edges of the mesh apart, and on sides of both there is no rock: what such a sheet would be
+    counts nowhere. F6 ends at F2, which parts no points around F4 though it would go on there."""
     points = PointFile(REAL / "BaseVolantis.poi", z_axis="down")
     horizon = Surface("base", points=points, method="idw", options={"extrapolate": "nearest"})
     region = np.array([[461537.0, 5926637], [467404, 5930024], [462016, 5939355], [456149, 5935968]])
     rock = Rock("r", [horizon], region=region, edge_length=400.0)
     faults = [
         Fault(name, points=PointFile(REAL / f"{name}.pol", z_axis="down"), dies_out=True, extend=100.0)
-        for name in ("F4", "F2")
+        for name in ("F4", "F2", "F6")
     ]
     throws = []
-    for some in (faults[:1], faults):
+    for some in (faults[:1], faults[:2], faults, [*faults[:2], replace(faults[2], ends_at=("F2",))]):
         model = build(Project("real", [rock], faults=some))
         throws.append(next(each.throw.mean() for each in displacements(model) if each.fault == "F4"))
     assert throws[0] > 10
     assert throws[1] == pytest.approx(throws[0], rel=0.05)
+    assert throws[2] == pytest.approx(throws[0], rel=0.15)
+    assert throws[3] == pytest.approx(throws[2], rel=0.05)
 
 
 @pytest.mark.skipif(not (REAL.parent / "california_faults").is_dir(), reason="the real data are not there")

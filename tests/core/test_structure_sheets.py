@@ -5,6 +5,9 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.structures.between_sheets import common_lines, torn_triangles
+from realmodel.core.structures.families import around_tips, families
+from realmodel.core.structures.rock_structure import RockStructure
+from realmodel.core.structures.sides import RockFaults
 from realmodel.core.structures.tips import _meet_within, _near
 from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
@@ -109,3 +112,32 @@ def test_lines_between_triangles_are_in_what_they_have_in_common():
     assert np.allclose(end[:, 2], 9)
     expected = {(0, 0), (2, 0), (2, 2), (0, 4)}
     assert {tuple(corner) for corner in np.round(begin[:, :2]).astype(int).tolist()} == expected
+
+
+def structure_of(dies_out, ends, rows):
+    count = len(dies_out)
+    names = [f"F{n}" for n in range(count)]
+    faults = RockFaults(names, [None] * count, [0] * count, dies_out, list(range(count)), ends)
+    return RockStructure(faults, np.array(rows, np.int8), names, [[None] for _ in rows])
+
+
+def test_a_fault_that_dies_out_parts_no_data_where_another_one_does():
+    """Where F1 is beyond F0, and F2, which divides the rock, is not there."""
+    rows = [[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1], [-1, 0, 0]]
+    structure = structure_of([True, True, False], [[], [(0, 1)], [(0, 1)]], rows)
+    found = {family.key: family.members for family in families(structure, 0)}
+    assert found == {
+        (2, 2, 1): {0: (1, 1), 2: (1, -1)},
+        (2, 2, -1): {1: (1, 1), 3: (1, -1)},
+        (2, 2, 0): {4: (-1, 0)},
+    }
+    (together,) = around_tips(structure, 0, families(structure, 0))
+    assert together.branches == (2,) and together.settled == (1,)
+    assert sorted(together.members) == [0, 1, 2, 3, 4]
+
+
+def test_a_fault_that_dies_out_is_not_there_beyond_one_that_does_not():
+    structure = structure_of([False, True], [[], [(0, 1)]], [[1, 1], [1, -1], [-1, 0]])
+    found = {family.key: family.members for family in families(structure, 0)}
+    assert found == {(1, 2): {0: (1,), 1: (-1,)}, (-1, 0): {2: ()}}
+    assert around_tips(structure, 0, families(structure, 0)) == []

@@ -69,8 +69,8 @@ def test_what_is_near_a_corner_stays_off_it():
 
 
 def test_it_comes_back_from_a_file():
-    own = border((0, Fraction(-1, 3), 5), (0, 2, Fraction(7, 3)))
-    again = BorderVertices.of_arrays(own.arrays())
-    assert again.exact == own.exact
+    own = border((0, Fraction(1, 3), 5), (8, Fraction(-1, 3), 5), (0, 2, Fraction(7, 3)))
+    again = BorderVertices.of_arrays(own.arrays(), BOX)
+    assert again.exact == {0: own.exact[0], 2: own.exact[2]}  # what is elsewhere is not asked for
     assert np.array_equal(again.nearest, own.nearest) and np.array_equal(again.numbers, own.numbers)
-    assert BorderVertices.of_arrays(border().arrays()).exact == []
+    assert BorderVertices.of_arrays(border().arrays(), BOX).exact == {}

@@ -2,8 +2,10 @@
 """Models in tiles, built one tile after another in this process: the same as undivided ones."""
 
 import contextlib
+import gc
 import itertools
 import math
+import weakref
 
 import numpy as np
 import pytest
@@ -273,6 +275,27 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
     monkeypatch.setattr(tile_folder, "_join", None)
     again = build_tiles(project, tmp_path / "t", (40, 40))
     assert again.blocks == tiled.blocks
+
+
+def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
+    """The lead has none of them while workers are at work."""
+    real, arrays, left = tile_folder._prepared, [], []
+
+    def prepared(*arguments):
+        made = real(*arguments)
+        arrays.extend(weakref.ref(each) for shapes, *_ in made.rocks for shape in shapes for each in shape)
+        return made
+
+    def build_one(shared, name):
+        gc.collect()
+        left.append(sum(each() is not None for each in arrays))
+        return real_build(shared, name)
+
+    real_build = tile_folder._build
+    monkeypatch.setattr(tile_folder, "_prepared", prepared)
+    monkeypatch.setattr(tile_folder, "_build", build_one)
+    build_tiles(sample("two_layers"), tmp_path / "t", (37, 23))
+    assert arrays and left and not any(left)
 
 
 def test_the_same_bytes_again(tmp_path):

@@ -39,12 +39,12 @@ from ..core.tiles.grid import checked_size, tile_grid
 from ..core.tiles.settling import BorderVertices, settled
 from ..core.tiles.tile_model import (
     Frame,
-    TileParts,
     build_tile,
     read_arrays,
     read_model,
     without_shapes,
     write_model,
+    write_parts,
 )
 from ..core.tiles.tiled_model import file_digest, tiled_model
 from ..core.validation import PLACES_OF_REPORT
@@ -87,6 +87,7 @@ def build(
         return _finished(folder, prepared.digest)
     store = _Store(folder, prepared.digest)
     names = store.write_parts(prepared)
+    prepared = replace(prepared, rocks=[])  # from here on the workers have them
     with client_of(client) as workers:
         shared = (store, prepared.frame, frozenset(names))
         done = sum(store.has("built", name) for name in names)
@@ -186,11 +187,15 @@ class _Store:
         return self.folder / _RUN
 
     def file(self, kind: str, name: Name) -> Path:
-        """kind: parts, what a tile needs; built, its model; sides, what its borders are; joined, its model
+        """kind: built, the model of a tile; sides, what its borders are; joined, its model
         with its neighbors' vertices; patches, what its borders are then."""
         folder = self.folder / TILES if kind == "joined" else self._run
         prefix = "" if kind == "joined" else f"{kind}-"
         return folder / f"{prefix}{_stem(name)}.npz"
+
+    def parts(self, column: int, row: int) -> Path:
+        """The folder with what a tile needs of each surface."""
+        return self._run / f"parts-{_stem((column, row))}"
 
     def record(self, kind: str, name: Name) -> Path:
         return self._run / f"{kind}-{_stem(name)}.json"
@@ -215,13 +220,12 @@ class _Store:
         grid = prepared.frame.grid
         listed = self._run / "parts.json"
         if not listed.exists():
-            parts = TileParts(prepared.rocks, prepared.frame.clips, grid)
-            names = [
-                [column, row]
-                for column in range(grid.columns)
-                for row in range(grid.rows)
-                if parts.write(column, row, self.file("parts", (column, row)))
-            ]
+            try:
+                for name in grid:
+                    self.parts(*name).mkdir(exist_ok=True)
+            except OSError as error:
+                raise OutputFailed(f"{self._run}: {error.strerror or error}") from error
+            names = sorted(write_parts(prepared.rocks, prepared.frame.clips, grid, self.parts))
             with Outputs() as outputs, outputs.file(listed) as file:
                 file.write(json.dumps(names).encode())
         return sorted((tuple(name) for name in json.loads(listed.read_text())), key=lambda n: n[::-1])
@@ -268,7 +272,7 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model, border = run(lambda work: build_tile(work, frame, box, store.file("parts", name), threads=1))
+    model, border = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
     sides = border.arrays()
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, side)
@@ -283,10 +287,10 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
     store, frame, names = shared
     model = read_model(frame.project, store.file("built", name))
-    around = _around(name, names)
+    around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
-    borders = {other: BorderVertices.of_arrays(arrays) for other, arrays in sides.items()}
-    places = dict(zip(around, settled(frame.grid.box(*name), borders.values()), strict=True))
+    borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
+    places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
     theirs = {}
     for side, other in _neighbors(frame, name, names):

@@ -23,6 +23,7 @@ from . import (
     start,
     structures,
     surfaces,
+    tiles,
     variograms,
     view,
 )
@@ -36,6 +37,7 @@ _MODULES = (
     surfaces,
     structures,
     boreholes,
+    tiles,
     variograms,
     build,
     files,

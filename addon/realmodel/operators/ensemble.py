@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from ..bl import ensemble_job, live
+from ..bl import display, ensemble_job, live
 from ..bl.display import ensembles, visible
 from ..core import InputRefused
 from ..props_ensemble import MOST
@@ -49,6 +49,7 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
         return ensemble_job.EnsembleJob(context.scene, count, seed, line, context.evaluated_depsgraph_get())
 
     def tell_done(self, found):
+        display.exaggeration_changed(bpy.context.scene)
         item = ensembles.item_of(bpy.context.scene)
         if item is not None:
             visible.select_alone(bpy.context, item)

@@ -20,6 +20,7 @@ _IMPORT = (
     ("surface_add", "RealModel Surfaces (points, meshes, grids, maps)", {}),
     ("fault_body_add", "RealModel Faults and Bodies (meshes, fault sticks)", {}),
     ("boreholes_read", "RealModel Boreholes (.csv/.txt)", {}),
+    ("tiles_read", "RealModel Tiles (tiles.toml)", {}),
 )
 
 

@@ -35,6 +35,7 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
         column.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
         column.operator("realmodel.from_selected", text="From Selected Meshes", icon="OUTLINER_OB_MESH")
         column.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
+        column.operator("realmodel.tiles_read", text="Import Tiles...", icon="MESH_GRID")
         column.operator("realmodel.new", icon="FILE_NEW")
 
 
@@ -51,6 +52,7 @@ class REALMODEL_MT_start(bpy.types.Menu):
         layout.operator_menu_enum("realmodel.open_sample", "sample", text="Open Example", icon="EXPERIMENTAL")
         layout.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
         layout.operator("realmodel.from_selected", text="From Selected Meshes", icon="OUTLINER_OB_MESH")
+        layout.operator("realmodel.tiles_read", text="Import Tiles...", icon="MESH_GRID")
         layout.separator()
         layout.operator("realmodel.save_project", text="Save Project...", icon="FILE_TICK")
 

@@ -438,7 +438,7 @@ TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
         }
         return {};
     };
-    StackInput input{{floor.view(), top.view()}, {}, {}, {}, {}};
+    StackInput input{{floor.view(), top.view()}, {}, {}, {}, {}, {}};
     input.region = RegionView{corners, triangle};
     EXPECT_NE(refusal(input).find("corner 1 of the region"), std::string::npos);
     input.region.reset();

@@ -153,14 +153,20 @@ def _branch(rng, fault, found, own):
 
 
 def _branch_of_plane(rng, number, other, masses):
-    """A fault that ends at a plane; None where it does not pass that itself among the surfaces."""
+    """A fault that ends at a plane, and may die out as that does; None where it does not pass that itself
+    among the surfaces."""
     a, b, c = other.vertices[other.triangles[0]]
     vertices, triangles, uv, end, line = shapes.branch_surface(rng, a, np.cross(b - a, c - a))
     own = (uv[triangles, 1] <= end).all(axis=1)
-    fault = FaultCase(f"F{number}", vertices, triangles[own], triangles[~own])
+    dies_out = other.dies_out and rng.random() < 0.4
+    if dies_out:
+        tip = rng.choice(sorted(set(uv[:, 0]))[1:-1])
+        own &= (uv[triangles, 0] <= tip).all(axis=1)
+    fault = FaultCase(f"F{number}", vertices, triangles[own], triangles[~own], dies_out=dies_out)
     fault.ends_at, fault.youngest, fault.rocks = [other.name], other.youngest, list(other.rocks)
     line = line[((line > [0, 0, -1]) & (line < [10.0 * masses, 10, 5])).all(axis=1)]
-    return fault if (distances(line, other.vertices[other.triangles]) < 1e-6).sum() > 2 else None
+    met = [distances(line, each.vertices[each.triangles]) < 1e-6 for each in (fault, other)]
+    return fault if np.all(met, axis=0).sum() > 2 else None
 
 
 def _border(triangles):

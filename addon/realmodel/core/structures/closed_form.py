@@ -16,11 +16,10 @@ import numpy as np
 from ..algebra import dot
 from ..rules import RULES
 from ..work import native_module
+from ..wrong_sides import Triangulation
 from .exact import orient2d, orient3d
 from .sides import FaultShape, RockFaults
 from .triangles import distances_of_pairs, open_edges
-
-Triangulation = tuple[np.ndarray, np.ndarray]
 
 AIR = -1
 _BASEMENT = -2  # below the first surface: no block, but there to be cut

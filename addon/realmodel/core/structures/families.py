@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .rock_structure import RockStructure
+from .sides import RockFaults
 
 DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 
@@ -30,12 +31,35 @@ class Family:
         """The faults that die out here."""
         return [fault for fault, side in enumerate(self.key) if side == DIES_OUT]
 
+    def with_ends(self, some: list[int], faults: RockFaults) -> list[int]:
+        """Some of the faults that die out here, as numbers among these, and those at which they end: where
+        these are not themselves, sheets beside the others may still differ on their two sides."""
+        dying, found = self.dying, set(some)
+        waiting = list(some)
+        while waiting:
+            for other, _ in faults.ends[dying[waiting.pop()]]:
+                if other in dying and (number := dying.index(other)) not in found:
+                    found.add(number)
+                    waiting.append(number)
+        return sorted(found)
+
 
 def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:
-    """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`."""
+    """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`.
+
+    Where a fault that dies out ends at another one that does, it is there beyond that, too: the way round its
+    tips leads there, so data are not parted.
+    """
     faults = structure.faults
-    rows = np.where(faults.active(number), sides, 0)
-    return np.where(np.array(faults.dies_out, bool) & (rows != 0), DIES_OUT, rows)
+    active, dies_out = faults.active(number), np.array(faults.dies_out, bool)
+    rows = np.where(active, sides, 0)
+    keys = np.where(dies_out & (rows != 0), DIES_OUT, rows)
+    for branch in np.flatnonzero(active & dies_out):
+        ends = faults.ends[branch]
+        if any(dies_out[other] for other, _ in ends):
+            there = [rows[:, other] != -kept for other, kept in ends if not dies_out[other]]
+            keys[np.all(there, axis=0) if there else slice(None), branch] = DIES_OUT
+    return keys
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
@@ -49,22 +73,20 @@ def families(structure: RockStructure, number: int) -> list[Family]:
 
 
 def around_tips(structure: RockStructure, number: int, every: list[Family]) -> list[Family]:
-    """Families together that only branches of a fault that dies out part: past its tips, where these branches
-    are not, their sheets are one."""
+    """Families together that only branches of a fault that dies out part, which do not die out themselves:
+    past its tips, where these branches are not, their sheets are one."""
     faults = structure.faults
     active = faults.active(number)
     branches = tuple(
         branch
         for branch, ends in enumerate(faults.ends)
-        if active[branch] and any(faults.dies_out[other] for other, _ in ends)
+        if active[branch] and not faults.dies_out[branch] and any(faults.dies_out[other] for other, _ in ends)
     )
     if not branches:
         return []
     ended_at = {other for branch in branches for other, _ in faults.ends[branch]}
     settled = tuple(
-        fault
-        for fault, dies_out in enumerate(faults.dies_out)
-        if dies_out and fault not in ended_at and fault not in branches
+        fault for fault, dies_out in enumerate(faults.dies_out) if dies_out and fault not in ended_at
     )
     found: dict[tuple[int, ...], Family] = {}
     for family in every:

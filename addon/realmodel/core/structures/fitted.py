@@ -16,8 +16,7 @@ from ..meshers import DEFAULT_MESHER
 from ..methods import checked_options
 from ..planar_mesh import mesh_rings
 from ..work import Work
-
-Triangulation = tuple[np.ndarray, np.ndarray]
+from ..wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area

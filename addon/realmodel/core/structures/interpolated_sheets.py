@@ -104,6 +104,7 @@ class InterpolatedSurface:
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
+        met = family.with_ends(met, self.entry.structure.faults)
         hidden = {
             (number, side): own
             & (self.sides[:, family.dying[number]] == -side)
@@ -114,7 +115,10 @@ class InterpolatedSurface:
         seen, told = {}, {}
         settled = _settled(self.surface, self.made[id(common)][0])
         for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
-            away = np.any([hidden[number, side] for number, side in zip(met, sides, strict=True)], axis=0)
+            away = np.zeros(len(own), bool)
+            for number, side in zip(met, sides, strict=True):
+                if side:
+                    away |= hidden[number, side]
             whole = list(first)
             for number, side in zip(met, sides, strict=True):
                 whole[number] = side

@@ -10,7 +10,8 @@ import numpy as np
 from ..planar_mesh import triangulate_rings
 from ..work import Work, native_module
 from .parts import Structures
-from .sides import FaultShape, Triangulation, fault_sides
+from .rock_structure import Triangulation
+from .sides import FaultShape, fault_sides
 from .triangles import border_loops, extents
 
 _CELLS = (64, 64, 16)  # of the grid, at most

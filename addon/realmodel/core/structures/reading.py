@@ -14,11 +14,10 @@ from ..readers import read_mesh
 from ..readers.fault_sticks import read_fault_points
 from ..rock_input import checked_triangulation
 from ..work import Work
+from ..wrong_sides import Triangulation
 from .entries import Body, Fault, body_item, fault_item
 from .fitted import fit_points, fit_sticks
 from .triangles import NoTwoSides, open_edges, oriented, without_flat
-
-Triangulation = tuple[np.ndarray, np.ndarray]
 
 
 def read_structures(work: Work, project, threads: int = 0):

@@ -94,6 +94,7 @@ class ReadyMesh:
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
+        met = family.with_ends(met, self.entry.structure.faults)
         self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
@@ -104,6 +105,8 @@ class ReadyMesh:
         for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
+                if not side:
+                    continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..build_warning import BuildWarning
+from ..wrong_sides import Triangulation
 from .sides import RockFaults
-
-Triangulation = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass

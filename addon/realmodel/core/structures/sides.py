@@ -10,8 +10,6 @@ import numpy as np
 
 from ..work import Work, native_module
 
-Triangulation = tuple[np.ndarray, np.ndarray]
-
 
 class FaultShape(NamedTuple):
     """vertices (V, 3) float64 and triangles (T, 3) int32 of a fault. dies_out, ends, the faults that it ends

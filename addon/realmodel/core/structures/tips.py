@@ -16,7 +16,8 @@ import numpy as np
 from ..algebra import norm
 from ..work import Work, native_module
 from .between_sheets import torn_triangles
-from .sides import FaultShape, Triangulation, fault_sides
+from .rock_structure import Triangulation
+from .sides import FaultShape, fault_sides
 from .triangles import (
     crossing_pairs,
     distances_of_pairs,
@@ -206,7 +207,11 @@ def with_equal_ends(
             nodes[some] = True
     every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
     continuations = [_continued(fault, box_of(every)) for fault in faults]
-    drawn = _Drawn(plan, ramps, _sides_of_branches(work, plan, heights, faults, threads))
+    ends = [
+        [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
+        for fault in faults
+    ]
+    drawn = _Drawn(plan, ramps, ends, _sides_of_branches(work, plan, heights, faults, ends, threads))
     looked_at: dict[tuple, np.ndarray] = {}
     while True:
         found = blended(heights, near, on_side, drawn.weights)
@@ -239,18 +244,21 @@ def with_equal_ends(
 
 class _Drawn:
     """Nodes at which the sheets on both sides of faults are to be equal, and what weight that leaves to the
-    difference around. sides: by the sides of each sheet the side of each branch that its nodes are on."""
+    difference around. ends: of each fault those at which it ends; sides: by the sides of each sheet the side
+    of each such branch that its nodes are on."""
 
-    def __init__(self, plan: np.ndarray, ramps: list[float], sides: dict[tuple[int, ...], list]):
-        self.plan, self.ramps, self.sides = plan, ramps, sides
+    def __init__(self, plan: np.ndarray, ramps: list[float], ends: list[list[int]], sides: dict):
+        self.plan, self.ramps, self.ends, self.sides = plan, ramps, ends, sides
         self.weights = [np.ones(len(plan)) for _ in ramps]
         self.equal = [np.zeros(len(plan), bool) for _ in ramps]
 
     def let_be_equal(self, number: int, sides: tuple[int, ...], nodes: np.ndarray) -> None:
         """For the sides of one fault, on one sheet, at the nodes (K, 1 to 3) of triangles or edges. A branch
-        that passes them there ends in nothing: its sides are equal, too."""
+        of it that passes them there ends in nothing: its sides are equal, too."""
         self.equal[number][nodes] = True
         for branch, side in self.sides[sides]:
+            if number not in self.ends[branch]:
+                continue
             passed = (side[nodes] != side[nodes[:, :1]]).any(axis=1)
             self.equal[branch][nodes[passed]] = True
 
@@ -265,10 +273,10 @@ class _Drawn:
 
 
 def _sides_of_branches(
-    work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int
+    work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], ends: list, threads: int
 ) -> dict[tuple[int, ...], list]:
-    """By the sides of each sheet: (number, sides (N,) of its nodes) of each fault that does not die out."""
-    branches = [number for number, fault in enumerate(faults) if not fault.dies_out]
+    """By the sides of each sheet: (number, sides (N,) of its nodes) of each fault that ends at others."""
+    branches = [number for number, own in enumerate(ends) if own]
     return {
         sides: [
             (n, fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads))

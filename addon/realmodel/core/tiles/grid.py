@@ -111,8 +111,8 @@ class MeshBins:
             count = len(lines) - 2
             low = np.searchsorted(lines, corners.min(axis=1), "left") - 1
             high = np.searchsorted(lines, corners.max(axis=1), "right") - 1
-            self._first.append(low.clip(0, count))
-            self._last.append(high.clip(0, count))
+            self._first.append(low.clip(0, count).astype(np.int32))
+            self._last.append(high.clip(0, count).astype(np.int32))
         self._column = -1
         self._of_column = np.empty(0, np.int64)
 

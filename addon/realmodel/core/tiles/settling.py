@@ -16,33 +16,47 @@ from math import inf, nextafter
 
 import numpy as np
 
-from .borders import sides_of
+from .borders import Side, sides_of
+
+Box = tuple[float, float, float, float]
+_Exact = tuple[str, str, str]
 
 
 @dataclass(frozen=True)
 class BorderVertices:
     """The vertices of a tile on its border: their numbers (N,), ascending; the doubles nearest to where they
-    are, (N, 3); and the exact x, y and z: fractions in hexadecimal, equal where points are, in all tiles."""
+    are, (N, 3); and the exact x, y and z: fractions in hexadecimal, equal where points are, in all tiles. Of
+    a neighbor those on the border of a tile are enough, by their places among the N."""
 
     numbers: np.ndarray
     nearest: np.ndarray
-    exact: list[tuple[str, str, str]]
+    exact: list[_Exact] | dict[int, _Exact]
 
     @classmethod
     def of_built(cls, built: dict) -> BorderVertices:
         """Of what the native build_tile gives."""
-        return cls(built["border_vertices"], built["border_nearest"], _lines(built["border_exact"]))
+        return cls(
+            built["border_vertices"],
+            built["border_nearest"],
+            list(map(_words, built["border_exact"].splitlines())),
+        )
 
     def arrays(self) -> dict[str, np.ndarray]:
         text = "\n".join(map(" ".join, self.exact)).encode()
         return {"numbers": self.numbers, "nearest": self.nearest, "exact": np.frombuffer(text, np.uint8)}
 
     @classmethod
-    def of_arrays(cls, arrays: dict[str, np.ndarray]) -> BorderVertices:
-        return cls(arrays["numbers"], arrays["nearest"], _lines(arrays["exact"].tobytes()))
+    def of_arrays(cls, arrays: dict[str, np.ndarray], box: Box) -> BorderVertices:
+        """Only what is on the border of a box has its exact place."""
+        nearest, lines = arrays["nearest"], arrays["exact"].tobytes().splitlines()
+        needed = np.zeros(len(nearest), bool)
+        for side in sides_of(box):
+            needed |= _is_near(nearest, side, box)
+        exact = {place: _words(lines[place]) for place in np.flatnonzero(needed).tolist()}
+        return cls(arrays["numbers"], nearest, exact)
 
 
-def settled(box: tuple[float, float, float, float], tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
+def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     """Where vertices are that lie on the border of a tile. tiles: those of the tile, and of all that share
     its sides or corners. Returns (N, 3) float64 for each, NaN where a neighbor's is not on this border."""
     tiles = list(tiles)
@@ -60,7 +74,7 @@ def settled(box: tuple[float, float, float, float], tiles: Iterable[BorderVertic
         on_sides.append((side, along, on_side))
     for of_vertical in heights.values():
         _separate(of_vertical)
-    positions = [np.full((len(vertices.exact), 3), np.nan) for vertices in tiles]
+    positions = [np.full(vertices.nearest.shape, np.nan) for vertices in tiles]
     for side, along, on_side in on_sides:
         for vertices, found, at in zip(tiles, on_side, positions, strict=True):
             for number in found:
@@ -71,11 +85,10 @@ def settled(box: tuple[float, float, float, float], tiles: Iterable[BorderVertic
     return positions
 
 
-def _on_side(vertices: BorderVertices, side, box) -> list[int]:
+def _on_side(vertices: BorderVertices, side: Side, box: Box) -> list[int]:
     """Which vertices are exactly on a side of a box, its ends included."""
     low, high = box[side.along], box[side.along + 2]
     near = vertices.nearest[:, side.along]
-    on = (vertices.nearest[:, side.axis] == side.line) & (near >= low) & (near <= high)
     line = _text(side.line)
 
     def is_there(number: int) -> bool:
@@ -84,7 +97,15 @@ def _on_side(vertices: BorderVertices, side, box) -> list[int]:
             return False
         return near[number] not in (low, high) or low <= _fraction(exact[side.along]) <= high
 
-    return [number for number in np.flatnonzero(on).tolist() if is_there(number)]
+    possible = np.flatnonzero(_is_near(vertices.nearest, side, box)).tolist()
+    return [number for number in possible if is_there(number)]
+
+
+def _is_near(nearest: np.ndarray, side: Side, box: Box) -> np.ndarray:
+    """(N,) bool: which places are on a side of a box, its ends included, when they are rounded."""
+    low, high = box[side.along], box[side.along + 2]
+    along = nearest[:, side.along]
+    return (nearest[:, side.axis] == side.line) & (along >= low) & (along <= high)
 
 
 def _separate(values: dict[str, float]) -> None:
@@ -112,8 +133,8 @@ def _separate(values: dict[str, float]) -> None:
     values.update(zip(order, at, strict=True))
 
 
-def _lines(text: bytes) -> list[tuple[str, str, str]]:
-    return [tuple(line.split()) for line in text.decode().splitlines()]
+def _words(line: bytes) -> _Exact:
+    return tuple(line.decode().split())
 
 
 def _text(value: float) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,10 +22,9 @@ from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
 from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
-from .settling import BorderVertices
+from .settling import BorderVertices, Box
 
 _REGION = "region"  # in the place of a surface's number
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -56,43 +56,54 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
     return Project(project.name, rocks, project.library, units=project.units)
 
 
-class TileParts:
-    """What each tile needs of rock masses, as the stack builder takes them."""
-
-    def __init__(self, rocks: list[tuple], clips: tuple[bool, ...], grid: TileGrid):
-        self._bins = {}
-        for r, (surfaces, region, _base, _rules) in enumerate(rocks):
-            for k, mesh in enumerate(surfaces):
-                self._bins[r, k] = MeshBins(mesh, grid)
-            if clips[r]:
-                self._bins[r, _REGION] = MeshBins(region, grid)
-
-    def write(self, column: int, row: int, path: Path) -> bool:
-        """Writes what a tile needs to a file; False where there is nothing."""
-        parts = {key: bins.part(column, row) for key, bins in self._bins.items()}
-        if not any(len(part.triangles) for (_, k), part in parts.items() if k != _REGION):
-            return False
-        arrays = {}
-        for (r, k), part in parts.items():
-            arrays |= {f"{name}_{r}_{k}": getattr(part, name) for name in Part.__dataclass_fields__}
-        with Outputs() as outputs, outputs.file(path) as file:
-            write_arrays(arrays, file)
-        return True
-
-
-def _parts(frame: Frame, path: Path) -> dict[tuple, Part]:
-    arrays = read_arrays(path)
-    keys = [
-        (r, k)
-        for r, rock in enumerate(frame.project.rocks)
-        for k in (*range(len(rock.surfaces)), *([_REGION] if frame.clips[r] else []))
-    ]
-    return {(r, k): Part(*(arrays[f"{n}_{r}_{k}"] for n in Part.__dataclass_fields__)) for r, k in keys}
+def write_parts(
+    rocks: list[tuple], clips: tuple[bool, ...], grid: TileGrid, folder_of: Callable[[int, int], Path]
+) -> set[tuple[int, int]]:
+    """Writes what each tile needs of rock masses, as the stack builder takes them: a file for each surface
+    and region that it meets, one surface after another. folder_of: of a tile. Returns the tiles (column, row)
+    that a surface meets."""
+    met = set()
+    for r, (surfaces, region, _base, _rules) in enumerate(rocks):
+        meshes = dict(enumerate(surfaces)) | ({_REGION: region} if clips[r] else {})
+        for k, mesh in meshes.items():
+            bins = MeshBins(mesh, grid)
+            for column in range(grid.columns):
+                for row in range(grid.rows):
+                    part = bins.part(column, row)
+                    if not len(part.triangles):
+                        continue
+                    if k != _REGION:
+                        met.add((column, row))
+                    arrays = {name: getattr(part, name) for name in Part.__dataclass_fields__}
+                    with Outputs() as outputs, outputs.file(folder_of(column, row) / _part(r, k)) as file:
+                        write_arrays(arrays, file)
+    return met
 
 
-def build_tile(work: Work, frame: Frame, box: Box, path: Path, threads: int) -> tuple[Model, BorderVertices]:
-    """The model of a tile, with borders as they come, and its vertices there. path: what TileParts wrote."""
-    parts = _parts(frame, path)
+def _part(rock: int, surface: int | str) -> str:
+    return f"{rock}-{surface}.npz"
+
+
+def _parts(frame: Frame, folder: Path) -> dict[tuple, Part]:
+    parts = {}
+    for r, rock in enumerate(frame.project.rocks):
+        for k in (*range(len(rock.surfaces)), *([_REGION] if frame.clips[r] else [])):
+            path = folder / _part(r, k)
+            if path.exists():
+                arrays = read_arrays(path)
+                parts[r, k] = Part(*(arrays[name] for name in Part.__dataclass_fields__))
+            else:
+                columns = 2 if k == _REGION else 3
+                parts[r, k] = Part(np.empty((0, columns)), np.empty((0, 3), np.int32), np.empty(0, np.int32))
+    return parts
+
+
+def build_tile(
+    work: Work, frame: Frame, box: Box, folder: Path, threads: int
+) -> tuple[Model, BorderVertices]:
+    """The model of a tile, with borders as they come, and its vertices there. folder: what write_parts
+    wrote."""
+    parts = _parts(frame, folder)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "complex_checks.hpp"
+#include "../complex_checks.hpp"
 
 namespace realmodel::strata {
 namespace {

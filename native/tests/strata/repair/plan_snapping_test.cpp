@@ -34,7 +34,7 @@ TEST(PlanSnapping, TheValueOfMostVerticesStands) {
     OwnedSurface s = box(0, 1, 0, 1);
     s.vertices[0] = 0x1p-53;  // one corner beside x = 0
     const OwnedSurface other = box(0, 1, 1, 2);
-    const StackInput input{{s.view(), other.view()}, {}, {}, {}, {}};
+    const StackInput input{{s.view(), other.view()}, {}, {}, {}, {}, {}};
     const auto snapping = find_snapping({&input, 1});
     EXPECT_EQ(snapping.x(0x1p-53), 0.0);
     EXPECT_EQ(snapping.x(0.0), 0.0);
@@ -46,7 +46,7 @@ TEST(PlanSnapping, ANeedleOfThatWidthStaysANeedle) {
     OwnedSurface needle;
     needle.triangle(needle.vertex(1, 0, 1), needle.vertex(above(1), 0, 1), needle.vertex(1, 1, 1));
     const auto floor = grid(1, 1, 0, 0, 2, 1, [](double, double) { return 0; });
-    const StackInput input{{floor.view(), needle.view()}, {}, {}, {}, {}};
+    const StackInput input{{floor.view(), needle.view()}, {}, {}, {}, {}, {}};
     EXPECT_TRUE(find_snapping({&input, 1}).empty());
     const auto c = build({floor, needle});
     expect_valid(c);
@@ -56,7 +56,7 @@ TEST(PlanSnapping, ANeedleOfThatWidthStaysANeedle) {
 TEST(PlanSnapping, SurfacesOnOnePlanMeshAreLeftAlone) {
     OwnedSurface lower = box(0, 1, 0, 2), upper = box(0, 1, 1, 2);
     lower.vertices[3] = upper.vertices[3] = 0x1p-53;  // beside x = 0 in both
-    const StackInput input{{lower.view(), upper.view()}, {}, {}, {}, {}};
+    const StackInput input{{lower.view(), upper.view()}, {}, {}, {}, {}, {}};
     EXPECT_TRUE(share_one_plan({&input, 1}));
     EXPECT_TRUE(build({lower, upper}).warnings.empty());
     upper.vertices[3] = 0.0;
@@ -85,7 +85,7 @@ TEST(PlanSnapping, ATriangleWithoutAreaDoesNotBecomeAnUprightOne) {
         const auto a = other.vertex(above(1), 0.3 + 0.1 * i, 9);
         other.triangle(a, a, a);
     }
-    const StackInput input{{flat.view(), other.view()}, {}, {}, {}, {}};
+    const StackInput input{{flat.view(), other.view()}, {}, {}, {}, {}, {}};
     EXPECT_TRUE(find_snapping({&input, 1}).x.empty());
     EXPECT_NO_THROW(build({flat, other}));
 }
