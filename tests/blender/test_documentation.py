@@ -4,7 +4,8 @@
 import unittest.mock
 import webbrowser
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import bpy
 from panel_case import PanelCase
@@ -15,7 +16,7 @@ def opened(operator, **arguments):
     with unittest.mock.patch.object(webbrowser, "open") as browser:
         operator(**arguments)
     ((address,), _) = browser.call_args
-    return Path(unquote(urlsplit(address).path))
+    return Path(url2pathname(urlsplit(address).path))
 
 
 class Documentation(PanelCase):
