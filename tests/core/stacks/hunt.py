@@ -20,7 +20,8 @@ from .generate import FAMILIES, random_stack, single_valued
 from .judge import failures_of, kinds_of
 from .minimize import minimize
 
-PATIENCE = 60.0  # seconds for one stack, all checks included
+PATIENCE = 60.0  # seconds of processor time for one stack, all checks included
+STALLED = 1200.0  # seconds by the clock: who waits for ever takes no processor time
 
 
 def acceptable(stack):
@@ -44,6 +45,15 @@ def _work(pipe, judge):
             pipe.send([f"judge: {type(error).__name__}: {error}"])
 
 
+def _processor_time(process):
+    """Seconds of all its threads, 0 once it is gone."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 class Worker:
     """A process that judges cases, stacks unless another judge is given; started again when one of them kills
     it."""
@@ -59,7 +69,7 @@ class Worker:
             self.process.start()
             theirs.close()
         self.pipe.send(stack)
-        if not self.pipe.poll(PATIENCE):
+        if not self._answers():
             self.process.kill()
             self.process.join()
             return [f"hang: no answer within {PATIENCE:.0f} s"]
@@ -68,6 +78,14 @@ class Worker:
         except EOFError:
             self.process.join()
             return [f"crash: exit status {self.process.exitcode}"]
+
+    def _answers(self):
+        """Waits by processor time: on a busy machine the clock tells nothing."""
+        begun, latest = _processor_time(self.process.pid), time.monotonic() + STALLED
+        while not self.pipe.poll(2.0):
+            if _processor_time(self.process.pid) - begun > PATIENCE or time.monotonic() > latest:
+                return False
+        return True
 
     def close(self):
         if self.process is not None and self.process.is_alive():
