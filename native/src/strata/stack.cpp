@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/stack.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
@@ -68,6 +70,25 @@ Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* p
     return entered;
 }
 
+/// Volumes of blocks: over the exact plan positions, so that those of tiles add up to those of the
+/// whole. But where rounding moves them so much that who adds up the cells of a whole model finds
+/// others, over the cells as they are.
+std::vector<double> volumes_of(const BuiltCells& built, std::size_t blocks, bool is_tile,
+                               int threads, const Progress* progress) {
+    std::vector<double> volumes = block_volumes(built.complex, blocks, threads, progress,
+                                                {built.offsets.data(), built.offsets.size()});
+    if (is_tile || built.offsets.size() == 0) return volumes;
+    std::vector<double> of_cells = block_volumes(built.complex, blocks, threads, progress);
+    double largest = 0;
+    for (const double volume : of_cells)
+        largest = std::max(largest, std::abs(volume));
+    constexpr double kSame = 1e-10;  // of the largest block
+    const bool are_same = std::ranges::equal(volumes, of_cells, [&](double one, double other) {
+        return std::abs(one - other) <= kSame * largest;
+    });
+    return are_same ? volumes : of_cells;
+}
+
 Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells, int threads,
                 Progress* progress) {
     site.check_regions();
@@ -80,8 +101,8 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
                                            : build_columns(site, threads, progress);
     }
     result.cell_kind = cells;
-    result.volumes = block_volumes(result, static_cast<std::size_t>(site.surfaces), threads,
-                                   progress, {built.offsets.data(), built.offsets.size()});
+    result.volumes = volumes_of(built, static_cast<std::size_t>(site.surfaces),
+                                site.window.has_value(), threads, progress);
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
