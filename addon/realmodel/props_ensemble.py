@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty, PointerProperty, StringProperty
 
+from . import props_slider
 from .bl import changes
 from .bl.display import ensembles
 
@@ -57,29 +58,17 @@ class RealModelEnsemble(bpy.types.PropertyGroup):
 
 def slider_of(count):
     """The slider of an ensemble of so many realizations; None where there is none."""
-    return f"of_{count}" if 2 <= count <= _MOST_OF_SLIDER else None
+    return props_slider.name_of(count) if 2 <= count <= _MOST_OF_SLIDER else None
 
 
-def _slider(count):
-    return IntProperty(
-        name="Realization",
-        description="The realization that is shown",
-        min=1,
-        max=count,
-        get=lambda self: min(self.id_data.realmodel.ensemble.realization, count),
-        set=lambda self, value: setattr(self.id_data.realmodel.ensemble, "realization", value),
-        options={"SKIP_SAVE"},
-    )
-
-
-RealModelRealization = type(
+RealModelRealization = props_slider.slider_group(
     "RealModelRealization",
-    (bpy.types.PropertyGroup,),
-    {
-        "__doc__": "`scene.realmodel.ensemble.realization` as a slider, as props_stage has them.",
-        "__module__": __name__,
-        "__annotations__": {slider_of(count): _slider(count) for count in range(2, _MOST_OF_SLIDER + 1)},
-    },
+    lambda group: group.ensemble,
+    "realization",
+    range(2, _MOST_OF_SLIDER + 1),
+    name="Realization",
+    description="The realization that is shown",
+    min=1,
 )
 
 CLASSES = (RealModelEnsemble, RealModelRealization)

@@ -217,8 +217,10 @@ def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
     if options.exaggeration != 1.0 and not options.section and not options.fence:
         parser.error("--exaggeration is of drawings: it goes with --section or --fence")
-    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--borehole", "--cut")
-    outputs += ("--mesh",)
+    outputs = (
+        *("--blend", "--export", "--report", "--render"),
+        *("--section", "--fence", "--borehole", "--cut", "--mesh"),
+    )
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
     _check_dask(parser, options)

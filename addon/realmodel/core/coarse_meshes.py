@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .polygon_mesh import PolygonMesh, of_triangles
+from .polygon_mesh import PolygonMesh, fanned, of_triangles
 
 _UP, _DOWN = 1, 2
 
@@ -17,10 +17,9 @@ def coarsened(shape: PolygonMesh, size: float) -> PolygonMesh | None:
     their mean: those of faces that look up, those of faces that look down, those of both and those of walls
     each for themselves, so that thin layers stay. It is closed again; None where nothing is left."""
     at = shape.coordinates.astype(np.float64)
-    triangles = _fans(shape)
+    triangles, faces = fanned(shape.offsets, shape.corners)
     a, b, c = at[triangles, :2].transpose(1, 0, 2)
     turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    faces = np.repeat(np.arange(shape.polygons), np.diff(shape.offsets) - 2)
     turn = np.bincount(faces, turn, shape.polygons)[faces]
     if shape.face_surface is not None:
         turn[shape.face_surface[faces] == -1] = 0.0
@@ -48,14 +47,6 @@ def joined(shapes: Sequence[PolygonMesh]) -> PolygonMesh:
     return of_triangles(
         np.concatenate([shape.coordinates for shape in shapes]), np.concatenate(triangles).astype(np.int32)
     )
-
-
-def _fans(shape: PolygonMesh) -> np.ndarray:
-    """(T, 3) polygons as triangles around their first corners, in their order."""
-    size = np.diff(shape.offsets)
-    begin = np.repeat(shape.offsets[:-1], size - 2)
-    step = np.arange(len(begin)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2)
-    return shape.corners[np.column_stack([begin, begin + step + 1, begin + step + 2])]
 
 
 def _without_pairs(triangles: np.ndarray) -> np.ndarray:

@@ -47,6 +47,15 @@ class PolygonMesh:
         return len(self.offsets) - 1
 
 
+def fanned(offsets: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Polygons as triangles (T, 3) from their first corners, and the polygon (T,) of each."""
+    size = np.diff(offsets)
+    owner = np.repeat(np.arange(len(size)), np.maximum(size - 2, 0))
+    first = offsets[owner]
+    at = first + np.arange(len(owner)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
+    return np.column_stack([corners[first], corners[at], corners[at + 1]]), owner
+
+
 def of_triangles(coordinates: np.ndarray, triangles: np.ndarray, smooth: bool = False) -> PolygonMesh:
     """A mesh of triangles, (T, 3) int32, with its edges."""
     offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32)

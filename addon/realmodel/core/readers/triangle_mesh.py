@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..point_file import MeshFile
+from ..polygon_mesh import fanned
 
 
 @dataclass(frozen=True)
@@ -69,8 +70,5 @@ def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | 
     for face in (*np.flatnonzero(sizes < 3)[:1], *face_of_corner[wrong][:1]):
         what = f"face {face + 1} has a corner that is no vertex" if sizes[face] > 2 else "a face of 2 corners"
         raise InputRefused(what, file=file, line=None if lines is None else lines[face])
-    begin, fans = np.cumsum(sizes) - sizes, sizes - 2
-    owner = np.repeat(np.arange(len(sizes)), fans)
-    second = np.arange(len(owner)) - np.repeat(np.cumsum(fans) - fans, fans) + begin[owner] + 1
-    triangles = np.stack([corners[begin[owner]], corners[second], corners[second + 1]], axis=1)
-    return TriangleMesh(vertices, triangles.astype(np.int32), None if (fans == 1).all() else owner)
+    triangles, owner = fanned(np.append(0, np.cumsum(sizes)), corners)
+    return TriangleMesh(vertices, triangles.astype(np.int32), None if (sizes == 3).all() else owner)

@@ -182,7 +182,7 @@ def _part_model(
 
 
 def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
-    """What the builder is told of voids, by the names of its arguments; {} where there is none. stacks: with
+    """The arguments of build_rock_masses for voids, by name; {} where there are no voids. stacks: each with
     whether what is below the oldest surface stays."""
     if not any(stack.emptied for stack, _ in stacks):
         return {}
