@@ -25,6 +25,7 @@ from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,
+    BorderEdges,
     Interfaces,
     Patches,
     interfaces_on,
@@ -36,7 +37,7 @@ from ..core.tiles.borders import (
 )
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.grid import checked_size, tile_grid
-from ..core.tiles.settling import BorderVertices, settled
+from ..core.tiles.settling import BorderVertices, Box, settled
 from ..core.tiles.tile_model import (
     Frame,
     build_tile,
@@ -53,6 +54,7 @@ from .workers import client_of, in_any_order
 
 _RUN = "run"  # what only a run needs, in the folder
 _PREPARED, _BUILT, _JOINED = 0.25, 0.75, 0.97  # of the time
+_LEAST_PLACES = 100  # of a tile that are compared with the closed form
 Name = tuple[int, int]  # column and row of a tile
 
 
@@ -272,11 +274,11 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model, border = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
-    sides = border.arrays()
+    model, sides = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
+    numbers, edges = sides["numbers"], BorderEdges.of(model, box)
     for side, _ in _neighbors(frame, name, names):
-        found = interfaces_on(model, side)
-        ends = np.searchsorted(border.numbers, found.ends)
+        found = interfaces_on(model, edges.on(model, side))
+        ends = np.searchsorted(numbers, found.ends)
         sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": ends}
     write_model(model, store.file("built", name))
     store.write(store.file("sides", name), sides)
@@ -292,17 +294,18 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
     places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
-    theirs = {}
+    neighbors = []
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
-        theirs[side.name] = Interfaces(*(sides[other][key] for key in keys)), places[other]
-        model = with_vertices_of(model, side, *theirs[side.name])
-    report = model.validate(PLACES_OF_REPORT, threads=1)
+        neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
+    model = with_vertices_of(model, BorderEdges.of(model, box), neighbors)
+    report = model.validate(_places(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches = {}
-    for side, _ in _neighbors(frame, name, names):
-        found = patches_on(model, side, positions_on(model, side, *theirs[side.name]))
+    patches, border = {}, BorderEdges.of(model, box)
+    for side, *theirs in neighbors:
+        edges = border.on(model, side)
+        found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
         part = model.cell_component[found.cell]
         patches |= {
             f"{side.name}_shape": found.shape,
@@ -330,6 +333,13 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
         blocks=[asdict(block) for block in model.blocks],
     )
+
+
+def _places(frame: Frame, box: Box) -> int:
+    """How many positions of a tile are compared with the closed form: its share of the whole's by area."""
+    low_x, low_y, high_x, high_y = frame.grid.whole
+    share = (box[2] - box[0]) / (high_x - low_x) * ((box[3] - box[1]) / (high_y - low_y))
+    return max(_LEAST_PLACES, math.ceil(PLACES_OF_REPORT * share))
 
 
 def _patches(arrays: dict, side: str) -> Patches:

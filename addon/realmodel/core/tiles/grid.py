@@ -37,6 +37,11 @@ class TileGrid:
     def __iter__(self) -> Iterator[tuple[int, int]]:
         return ((column, row) for row in range(self.rows) for column in range(self.columns))
 
+    @property
+    def whole(self) -> tuple[float, float, float, float]:
+        """The box of all tiles."""
+        return float(self.x[0]), float(self.y[0]), float(self.x[-1]), float(self.y[-1])
+
     def box(self, column: int, row: int) -> tuple[float, float, float, float]:
         """Low x, low y, high x, high y."""
         return tuple(

@@ -100,9 +100,9 @@ def _parts(frame: Frame, folder: Path) -> dict[tuple, Part]:
 
 def build_tile(
     work: Work, frame: Frame, box: Box, folder: Path, threads: int
-) -> tuple[Model, BorderVertices]:
-    """The model of a tile, with borders as they come, and its vertices there. folder: what write_parts
-    wrote."""
+) -> tuple[Model, dict[str, np.ndarray]]:
+    """The model of a tile, with borders as they come, and its BorderVertices as arrays. folder: what
+    write_parts wrote."""
     parts = _parts(frame, folder)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
@@ -134,7 +134,7 @@ def build_tile(
     timings = {"intersect": time.perf_counter() - began}
     model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
     model.warnings = _warnings(inputs, built, numbers)
-    return model, BorderVertices.of_built(built)
+    return model, BorderVertices.arrays_of(built)
 
 
 class _NumberedError(Exception):
