@@ -6,8 +6,11 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import secrets
 import shutil
-from collections.abc import Iterable
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -21,6 +24,7 @@ from ..core.errors import place_text
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
+from ..core.mapped_arrays import Keep, MappedArrays
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
@@ -53,6 +57,7 @@ from ..core.work import Work, native_module, run
 from .workers import client_of, in_any_order
 
 _RUN = "run"  # what only a run needs, in the folder
+_DIGEST = "digest"  # in there: of all that the result depends on
 _PREPARED, _BUILT, _JOINED = 0.25, 0.75, 0.97  # of the time
 _LEAST_PLACES = 100  # of a tile that are compared with the closed form
 Name = tuple[int, int]  # column and row of a tile
@@ -84,12 +89,16 @@ def build(
         raise UsageError("models with faults or bodies are not built in tiles; build them as a whole")
     folder = Path(folder)
     told = progress or (lambda _share, _text: None)
-    prepared = _prepared(project, size, cells, lambda share, text: told(_PREPARED * share, text), cancel)
-    if (folder / CATALOG).exists():
-        return _finished(folder, prepared.digest)
-    store = _Store(folder, prepared.digest)
-    names = store.write_parts(prepared)
-    prepared = replace(prepared, rocks=[])  # from here on the workers have them
+    _require_own(folder)
+    with _mapped_arrays(folder) as keep:
+        prepared = _prepared(
+            project, size, cells, keep, lambda share, text: told(_PREPARED * share, text), cancel
+        )
+        if (folder / CATALOG).exists():
+            return _finished(folder, prepared.digest)
+        store = _Store(folder, prepared.digest)
+        names = store.write_parts(prepared)
+        prepared = replace(prepared, rocks=[])  # from here on the workers have them
     with client_of(client) as workers:
         shared = (store, prepared.frame, frozenset(names))
         done = sum(store.has("built", name) for name in names)
@@ -121,15 +130,44 @@ class _Prepared:
     digest: str
 
 
-def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
+def _require_own(folder: Path) -> None:
+    """Raises UsageError where a folder holds something else than a model in tiles."""
+    try:
+        if (folder / CATALOG).exists() or (folder / _RUN / _DIGEST).exists() or not folder.exists():
+            return
+        if any(each.name not in (_RUN, TILES) for each in folder.iterdir()):
+            raise UsageError(f"{folder}: a folder with other content; choose a new one")
+    except OSError as error:
+        raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+
+@contextmanager
+def _mapped_arrays(folder: Path) -> Iterator[Keep]:
+    """Where arrays are kept until the tiles have them: on the disk of the result, unless this is finished."""
+    if (folder / CATALOG).exists():
+        run_folder, made = Path(tempfile.gettempdir()), []
+    else:
+        run_folder = folder / _RUN
+        made = [each for each in (run_folder, folder) if not each.exists()]
+    try:
+        with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
+            yield arrays.keep
+    finally:
+        for each in made:
+            with suppress(OSError):
+                each.rmdir()  # where nothing else came
+
+
+def _prepared(project, size, cells: str, keep: Keep, progress, cancel) -> _Prepared:
     surfaces = build_surfaces(
-        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel
+        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel, keep=keep
     )
     inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
     rocks = [entry.native() for entry in inputs]
     joined = run(lambda work: _joined(work, rocks), cancel=cancel)
     if joined is not None:
         rocks, text = joined
+        rocks = [_kept(rock, keep) for rock in rocks]
         warnings.append(BuildWarning(text, "joined"))
     # surfaces on the region's own mesh end where it ends
     clips = tuple(
@@ -141,6 +179,13 @@ def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
     grid = tile_grid(meshes, size)
     frame = Frame(without_shapes(project, inputs), cells, grid, clips)
     return _Prepared(frame, rocks, warnings, _digest(frame, rocks))
+
+
+def _kept(rock: tuple, keep: Keep) -> tuple:
+    """A rock mass as the stack builder takes it with its arrays in another place."""
+    shapes, region, *rest = rock
+    region = None if region is None else tuple(map(keep, region))
+    return [tuple(map(keep, shape)) for shape in shapes], region, *rest
 
 
 def _joined(work: Work, rocks: list[tuple]):
@@ -174,11 +219,9 @@ class _Store:
         try:
             self._run.mkdir(parents=True, exist_ok=True)
             (folder / TILES).mkdir(exist_ok=True)
-            of = self._run / "digest"
+            of = self._run / _DIGEST
             if of.exists() and of.read_text() != digest:
                 raise _another(folder)
-            if not of.exists() and any(each.name not in (_RUN, TILES) for each in folder.iterdir()):
-                raise UsageError(f"{folder}: a folder with other content; choose a new one")
             with Outputs() as outputs, outputs.file(of) as file:
                 file.write(digest.encode())
         except OSError as error:

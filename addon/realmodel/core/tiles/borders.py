@@ -55,9 +55,9 @@ class Interfaces:
 
 @dataclass(frozen=True)
 class BorderEdges:
-    """What of a model is on its border, found in one pass over it. vertices (N,): all there, ascending. face,
-    at, first, second (E,): the edges of all faces between two of them: the face, the place of the first corner
-    in face_vertices, and both vertices."""
+    """What of a model is on its border, found in one pass over it. vertices (N,): all there, ascending.
+    face, at, first, second (E,): the edges of all faces between two of them: the face, the place of the
+    first corner in face_vertices, and both vertices."""
 
     vertices: np.ndarray
     face: np.ndarray
@@ -84,9 +84,7 @@ class BorderEdges:
         vertices = self.vertices[places[self.vertices, side.axis] == side.line]
         is_on = (places[self.first, side.axis] == side.line) & (places[self.second, side.axis] == side.line)
         kept = is_on & (places[self.first, side.along] != places[self.second, side.along])
-        return BorderEdges(
-            vertices, *(each[kept] for each in (self.face, self.at, self.first, self.second))
-        )
+        return BorderEdges(vertices, *(each[kept] for each in (self.face, self.at, self.first, self.second)))
 
 
 def _pairs(edges: BorderEdges) -> np.ndarray:
@@ -113,9 +111,9 @@ def interfaces_on(model, edges: BorderEdges) -> Interfaces:
 
 @dataclass(frozen=True)
 class _Insertion:
-    """Vertices to insert on one side. places (N, 3): of new ones. face, at (E,): into which faces and after which
-    corners, by their places in face_vertices; count (E,): how many after each; and their numbers, one corner
-    after another."""
+    """Vertices to insert on one side. places (N, 3): of new ones. face, at (E,): into which faces and after
+    which corners, by their places in face_vertices; count (E,): how many after each; and their numbers, one
+    corner after another."""
 
     places: np.ndarray
     face: np.ndarray
@@ -265,9 +263,7 @@ def patches_on(model, side: Side, edges: BorderEdges, positions: np.ndarray) -> 
     return Patches(shape[order], model.cell_block[cell[order]], cell[order], alone)
 
 
-def positions_on(
-    model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray
-) -> np.ndarray:
+def positions_on(model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray) -> np.ndarray:
     """Where on a side a model has vertices, or its neighbor, ascending. edges: on this side."""
     own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
     return np.unique(np.concatenate([own, places[other.ends.ravel(), side.along]]))
