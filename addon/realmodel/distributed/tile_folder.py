@@ -24,7 +24,7 @@ from ..core.errors import place_text
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
-from ..core.mapped_arrays import Keep, MappedArrays
+from ..core.mapped_arrays import Keep, MappedArrays, read_mapped, write_mapped
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
@@ -45,8 +45,9 @@ from ..core.tiles.settling import BorderVertices, Box, settled
 from ..core.tiles.tile_model import (
     Frame,
     build_tile,
+    model_of,
     read_arrays,
-    read_model,
+    tile_arrays,
     without_shapes,
     write_model,
     write_parts,
@@ -236,7 +237,8 @@ class _Store:
         with its neighbors' vertices; patches, what its borders are then."""
         folder = self.folder / TILES if kind == "joined" else self._run
         prefix = "" if kind == "joined" else f"{kind}-"
-        return folder / f"{prefix}{_stem(name)}.npz"
+        ending = "arrays" if kind == "built" else "npz"
+        return folder / f"{prefix}{_stem(name)}.{ending}"
 
     def parts(self, column: int, row: int) -> Path:
         """The folder with what a tile needs of each surface."""
@@ -323,7 +325,8 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         found = interfaces_on(model, edges.on(model, side))
         ends = np.searchsorted(numbers, found.ends)
         sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": ends}
-    write_model(model, store.file("built", name))
+    with Outputs() as outputs, outputs.file(store.file("built", name)) as file:
+        write_mapped(tile_arrays(model), file)
     store.write(store.file("sides", name), sides)
     store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
 
@@ -331,7 +334,7 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
 def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
     store, frame, names = shared
-    model = read_model(frame.project, store.file("built", name))
+    model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
     borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
@@ -356,8 +359,8 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
             f"{side.name}_part": part,
             f"{side.name}_open": np.array(found.open),
         }
-    parts, first = np.unique(model.cell_component, return_index=True)
-    patches |= {"parts": parts, "block_of_part": model.cell_block[first]}
+    parts = np.flatnonzero(model.cell_component == np.arange(len(model.cell_block)))  # their first cells
+    patches |= {"parts": parts, "block_of_part": model.cell_block[parts]}
     file = store.file("joined", name)
     write_model(model, file)
     mesh = PolyhedralMesh.of_model(model)
@@ -376,6 +379,8 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
         blocks=[asdict(block) for block in model.blocks],
     )
+    del model, mesh  # what is mapped
+    store.file("built", name).unlink(missing_ok=True)
 
 
 def _places(frame: Frame, box: Box) -> int:

@@ -138,13 +138,19 @@ def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side,
         np.concatenate([getattr(each, name) for each in inserted])
         for name in ("face", "at", "count", "numbers")
     )
-    offsets = model.face_offsets.copy()
-    offsets[1:] += np.cumsum(np.bincount(face, size, len(offsets) - 1).astype(np.int64))
+    order = np.argsort(at)  # and so by face
+    pieces = np.split(numbers.astype(model.face_vertices.dtype), np.cumsum(size)[:-1])
+    corners, start = [], 0
+    for k in order.tolist():
+        corners += [model.face_vertices[start : at[k] + 1], pieces[k]]
+        start = at[k] + 1
+    ends = np.concatenate([[0], face[order] + 1, [len(model.face_offsets)]])
+    more = np.concatenate([[0], np.cumsum(size[order])])
     return replace(
         model,
         vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
-        face_vertices=np.insert(model.face_vertices, np.repeat(at + 1, size), numbers),
-        face_offsets=offsets,
+        face_vertices=np.concatenate([*corners, model.face_vertices[start:]]),
+        face_offsets=model.face_offsets + np.repeat(more, np.diff(ends)),
     )
 
 
