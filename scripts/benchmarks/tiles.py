@@ -75,7 +75,7 @@ def in_tiles(project: str, folder: str, size: float, workers: int, keeps_vtu: bo
         threading.Thread(target=_delete_vtu, args=(folder / "tiles", ended), daemon=True).start()
     with (
         LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0"
         ) as cluster,
         Client(cluster) as client,
     ):
