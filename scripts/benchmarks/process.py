@@ -62,7 +62,7 @@ def run_apart(command: list, seconds: float, memory: int) -> tuple[str, float, i
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        start_new_session=True,
+        process_group=0,  # not a session: it keeps the priority that it is given
         cwd=ROOT,
     ) as process:
         try:
