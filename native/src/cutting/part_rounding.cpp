@@ -195,9 +195,9 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
     std::ranges::sort(faces, [](const Face& f, const Face& g) {
         return std::pair(f.hash, f.begin) < std::pair(g.hash, g.begin);
     });
-    const auto are_equal = [&sorted = memory.sorted](const Face& f, const Face& g) {
-        return std::ranges::equal(std::span(sorted).subspan(f.begin, f.size),
-                                  std::span(sorted).subspan(g.begin, g.size));
+    const auto are_equal = [&listed = memory.sorted](const Face& f, const Face& g) {
+        return std::ranges::equal(std::span(listed).subspan(f.begin, f.size),
+                                  std::span(listed).subspan(g.begin, g.size));
     };
     is_repeated.assign(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {
