@@ -20,7 +20,7 @@ heights=(gmt=gmt r-cran-gstat)
 clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
 windows=(g++-mingw-w64-x86-64-posix m4 make googletest libcgal-dev libnanoflann-dev)
-wine=(wine64 wine)
+wine=(wine64 wine xvfb=Xvfb xauth=xauth)
 macos=(make m4 libcgal-dev libnanoflann-dev llvm=llvm-objdump)
 gui=(xvfb=Xvfb xauth=xauth blender=blender python3-numpy libegl1)
 
