@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes NumPy 2 for Windows loadable in Wine: complex_functions.c becomes a DLL beside Python, and NumPy's modules ask
-that one for all functions of mathematics.
+"""Makes NumPy 2 for Windows loadable in Wine: complex_functions.c becomes a DLL beside Python, and NumPy's
+modules ask that one for all functions of mathematics.
 
     python3 add_complex_functions.py FOLDER      FOLDER: of python.exe, with NumPy in Lib/site-packages
 """
@@ -21,7 +21,7 @@ def imported(module):
         [f"{COMPILER}objdump", "-p", module], check=True, capture_output=True, text=True
     ).stdout
     parts = re.split(r"DLL Name: (\S+)", told)
-    of_library = [text for name, text in zip(parts[1::2], parts[2::2]) if name.encode() == ASKED]
+    of_library = [text for name, text in zip(parts[1::2], parts[2::2], strict=True) if name.encode() == ASKED]
     return {name for text in of_library for name in re.findall(r"^\s+[0-9a-f]+\s+\d+\s+(\w+)$", text, re.M)}
 
 
