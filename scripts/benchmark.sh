@@ -5,7 +5,7 @@
 #
 #   scripts/benchmark.sh              all sizes; writes the page
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
-#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing|booleans|structures|files, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing|booleans|structures|files|tiles, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3

@@ -18,13 +18,25 @@ from . import (
     meshing_table,
     page,
     structures_table,
+    tiles_table,
     watching_table,
     window_table,
 )
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans", "structures", "files")
+PARTS = (
+    "stacks",
+    "watch",
+    "blender",
+    "memory",
+    "heights",
+    "meshing",
+    "booleans",
+    "structures",
+    "files",
+    "tiles",
+)
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -86,6 +98,9 @@ def main() -> int:
     if "files" in parts:
         rows = files_table.measure(given.quick, memory, _say)
         tables["files"] = [page.table(files_table.FILES, rows)]
+    if "tiles" in parts:
+        beside, sizes = tiles_table.measure(given.quick, memory, _say)
+        tables["tiles"] = [page.table(tiles_table.BESIDE, beside, 2), page.table(tiles_table.SIZES, sizes)]
     if given.write:
         for name, of_part in tables.items():
             lines = [machine, *(line for table in of_part for line in ("", *table))]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,19 +13,20 @@ Surface = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) float64, triangles (T
 
 @dataclass(frozen=True)
 class StackSpec:
-    """A stack over the unit square.
+    """A stack over a square.
 
     surfaces: how many; quads: cells along a side, so that each surface has 2 quads^2 triangles;
     plan: "own" (jittered nodes, another triangulation for each surface), "shared" (one regular mesh for all)
     or "lattice" (shared, with whole-number places); heights: "sines" (surfaces that cross one another
     in smooth lines), "steps" (whole numbers 0 .. 3 at random) or "half" (each lies on its predecessor
-    for x <= 1/2 and above it elsewhere).
+    for x <= 1/2 and above it elsewhere); side: of the square.
     """
 
     surfaces: int
     quads: int
     plan: str = "own"
     heights: str = "sines"
+    side: float = 1.0
 
     @property
     def triangles(self) -> int:
@@ -33,13 +35,16 @@ class StackSpec:
 
     def make(self) -> list[Surface]:
         """The surfaces, oldest first."""
+        return list(self.each())
+
+    def each(self) -> Iterator[Surface]:
+        """One surface after another, oldest first."""
         random = np.random.default_rng(1)
-        made = []
+        before = None
         for number in range(self.surfaces):
             x, y = _plan(self, random)
-            z = _heights(self, number, x, y, random, made)
-            made.append((np.column_stack([x.ravel(), y.ravel(), z.ravel()]), grid_triangles(self.quads)))
-        return made
+            before = _heights(self, number, x, y, random, before)
+            yield np.column_stack([x.ravel(), y.ravel(), before.ravel()]), grid_triangles(self.quads)
 
 
 def grid_triangles(quads: int) -> np.ndarray:
@@ -56,15 +61,14 @@ def _plan(spec: StackSpec, random) -> tuple[np.ndarray, np.ndarray]:
         inside = (slice(1, -1), slice(1, -1))
         for grid in (x, y):
             grid[inside] += random.uniform(-0.2, 0.2, grid[inside].shape)
-    return (x, y) if spec.plan == "lattice" else (x / spec.quads, y / spec.quads)
+    return (x, y) if spec.plan == "lattice" else (x / spec.quads * spec.side, y / spec.quads * spec.side)
 
 
-def _heights(spec: StackSpec, number: int, x, y, random, made) -> np.ndarray:
+def _heights(spec: StackSpec, number: int, x, y, random, before) -> np.ndarray:
     p, q, r = random.uniform(0, 6, 3)
     if spec.heights == "steps":
         return random.integers(0, 4, x.shape).astype(float)
-    if spec.heights == "half" and made:
-        before = made[-1][0][:, 2].reshape(x.shape)
+    if spec.heights == "half" and before is not None:
         return before + 0.1 * np.maximum(0.0, x - 0.5)
     waves = 0.1 * np.sin(3 * x + p) * np.cos(4 * y + q) + 0.03 * np.sin(9 * x + r + 5 * y)
     return 0.05 * number + waves

@@ -11,7 +11,18 @@ from realmodel.core import mesh_region
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import files, files_table, hard_outlines, meshing, page, peers, process, structures
+from benchmarks import (
+    files,
+    files_table,
+    hard_outlines,
+    meshing,
+    page,
+    peers,
+    process,
+    structures,
+    tiles,
+    tiles_table,
+)
 from benchmarks.made_stacks import StackSpec
 
 
@@ -49,6 +60,25 @@ def test_a_surface_closed_for_peers_is_a_closed_solid():
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
     assert 0.8 < volume < 1.3, "counter-clockwise seen from outside"
+
+
+def test_a_model_in_tiles_is_measured_beside_the_whole(tmp_path):
+    pytest.importorskip("distributed")
+    folders = [tmp_path / name for name in ("inputs", "whole", "tiles")]
+    for folder in folders:
+        folder.mkdir()
+    spec = {"surfaces": 3, "quads": 12, "side": 2.0}
+    project = tiles.write_project(spec, str(folders[0]))["project"]
+    whole = tiles.undivided(project, str(folders[1]), 1)
+    assert (folders[1] / "model.npz").exists() and (folders[1] / "model.vtu").exists()
+    found = tiles.in_tiles(project, str(folders[2]), 1.0, 1, False)
+    assert found["tiles"] == 4 and found["cells"] > whole["cells"] > 800
+    assert found["all"] > found["worker"]
+    row = tiles_table._pair(
+        "tiles", "whole", {"seconds": 2, "processor": 3}, {"seconds": 1, "processor": 3}, 1.3
+    )
+    assert row == ["tiles", "whole", "2.0", "3.0", "1.0", "3.0", "**2.00**", "1.00", "1.30", "NOT met"]
+    assert len(row) == len(tiles_table.BESIDE)
 
 
 @pytest.mark.parametrize(("faults", "compartments"), [(0, 1), (1, 2), (3, 6)])

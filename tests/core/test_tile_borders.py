@@ -11,16 +11,25 @@ BOX = (0.0, 0.0, 4.0, 4.0)
 TINY = Fraction(1, 10**30)
 
 
-def border(*places):
+def built(*places):
     """Vertices at exact places, as the native build_tile tells of them."""
 
     def text(value):
         top, bottom = Fraction(value).as_integer_ratio()
         return f"{top:x}" if bottom == 1 else f"{top:x}/{bottom:x}"
 
-    exact = [tuple(map(text, place)) for place in places]
     nearest = np.array([[float(Fraction(each)) for each in place] for place in places]).reshape(-1, 3)
-    return BorderVertices(np.arange(len(places), dtype=np.int32), nearest, exact)
+    return {
+        "border_vertices": np.arange(len(places), dtype=np.int32),
+        "border_nearest": nearest,
+        "border_exact": "".join(" ".join(map(text, place)) + "\n" for place in places).encode(),
+    }
+
+
+def border(*places):
+    lines = built(*places)["border_exact"].decode().splitlines()
+    exact = {number: tuple(line.split()) for number, line in enumerate(lines)}
+    return BorderVertices(np.arange(len(places)), built(*places)["border_nearest"], exact)
 
 
 def test_what_is_apart_stays():
@@ -69,8 +78,8 @@ def test_what_is_near_a_corner_stays_off_it():
 
 
 def test_it_comes_back_from_a_file():
-    own = border((0, Fraction(1, 3), 5), (8, Fraction(-1, 3), 5), (0, 2, Fraction(7, 3)))
-    again = BorderVertices.of_arrays(own.arrays(), BOX)
+    places = (0, Fraction(1, 3), 5), (8, Fraction(-1, 3), 5), (0, 2, Fraction(7, 3))
+    own, again = border(*places), BorderVertices.of_arrays(BorderVertices.arrays_of(built(*places)), BOX)
     assert again.exact == {0: own.exact[0], 2: own.exact[2]}  # what is elsewhere is not asked for
     assert np.array_equal(again.nearest, own.nearest) and np.array_equal(again.numbers, own.numbers)
-    assert BorderVertices.of_arrays(border().arrays(), BOX).exact == {}
+    assert BorderVertices.of_arrays(BorderVertices.arrays_of(built()), BOX).exact == {}

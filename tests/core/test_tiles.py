@@ -5,7 +5,9 @@ import contextlib
 import gc
 import itertools
 import math
+import shutil
 import weakref
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -267,6 +269,11 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
         build_tiles(project, tmp_path / "t", (40, 40))
     with pytest.raises(InputRefused, match="not finished"):
         open_tiles(tmp_path / "t")
+    assert {path.name for path in (tmp_path / "t" / "run").glob("joined-*")} == {
+        f"joined-{tile}.json" for tile in ("0000-0000", "0001-0000")
+    }
+    left = {path.stem for path in (tmp_path / "t" / "run").glob("built-*.arrays")}
+    assert len(left) == 7 and not left.intersection({"built-0000-0000", "built-0001-0000"})
     monkeypatch.setattr(tile_folder, "_build", None)  # all are built
     tiled = build_tiles(project, tmp_path / "t", (40, 40))
     assert len(calls) == 3 + len(tiled.tiles) - 2
@@ -296,6 +303,50 @@ def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
     monkeypatch.setattr(tile_folder, "_build", build_one)
     build_tiles(sample("two_layers"), tmp_path / "t", (37, 23))
     assert arrays and left and not any(left)
+
+
+def test_surfaces_of_files_are_kept_in_files(monkeypatch, tmp_path):
+    """Read or interpolated: the lead has one in memory at a time, and the files are gone at the end."""
+    ready_one = sample("two_layers")
+    vertices, triangles = build(ready_one).surface(0)
+    ready_one.rocks[0].surfaces[0] = Surface("given", vertices, triangles)
+    found = []
+
+    def look(rocks, *rest):
+        meshes = [mesh for shapes, region, *_ in rocks for mesh in (*shapes, region) if mesh is not None]
+        found.append([isinstance(each, np.memmap) for mesh in meshes for each in mesh])
+        assert len(list((tmp_path / "t" / "run").glob("inputs-*"))) == 1
+        return real(rocks, *rest)
+
+    real = tile_folder.write_parts
+    monkeypatch.setattr(tile_folder, "write_parts", look)
+    for project in (sample("haut_barr"), ready_one):
+        build_tiles(project, tmp_path / "t", (1e6, 1e6))
+        assert not list((tmp_path / "t").rglob("inputs-*"))
+        shutil.rmtree(tmp_path / "t")
+    assert all(found[0])
+    assert found[1] == [False, False, True, True, True, True]  # what the project has in memory stays there
+
+
+def test_nothing_is_left_of_a_model_that_is_refused(tmp_path):
+    project = sample("two_layers")
+    project.rocks[0].surfaces[1].points = tmp_path / "missing.csv"
+    for folder in (tmp_path / "new", tmp_path / "there"):
+        (tmp_path / "there").mkdir(exist_ok=True)
+        with pytest.raises(InputRefused, match=r"missing\.csv"):
+            build_tiles(project, folder, (37, 23))
+    assert not (tmp_path / "new").exists()
+    assert not list((tmp_path / "there").iterdir())
+
+
+def test_tiles_compare_positions_by_their_area(tmp_path):
+    grid = tile_grid([hilly(10, 0.0, 1)[0]], (25, 50))
+    frame = SimpleNamespace(grid=grid)
+    counts = [tile_folder._places(frame, grid.box(*name)) for name in grid]
+    assert 4000 <= sum(counts) <= 4000 + len(counts)
+    assert max(counts) < 1.4 * min(counts)
+    grid = tile_grid([hilly(10, 0.0, 1)[0]], (2, 2))
+    assert tile_folder._places(SimpleNamespace(grid=grid), grid.box(1, 1)) == 100  # at least
 
 
 def test_the_same_bytes_again(tmp_path):

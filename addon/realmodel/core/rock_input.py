@@ -14,6 +14,7 @@ from .distant_points import require_points_near
 from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
+from .mapped_arrays import Keep, as_it_is
 from .mesh_sizes import AUTO
 from .plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
@@ -98,9 +99,9 @@ class RockInput:
         )
 
 
-def read_rocks(work: Work, project: Project) -> list[RockInput]:
+def read_rocks(work: Work, project: Project, keep: Keep = as_it_is) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
-    in `surfaces` is None."""
+    in `surfaces` is None. keep: where what a surface's file holds is, once it is read."""
     total = sum(1 + len(rock.surfaces) for rock in project.rocks)
     done = 0
     inputs = []
@@ -119,7 +120,10 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
 
             step(0.0)
             met = picks.points.pop(surface.name, None) if surface.interpolated else None
+            has_file = surface.input_file is not None
             surface, shape, face, told = _read_surface(rock, surface, met, project.units, step)
+            if has_file:
+                surface, shape, face = _kept(surface, shape, face, keep)
             warnings += [BuildWarning(text, "points", rock.name, surface.name) for text in told]
             surfaces.append(surface)
             shapes.append(shape)
@@ -251,6 +255,15 @@ def _read_surface(
     return surface, (vertices, triangles), faces, told
 
 
+def _kept(surface: Surface, shape: Triangulation | None, faces: np.ndarray | None, keep: Keep):
+    """What a file of a surface holds, kept in another place."""
+    faces = None if faces is None else keep(faces)
+    if shape is None:
+        return replace(surface, points=keep(surface.points)), None, faces
+    vertices, triangles = map(keep, shape)
+    return replace(surface, vertices=vertices, triangles=triangles), (vertices, triangles), faces
+
+
 def checked_triangulation(vertices, triangles) -> Triangulation:
     """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
     try:
@@ -314,14 +327,27 @@ def _density_points(rock: Rock) -> np.ndarray:
 
 
 def interpolate_rock(
-    work: Work, entry: RockInput, start: float, end: float, threads: int, stage: int | None = None
+    work: Work,
+    entry: RockInput,
+    start: float,
+    end: float,
+    threads: int,
+    stage: int | None = None,
+    keep: Keep = as_it_is,
 ) -> None:
     """Gives heights to each surface of a rock mass that is interpolated; for a stage only to those that it
-    takes. Progress goes from `start` to `end`."""
+    takes. Progress goes from `start` to `end`. keep: where surfaces are then; unless this is in memory,
+    nothing else is known of them."""
+    if keep is not as_it_is and entry.region is not None:
+        entry.region = tuple(map(keep, entry.region))
     waiting = interpolation_order(entry.rock, stage)
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number, threads)
+        if keep is not as_it_is:
+            entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
+            entry.interpolations[number] = None
+            del entry.told[number]
     for number in sorted(waiting):
         entry.warnings += points_too_low(work, entry, number, threads)

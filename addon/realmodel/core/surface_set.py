@@ -13,6 +13,7 @@ from .build_warning import BuildWarning
 from .errors import UsageError
 from .exporters.surfaces import save_surfaces
 from .heights import Interpolation
+from .mapped_arrays import Keep, as_it_is
 from .method_options import check_threads
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
@@ -101,10 +102,12 @@ def build_surfaces(
     cancel: Cancel | None = None,
     *,
     stage: int | None = None,
+    keep: Keep = as_it_is,
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
-    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass.
+    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
+    surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave.
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
@@ -114,12 +117,12 @@ def build_surfaces(
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(lambda work: _build(work, project, threads, stage), progress, cancel)
+    return run(lambda work: _build(work, project, threads, stage, keep), progress, cancel)
 
 
-def _build(work: Work, project: Project, threads: int, stage: int | None) -> SurfaceSet:
+def _build(work: Work, project: Project, threads: int, stage: int | None, keep: Keep) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project)
+        inputs = read_rocks(work, project, keep)
         faults, bodies, told = read_structures(work, project, threads)
         inputs[0].warnings += told
     count = len(inputs)
@@ -133,7 +136,7 @@ def _build(work: Work, project: Project, threads: int, stage: int | None) -> Sur
     else:
         for number, entry in enumerate(inputs):
             begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
-            interpolate_rock(work, entry, begin, end, threads, stage)
+            interpolate_rock(work, entry, begin, end, threads, stage, keep)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

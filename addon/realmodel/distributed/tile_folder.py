@@ -6,8 +6,11 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import secrets
 import shutil
-from collections.abc import Iterable
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -21,10 +24,12 @@ from ..core.errors import place_text
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
+from ..core.mapped_arrays import Keep, MappedArrays, read_mapped, write_mapped
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,
+    BorderEdges,
     Interfaces,
     Patches,
     interfaces_on,
@@ -36,12 +41,13 @@ from ..core.tiles.borders import (
 )
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.grid import checked_size, tile_grid
-from ..core.tiles.settling import BorderVertices, settled
+from ..core.tiles.settling import BorderVertices, Box, settled
 from ..core.tiles.tile_model import (
     Frame,
     build_tile,
+    model_of,
     read_arrays,
-    read_model,
+    tile_arrays,
     without_shapes,
     write_model,
     write_parts,
@@ -52,7 +58,9 @@ from ..core.work import Work, native_module, run
 from .workers import client_of, in_any_order
 
 _RUN = "run"  # what only a run needs, in the folder
+_DIGEST = "digest"  # in there: of all that the result depends on
 _PREPARED, _BUILT, _JOINED = 0.25, 0.75, 0.97  # of the time
+_LEAST_PLACES = 100  # of a tile that are compared with the closed form
 Name = tuple[int, int]  # column and row of a tile
 
 
@@ -82,12 +90,16 @@ def build(
         raise UsageError("models with faults or bodies are not built in tiles; build them as a whole")
     folder = Path(folder)
     told = progress or (lambda _share, _text: None)
-    prepared = _prepared(project, size, cells, lambda share, text: told(_PREPARED * share, text), cancel)
-    if (folder / CATALOG).exists():
-        return _finished(folder, prepared.digest)
-    store = _Store(folder, prepared.digest)
-    names = store.write_parts(prepared)
-    prepared = replace(prepared, rocks=[])  # from here on the workers have them
+    _require_own(folder)
+    with _mapped_arrays(folder) as keep:
+        prepared = _prepared(
+            project, size, cells, keep, lambda share, text: told(_PREPARED * share, text), cancel
+        )
+        if (folder / CATALOG).exists():
+            return _finished(folder, prepared.digest)
+        store = _Store(folder, prepared.digest)
+        names = store.write_parts(prepared)
+        prepared = replace(prepared, rocks=[])  # from here on the workers have them
     with client_of(client) as workers:
         shared = (store, prepared.frame, frozenset(names))
         done = sum(store.has("built", name) for name in names)
@@ -119,15 +131,44 @@ class _Prepared:
     digest: str
 
 
-def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
+def _require_own(folder: Path) -> None:
+    """Raises UsageError where a folder holds something else than a model in tiles."""
+    try:
+        if (folder / CATALOG).exists() or (folder / _RUN / _DIGEST).exists() or not folder.exists():
+            return
+        if any(each.name not in (_RUN, TILES) for each in folder.iterdir()):
+            raise UsageError(f"{folder}: a folder with other content; choose a new one")
+    except OSError as error:
+        raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+
+@contextmanager
+def _mapped_arrays(folder: Path) -> Iterator[Keep]:
+    """Where arrays are kept until the tiles have them: on the disk of the result, unless this is finished."""
+    if (folder / CATALOG).exists():
+        run_folder, made = Path(tempfile.gettempdir()), []
+    else:
+        run_folder = folder / _RUN
+        made = [each for each in (run_folder, folder) if not each.exists()]
+    try:
+        with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
+            yield arrays.keep
+    finally:
+        for each in made:
+            with suppress(OSError):
+                each.rmdir()  # where nothing else came
+
+
+def _prepared(project, size, cells: str, keep: Keep, progress, cancel) -> _Prepared:
     surfaces = build_surfaces(
-        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel
+        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel, keep=keep
     )
     inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
     rocks = [entry.native() for entry in inputs]
     joined = run(lambda work: _joined(work, rocks), cancel=cancel)
     if joined is not None:
         rocks, text = joined
+        rocks = [_kept(rock, keep) for rock in rocks]
         warnings.append(BuildWarning(text, "joined"))
     # surfaces on the region's own mesh end where it ends
     clips = tuple(
@@ -139,6 +180,13 @@ def _prepared(project, size, cells: str, progress, cancel) -> _Prepared:
     grid = tile_grid(meshes, size)
     frame = Frame(without_shapes(project, inputs), cells, grid, clips)
     return _Prepared(frame, rocks, warnings, _digest(frame, rocks))
+
+
+def _kept(rock: tuple, keep: Keep) -> tuple:
+    """A rock mass as the stack builder takes it with its arrays in another place."""
+    shapes, region, *rest = rock
+    region = None if region is None else tuple(map(keep, region))
+    return [tuple(map(keep, shape)) for shape in shapes], region, *rest
 
 
 def _joined(work: Work, rocks: list[tuple]):
@@ -172,11 +220,9 @@ class _Store:
         try:
             self._run.mkdir(parents=True, exist_ok=True)
             (folder / TILES).mkdir(exist_ok=True)
-            of = self._run / "digest"
+            of = self._run / _DIGEST
             if of.exists() and of.read_text() != digest:
                 raise _another(folder)
-            if not of.exists() and any(each.name not in (_RUN, TILES) for each in folder.iterdir()):
-                raise UsageError(f"{folder}: a folder with other content; choose a new one")
             with Outputs() as outputs, outputs.file(of) as file:
                 file.write(digest.encode())
         except OSError as error:
@@ -191,7 +237,8 @@ class _Store:
         with its neighbors' vertices; patches, what its borders are then."""
         folder = self.folder / TILES if kind == "joined" else self._run
         prefix = "" if kind == "joined" else f"{kind}-"
-        return folder / f"{prefix}{_stem(name)}.npz"
+        ending = "arrays" if kind == "built" else "npz"
+        return folder / f"{prefix}{_stem(name)}.{ending}"
 
     def parts(self, column: int, row: int) -> Path:
         """The folder with what a tile needs of each surface."""
@@ -272,13 +319,14 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model, border = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
-    sides = border.arrays()
+    model, sides = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
+    numbers, edges = sides["numbers"], BorderEdges.of(model, box)
     for side, _ in _neighbors(frame, name, names):
-        found = interfaces_on(model, side)
-        ends = np.searchsorted(border.numbers, found.ends)
+        found = interfaces_on(model, edges.on(model, side))
+        ends = np.searchsorted(numbers, found.ends)
         sides |= {f"{side.name}_on": found.on, f"{side.name}_ends": ends}
-    write_model(model, store.file("built", name))
+    with Outputs() as outputs, outputs.file(store.file("built", name)) as file:
+        write_mapped(tile_arrays(model), file)
     store.write(store.file("sides", name), sides)
     store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
 
@@ -286,23 +334,24 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
 def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: gives a tile its neighbors' vertices, proves it, and writes it."""
     store, frame, names = shared
-    model = read_model(frame.project, store.file("built", name))
+    model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
     borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
     places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
-    theirs = {}
+    neighbors = []
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
-        theirs[side.name] = Interfaces(*(sides[other][key] for key in keys)), places[other]
-        model = with_vertices_of(model, side, *theirs[side.name])
-    report = model.validate(PLACES_OF_REPORT, threads=1)
+        neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
+    model = with_vertices_of(model, BorderEdges.of(model, box), neighbors)
+    report = model.validate(_places(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches = {}
-    for side, _ in _neighbors(frame, name, names):
-        found = patches_on(model, side, positions_on(model, side, *theirs[side.name]))
+    patches, border = {}, BorderEdges.of(model, box)
+    for side, *theirs in neighbors:
+        edges = border.on(model, side)
+        found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
         part = model.cell_component[found.cell]
         patches |= {
             f"{side.name}_shape": found.shape,
@@ -310,8 +359,8 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
             f"{side.name}_part": part,
             f"{side.name}_open": np.array(found.open),
         }
-    parts, first = np.unique(model.cell_component, return_index=True)
-    patches |= {"parts": parts, "block_of_part": model.cell_block[first]}
+    parts = np.flatnonzero(model.cell_component == np.arange(len(model.cell_block)))  # their first cells
+    patches |= {"parts": parts, "block_of_part": model.cell_block[parts]}
     file = store.file("joined", name)
     write_model(model, file)
     mesh = PolyhedralMesh.of_model(model)
@@ -330,6 +379,15 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
         blocks=[asdict(block) for block in model.blocks],
     )
+    del model, mesh  # what is mapped
+    store.file("built", name).unlink(missing_ok=True)
+
+
+def _places(frame: Frame, box: Box) -> int:
+    """How many positions of a tile are compared with the closed form: its share of the whole's by area."""
+    low_x, low_y, high_x, high_y = frame.grid.whole
+    share = (box[2] - box[0]) / (high_x - low_x) * ((box[3] - box[1]) / (high_y - low_y))
+    return max(_LEAST_PLACES, math.ceil(PLACES_OF_REPORT * share))
 
 
 def _patches(arrays: dict, side: str) -> Patches:

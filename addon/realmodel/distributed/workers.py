@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ..core import Cancelled, UsageError
 
 _POLL_SECONDS = 0.2
+_ANY_PORT = "127.0.0.1:0"  # None would be Dask's usual port, and a warning where this is taken
 _LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
 
 
@@ -28,14 +29,14 @@ def connected(address: str):
 def client_of(given):
     """`given`, or a client of processes of this machine, one for each processor, which end with it.
 
-    They listen on free ports of this machine alone. There is no dashboard, whose port may be taken."""
+    They listen on free ports of this machine alone, so that several of them run beside each other."""
     if given is not None:
         yield given
         return
     distributed = _distributed()
     with (
         distributed.LocalCluster(
-            n_workers=os.cpu_count(), threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=os.cpu_count(), threads_per_worker=1, processes=True, dashboard_address=_ANY_PORT
         ) as cluster,
         distributed.Client(cluster) as client,
     ):

@@ -38,35 +38,36 @@ std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
     return enter_site(rocks, snapping, warnings, threads, progress);
 }
 
-/// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
-Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
-    Entered entered;
-    const auto enter = [&](std::span<const StackInput> input, const PlanSnapping& snapping) {
-        entered.site = enter_as_given(input, snapping, entered.warnings, threads, progress);
-    };
-    if (share_one_plan(rocks)) {
-        enter(rocks, {});
-        return entered;
-    }
+/// Finds which borders are to be joined, and whether any is.
+bool find_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
+                Progress* progress) {
+    if (share_one_plan(rocks)) return false;
     begin_step(progress, 0.0, kBordersDone, "comparing the borders");
     entered.snapping = find_snapping(rocks, threads, progress);
     entered.joined = join_borders(rocks, entered.snapping, threads, progress);
-    if (entered.snapping.empty() && entered.joined.divided == 0) {
-        enter(rocks, {});
-        return entered;
-    }
-    if (entered.joined.divided > 0) {
-        enter(entered.joined.rocks, {});
-    } else {
-        enter(rocks, entered.snapping);
-    }
-    if (!entered.site->is_single_valued) {
-        // Whatever is wrong, what the user hears is about the input as given.
-        enter(rocks, {});
-        return entered;
-    }
-    entered.is_joined = true;
-    entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.joined));
+    return !entered.snapping.empty() || entered.joined.divided > 0;
+}
+
+/// The input with the joins found, unless they break something: whatever is wrong then, what the
+/// user hears is about the input as given.
+void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
+                      Progress* progress) {
+    const bool is_divided = entered.joined.divided > 0;
+    entered.site =
+        is_divided ? enter_as_given(entered.joined.rocks, {}, entered.warnings, threads, progress)
+                   : enter_as_given(rocks, entered.snapping, entered.warnings, threads, progress);
+    entered.is_joined = entered.site->is_single_valued;
+    if (entered.is_joined)
+        entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.joined));
+}
+
+/// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
+Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
+    Entered entered;
+    if (find_joins(rocks, entered, threads, progress))
+        enter_with_joins(rocks, entered, threads, progress);
+    if (!entered.is_joined)
+        entered.site = enter_as_given(rocks, {}, entered.warnings, threads, progress);
     return entered;
 }
 
@@ -140,8 +141,10 @@ Tile build_tile(std::span<const StackInput> rocks, const Window& window, int thr
 }
 
 JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress) {
-    const Entered entered = enter_joined(rocks, threads, progress);
+    Entered entered;
     JoinedInput result;
+    if (!find_joins(rocks, entered, threads, progress)) return result;
+    enter_with_joins(rocks, entered, threads, progress);
     if (!entered.is_joined) return result;
     result.warning = entered.warnings.back();
     const auto& joined = entered.joined;

@@ -54,36 +54,46 @@ class Interfaces:
 
 
 @dataclass(frozen=True)
-class _Edges:
-    """The edges of all faces that lie on a side and are not vertical: their face, the place of their first
-    corner in face_vertices, and both vertices."""
+class BorderEdges:
+    """What of a model is on its border, found in one pass over it. vertices (N,): all there, ascending.
+    face, at, first, second (E,): the edges of all faces between two of them: the face, the place of the
+    first corner in face_vertices, and both vertices."""
 
+    vertices: np.ndarray
     face: np.ndarray
     at: np.ndarray
     first: np.ndarray
     second: np.ndarray
 
+    @classmethod
+    def of(cls, model, box: tuple[float, float, float, float]) -> BorderEdges:
+        on = np.zeros(len(model.vertices), bool)
+        for side in sides_of(box):
+            on |= model.vertices[:, side.axis] == side.line
+        corners = model.face_vertices
+        at = np.flatnonzero(on[corners])
+        face = np.searchsorted(model.face_offsets, at, "right") - 1
+        following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
+        kept = on[corners[following]]
+        at, face, following = at[kept], face[kept], following[kept]
+        return cls(np.flatnonzero(on), face, at, corners[at], corners[following])
 
-def _edges_on(model, side: Side) -> _Edges:
-    vertices = model.vertices
-    on = vertices[:, side.axis] == side.line
-    corners = model.face_vertices
-    at = np.flatnonzero(on[corners])
-    face = np.searchsorted(model.face_offsets, at, "right") - 1
-    following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
-    first, second = corners[at], corners[following]
-    along = vertices[:, side.along]
-    kept = on[second] & (along[first] != along[second])
-    return _Edges(face[kept], at[kept], first[kept], second[kept])
+    def on(self, model, side: Side) -> BorderEdges:
+        """What is on one side; of the edges those that are not vertical."""
+        places = model.vertices
+        vertices = self.vertices[places[self.vertices, side.axis] == side.line]
+        is_on = (places[self.first, side.axis] == side.line) & (places[self.second, side.axis] == side.line)
+        kept = is_on & (places[self.first, side.along] != places[self.second, side.along])
+        return BorderEdges(vertices, *(each[kept] for each in (self.face, self.at, self.first, self.second)))
 
 
-def _pairs(edges: _Edges) -> np.ndarray:
+def _pairs(edges: BorderEdges) -> np.ndarray:
     """(E,) int64: a number for each edge's two vertices, whichever comes first."""
     low = np.minimum(edges.first, edges.second).astype(np.int64)
     return low << 32 | np.maximum(edges.first, edges.second)
 
 
-def _interfaces_of(model, edges: _Edges) -> tuple[np.ndarray, np.ndarray]:
+def _interfaces_of(model, edges: BorderEdges) -> tuple[np.ndarray, np.ndarray]:
     """Of the edges that lie on interfaces: their pairs of vertices, each once, and what they lie on."""
     surface = model.face_surface[edges.face].astype(np.int64)
     block = model.cell_block[model.face_cells[edges.face, 0]]
@@ -93,19 +103,64 @@ def _interfaces_of(model, edges: _Edges) -> tuple[np.ndarray, np.ndarray]:
     return pairs, on[of_interface][first]
 
 
-def interfaces_on(model, side: Side) -> Interfaces:
-    """The interfaces of a model on one side of it."""
-    pairs, on = _interfaces_of(model, _edges_on(model, side))
+def interfaces_on(model, edges: BorderEdges) -> Interfaces:
+    """The interfaces of a model on one side of it. edges: on this side."""
+    pairs, on = _interfaces_of(model, edges)
     return Interfaces(on, np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF]))
 
 
-def with_vertices_of(model, side: Side, other: Interfaces, places: np.ndarray):
-    """The model with the vertices that a neighbor has on its interfaces on a side, in all faces there; the
-    model itself where there are none. places: (N, 3) of the neighbor's vertices."""
-    edges = _edges_on(model, side)
+@dataclass(frozen=True)
+class _Insertion:
+    """Vertices to insert on one side. places (N, 3): of new ones. face, at (E,): into which faces and after
+    which corners, by their places in face_vertices; count (E,): how many after each; and their numbers, one
+    corner after another."""
+
+    places: np.ndarray
+    face: np.ndarray
+    at: np.ndarray
+    count: np.ndarray
+    numbers: np.ndarray
+
+
+def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side, Interfaces, np.ndarray]]):
+    """The model with the vertices that its neighbors have on their interfaces, in all faces there; the model
+    itself where there are none. border: of the model. neighbors: the side of each, its interfaces there, and
+    the places (N, 3) of its vertices."""
+    inserted, count = [], len(model.vertices)
+    for side, theirs, places in neighbors:
+        found = _insertion(model, side, border.on(model, side), theirs, places, count)
+        if found is not None:
+            inserted.append(found)
+            count += len(found.places)
+    if not inserted:
+        return model
+    face, at, size, numbers = (
+        np.concatenate([getattr(each, name) for each in inserted])
+        for name in ("face", "at", "count", "numbers")
+    )
+    order = np.argsort(at)  # and so by face
+    pieces = np.split(numbers.astype(model.face_vertices.dtype), np.cumsum(size)[:-1])
+    corners, start = [], 0
+    for k in order.tolist():
+        corners += [model.face_vertices[start : at[k] + 1], pieces[k]]
+        start = at[k] + 1
+    ends = np.concatenate([[0], face[order] + 1, [len(model.face_offsets)]])
+    more = np.concatenate([[0], np.cumsum(size[order])])
+    return replace(
+        model,
+        vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
+        face_vertices=np.concatenate([*corners, model.face_vertices[start:]]),
+        face_offsets=model.face_offsets + np.repeat(more, np.diff(ends)),
+    )
+
+
+def _insertion(
+    model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray, first_number: int
+) -> _Insertion | None:
+    """What of a neighbor's vertices is inserted on a side; None: nothing. first_number: of new vertices."""
     pairs, on = _interfaces_of(model, edges)
     if not len(pairs):
-        return model
+        return None
     ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
     along = np.sort(model.vertices[ends, side.along], axis=1)
     begin, count = np.zeros((2, len(pairs)), np.int64)
@@ -120,14 +175,16 @@ def with_vertices_of(model, side: Side, other: Interfaces, places: np.ndarray):
         begin[own], count[own] = start + sum(map(len, points)), np.maximum(stop - start, 0)
         points.append(theirs)
     if not count.any():
-        return model
-    added, numbers = _numbered(model, side, np.concatenate(points)[_spread(begin, count)])
+        return None
+    added, numbers = _numbered(
+        model, edges.vertices, np.concatenate(points)[_spread(begin, count)], first_number
+    )
     first_new = np.cumsum(count) - count
     # of each edge of a face the new vertices in its direction
     place = np.searchsorted(pairs, _pairs(edges))
     place[place == len(pairs)] = 0
     known = pairs[place] == _pairs(edges)
-    at, place = edges.at[known], place[known]
+    face, at, place = edges.face[known], edges.at[known], place[known]
     backward = (
         model.vertices[edges.first, side.along][known] > model.vertices[edges.second, side.along][known]
     )
@@ -137,20 +194,7 @@ def with_vertices_of(model, side: Side, other: Interfaces, places: np.ndarray):
     inserted = np.where(
         np.repeat(backward, size), np.repeat(first_new[place] + size - 1, size) - step, inserted
     )
-    inserted = numbers[inserted]
-    after = np.zeros(len(model.face_vertices), np.int64)
-    after[at] = size
-    grown = np.cumsum(after + 1)
-    corners = np.empty(len(model.face_vertices) + int(after.sum()), model.face_vertices.dtype)
-    corners[grown - after - 1] = model.face_vertices
-    corners[np.repeat(grown[at] - size, size) + step] = inserted
-    offsets = np.concatenate([[0], grown])[model.face_offsets]
-    return replace(
-        model,
-        vertices=np.concatenate([model.vertices, added]),
-        face_vertices=corners,
-        face_offsets=offsets.astype(np.int64),
-    )
+    return _Insertion(added, face, at, size, numbers[inserted])
 
 
 def _among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -160,17 +204,18 @@ def _among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
     return np.isin(same[len(others) :], same[: len(others)])
 
 
-def _numbered(model, side: Side, added: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _numbered(
+    model, there: np.ndarray, added: np.ndarray, first_number: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
-    one: edges may meet in a vertex that one of them passes."""
-    there = np.flatnonzero(np.isin(model.vertices[:, side.along], added[:, side.along]))
+    one: edges may meet in a vertex that one of them passes. there: the vertices on the side."""
     both = np.concatenate([model.vertices[there], added])
     _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
     first = first[same.reshape(-1)[len(there) :]]  # the first of the equal ones: one that is there
     new, number = np.unique(first[first >= len(there)], return_inverse=True)
     numbers = np.empty(len(added), np.int64)
     numbers[first < len(there)] = there[first[first < len(there)]]
-    numbers[first >= len(there)] = len(model.vertices) + number
+    numbers[first >= len(there)] = first_number + number
     return both[new], numbers
 
 
@@ -193,10 +238,10 @@ class Patches:
     open: int = 0
 
 
-def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
-    """The patches of a model on one side of it. positions: where on the line either tile has vertices,
-    ascending. An edge that passes one without a vertex is divided there for the patches alone."""
-    edges = _edges_on(model, side)
+def patches_on(model, side: Side, edges: BorderEdges, positions: np.ndarray) -> Patches:
+    """The patches of a model on one side of it. edges: on this side. positions: where on the line either tile
+    has vertices, ascending. An edge that passes one without a vertex is divided there for the patches alone.
+    """
     cells = model.face_cells[edges.face]
     wall = (model.face_surface[edges.face] == -1) & (cells[:, 1] == -1)
     face, cell = edges.face[wall], cells[wall, 0]
@@ -224,9 +269,8 @@ def patches_on(model, side: Side, positions: np.ndarray) -> Patches:
     return Patches(shape[order], model.cell_block[cell[order]], cell[order], alone)
 
 
-def positions_on(model, side: Side, other: Interfaces, places: np.ndarray) -> np.ndarray:
-    """Where on a side a model has vertices, or its neighbor, ascending."""
-    edges = _edges_on(model, side)
+def positions_on(model, side: Side, edges: BorderEdges, other: Interfaces, places: np.ndarray) -> np.ndarray:
+    """Where on a side a model has vertices, or its neighbor, ascending. edges: on this side."""
     own = model.vertices[np.concatenate([edges.first, edges.second]), side.along]
     return np.unique(np.concatenate([own, places[other.ends.ravel(), side.along]]))
 

@@ -37,6 +37,11 @@ class TileGrid:
     def __iter__(self) -> Iterator[tuple[int, int]]:
         return ((column, row) for row in range(self.rows) for column in range(self.columns))
 
+    @property
+    def whole(self) -> tuple[float, float, float, float]:
+        """The box of all tiles."""
+        return float(self.x[0]), float(self.y[0]), float(self.x[-1]), float(self.y[-1])
+
     def box(self, column: int, row: int) -> tuple[float, float, float, float]:
         """Low x, low y, high x, high y."""
         return tuple(
@@ -107,12 +112,15 @@ class MeshBins:
         vertices, triangles = mesh
         self._first, self._last = [], []
         for axis, lines in enumerate((grid.x, grid.y)):
-            corners = vertices[:, axis][triangles]
-            count = len(lines) - 2
-            low = np.searchsorted(lines, corners.min(axis=1), "left") - 1
-            high = np.searchsorted(lines, corners.max(axis=1), "right") - 1
-            self._first.append(low.clip(0, count).astype(np.int32))
-            self._last.append(high.clip(0, count).astype(np.int32))
+            # of each vertex the first and the last tile that it is in: only on a line they differ
+            at = np.ascontiguousarray(vertices[:, axis])
+            low, high = (
+                (np.searchsorted(lines, at, side) - 1).clip(0, len(lines) - 2).astype(np.int32)
+                for side in ("left", "right")
+            )
+            corners = triangles.T
+            self._first.append(np.minimum.reduce([low[corner] for corner in corners]))
+            self._last.append(np.maximum.reduce([high[corner] for corner in corners]))
         self._column = -1
         self._of_column = np.empty(0, np.int64)
 

@@ -26,24 +26,20 @@ _Exact = tuple[str, str, str]
 class BorderVertices:
     """The vertices of a tile on its border: their numbers (N,), ascending; the doubles nearest to where they
     are, (N, 3); and the exact x, y and z: fractions in hexadecimal, equal where points are, in all tiles. Of
-    a neighbor those on the border of a tile are enough, by their places among the N."""
+    a tile those on the border of another are enough, by their places among the N."""
 
     numbers: np.ndarray
     nearest: np.ndarray
-    exact: list[_Exact] | dict[int, _Exact]
+    exact: dict[int, _Exact]
 
-    @classmethod
-    def of_built(cls, built: dict) -> BorderVertices:
-        """Of what the native build_tile gives."""
-        return cls(
-            built["border_vertices"],
-            built["border_nearest"],
-            list(map(_words, built["border_exact"].splitlines())),
-        )
-
-    def arrays(self) -> dict[str, np.ndarray]:
-        text = "\n".join(map(" ".join, self.exact)).encode()
-        return {"numbers": self.numbers, "nearest": self.nearest, "exact": np.frombuffer(text, np.uint8)}
+    @staticmethod
+    def arrays_of(built: dict) -> dict[str, np.ndarray]:
+        """What the native build_tile gives, as arrays: `exact` is text, a line for each vertex."""
+        return {
+            "numbers": built["border_vertices"],
+            "nearest": built["border_nearest"],
+            "exact": np.frombuffer(built["border_exact"], np.uint8),
+        }
 
     @classmethod
     def of_arrays(cls, arrays: dict[str, np.ndarray], box: Box) -> BorderVertices:

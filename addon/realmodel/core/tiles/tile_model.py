@@ -100,9 +100,9 @@ def _parts(frame: Frame, folder: Path) -> dict[tuple, Part]:
 
 def build_tile(
     work: Work, frame: Frame, box: Box, folder: Path, threads: int
-) -> tuple[Model, BorderVertices]:
-    """The model of a tile, with borders as they come, and its vertices there. folder: what write_parts
-    wrote."""
+) -> tuple[Model, dict[str, np.ndarray]]:
+    """The model of a tile, with borders as they come, and its BorderVertices as arrays. folder: what
+    write_parts wrote."""
     parts = _parts(frame, folder)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
@@ -134,7 +134,7 @@ def build_tile(
     timings = {"intersect": time.perf_counter() - began}
     model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
     model.warnings = _warnings(inputs, built, numbers)
-    return model, BorderVertices.of_built(built)
+    return model, BorderVertices.arrays_of(built)
 
 
 class _NumberedError(Exception):
@@ -159,18 +159,27 @@ def _warnings(inputs: list[RockInput], built: dict, numbers: list[np.ndarray]) -
     return found
 
 
-def write_model(model: Model, path: Path) -> None:
-    """Writes a tile's model as others to an .npz, with what clips its rock masses. Raises OutputFailed."""
+def tile_arrays(model: Model) -> dict[str, np.ndarray]:
+    """A tile's model as arrays: those of others, and what clips its rock masses."""
     arrays = model_arrays(model)
     for r, entry in enumerate(model.rock_inputs):
         arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
+    return arrays
+
+
+def write_model(model: Model, path: Path) -> None:
+    """Writes a tile's model to an .npz. Raises OutputFailed."""
     with Outputs() as outputs, outputs.file(path) as file:
-        write_arrays(arrays, file)
+        write_arrays(tile_arrays(model), file)
 
 
 def read_model(project: Project, path: Path) -> Model:
     """A tile's model from its file. project: without shapes."""
-    arrays = read_arrays(path)
+    return model_of(project, read_arrays(path))
+
+
+def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
+    """A tile's model from its arrays."""
     names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
     of_surfaces = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
     given = {name: arrays[name] for name in (*names, *(f"surface_{name}" for name in of_surfaces))}

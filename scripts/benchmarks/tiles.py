@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measurements of models in tiles and of the same undivided, from mesh files to files, each in a process of
+its own (process.alone).
+
+Processors' seconds are those of all processes; they depend less on what else runs.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .made_stacks import StackSpec
+from .process import peak_resident
+
+_DEPTH = -1.0  # of the base
+_VALIDATED = 4000  # positions, as a model in tiles has them
+_SEEN = 0.2  # seconds between looks for files that are done
+
+
+def write_project(spec: dict, folder: str) -> dict:
+    """A project of a stack with a PLY for each surface; one of them is in memory at a time."""
+    made = StackSpec(**spec)
+    lines = ["format = 1", 'name = "Stack"', "", "[[rock]]", 'name = "rock"', f"base_elevation = {_DEPTH}"]
+    for number, (vertices, triangles) in enumerate(made.each()):
+        _write_ply(Path(folder) / f"S{number}.ply", vertices, triangles)
+        lines += ["", "[[rock.surface]]", f'name = "S{number}"', f'mesh = "S{number}.ply"']
+    project = Path(folder) / "project.toml"
+    project.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return {"project": str(project)}
+
+
+def _write_ply(file: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}"]
+    head += [f"property double {axis}" for axis in "xyz"]
+    head += [f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+    faces = np.empty(len(triangles), [("corners", "u1"), ("vertices", "<i4", 3)])
+    faces["corners"], faces["vertices"] = 3, triangles
+    with file.open("wb") as out:
+        out.write("\n".join(head).encode())
+        out.write(vertices.astype("<f8", copy=False))
+        out.write(faces)
+
+
+def undivided(project: str, folder: str, threads: int) -> dict:
+    """The model as a whole: read, built, validated, written."""
+    from realmodel.core import build, load_project
+
+    began, before = time.perf_counter(), time.process_time()
+    model = build(load_project(project), threads=threads)
+    if not model.validate(_VALIDATED, threads=threads).passed:
+        raise ValueError("the model is wrong")
+    for ending in ("npz", "vtu"):
+        model.save(Path(folder) / f"model.{ending}")
+    return {
+        "seconds": time.perf_counter() - began,
+        "processor": time.process_time() - before,
+        "cells": len(model.cell_block),
+    }
+
+
+def in_tiles(project: str, folder: str, size: float, workers: int, keeps_vtu: bool) -> dict:
+    """The model in tiles. keeps_vtu: else each .vtu is deleted once it is written, to spare the disk."""
+    began, before = time.perf_counter(), time.process_time()
+    from distributed import Client, LocalCluster
+    from realmodel.core import load_project
+    from realmodel.distributed import build
+
+    folder = Path(folder)
+    ended = threading.Event()
+    if not keeps_vtu:
+        threading.Thread(target=_delete_vtu, args=(folder / "tiles", ended), daemon=True).start()
+    with (
+        LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0"
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        tiled = build(load_project(project), folder, (size, size), client)
+        of_workers = list(client.run(_used).values())
+    ended.set()
+    if tiled.unequal:
+        raise ValueError(f"{tiled.unequal} places on borders differ")
+    return {
+        "seconds": time.perf_counter() - began,
+        "processor": time.process_time() - before + sum(processor for processor, _ in of_workers),
+        "worker": max(peak for _, peak in of_workers),
+        "all": peak_resident() + sum(peak for _, peak in of_workers),
+        "cells": sum(tile.cells for tile in tiled.tiles),
+        "tiles": len(tiled.tiles),
+    }
+
+
+def _used() -> tuple[float, int]:
+    """Of a worker: seconds of its processor, and its peak memory."""
+    return time.process_time(), peak_resident()
+
+
+def _delete_vtu(folder: Path, ended: threading.Event) -> None:
+    while not ended.wait(_SEEN):
+        for file in folder.glob("*.vtu"):
+            file.unlink()

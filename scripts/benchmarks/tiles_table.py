@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of models in tiles: beside the undivided build, on one worker and two, and by size."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from .process import ROOT, Skipped, alone
+
+BESIDE = (
+    "work",
+    "beside",
+    "s",
+    "processors, s",
+    "s beside",
+    "processors, s beside",
+    "times",
+    "of processors",
+    "asked",
+    "",
+)
+SIZES = (
+    "triangles",
+    "tiles",
+    "cells",
+    "s",
+    "processors, s",
+    "microseconds for each triangle",
+    "lead, MB",
+    "largest worker, MB",
+    "all, MB",
+    "",
+)
+_SURFACES = 10
+_QUADS = 300  # along the side of a stack that fits one machine
+_PARTS = 2  # tiles along its side
+_OVERHEAD, _TWO_WORKERS = 1.3, 0.55  # asked
+_UNIT = 316  # quads along one unit of length: a square of it has two million triangles
+_TILE = 0.5**0.5  # a million triangles
+_MILLIONS = (2, 6, 18, 54)
+_DISK = ROOT / "build" / "tiles"  # not a folder in memory
+_PATIENCE = 4 * 3600.0
+
+
+def measure(quick: bool, memory: float, say: Callable[[str], None]):
+    """Rows for BESIDE and SIZES; what could not be measured is SKIPPED, and why."""
+    beside = _beside(100 if quick else _QUADS, memory)
+    for row in beside:
+        say(" | ".join(row))
+    sizes = []
+    for millions in _MILLIONS[:1] if quick else _MILLIONS:
+        sizes.append(_sized(millions, memory))
+        say(" | ".join(sizes[-1]))
+    return beside, sizes
+
+
+def _beside(quads: int, memory: float) -> list[list[str]]:
+    name = f"{_SURFACES} x {2 * quads * quads:,} in {_PARTS * _PARTS} tiles"
+    works = [f"{name}, {workers}" for workers in ("one worker", "two workers", "two workers")]
+    with _Folder() as folder:
+        try:
+            made = alone("tiles.write_project", {"surfaces": _SURFACES, "quads": quads}, folder.new())
+            whole, on_two = (
+                alone("tiles.undivided", made["project"], folder.new(), threads, memory=memory)
+                for threads in (1, 2)
+            )
+            one, two = (
+                alone("tiles.in_tiles", made["project"], folder.new(), 1 / _PARTS, count, True, memory=memory)
+                for count in (1, 2)
+            )
+        except Skipped as why:
+            return [[work, "", *["-"] * 7, f"SKIPPED: {why}"] for work in works]
+    return [
+        _pair(works[0], "undivided, one thread", one, whole, _OVERHEAD),
+        _pair(works[1], "undivided, two threads", two, on_two, _OVERHEAD),
+        _pair(works[2], "one worker", two, one, _TWO_WORKERS),
+    ]
+
+
+def _pair(work: str, other: str, ours: dict, theirs: dict, asked: float) -> list[str]:
+    times = {key: ours[key] / theirs[key] for key in ("seconds", "processor")}
+    return [
+        work,
+        other,
+        *(f"{each[key]:.1f}" for each in (ours, theirs) for key in ("seconds", "processor")),
+        f"**{times['seconds']:.2f}**",
+        f"{times['processor']:.2f}",
+        f"{asked:.2f}",
+        "met" if times["seconds"] <= asked else "NOT met",
+    ]
+
+
+def _sized(millions: int, memory: float) -> list[str]:
+    quads = round((millions * 1e6 / 2 / _SURFACES) ** 0.5)
+    spec = {"surfaces": _SURFACES, "quads": quads, "side": quads / _UNIT}
+    with _Folder() as folder:
+        try:
+            made = alone("tiles.write_project", spec, folder.new(), seconds=_PATIENCE)
+            found = alone(
+                "tiles.in_tiles",
+                made["project"],
+                folder.new(),
+                _TILE,
+                2,
+                False,
+                seconds=_PATIENCE,
+                memory=memory,
+            )
+        except Skipped as why:
+            return [f"{millions},000,000", *["-"] * 8, f"SKIPPED: {why}"]
+    triangles = 2 * _SURFACES * quads * quads
+    return [
+        f"{triangles:,}",
+        str(found["tiles"]),
+        f"{found['cells']:,}",
+        f"{found['seconds']:.0f}",
+        f"{found['processor']:.0f}",
+        f"{1e6 * found['processor'] / triangles:.1f}",
+        *(f"{found[key] / 1e6:,.0f}" for key in ("peak", "worker", "all")),
+        "",
+    ]
+
+
+class _Folder:
+    """Folders on the disk of the project, gone at the end."""
+
+    def __enter__(self) -> _Folder:
+        _DISK.mkdir(parents=True, exist_ok=True)
+        self._all = tempfile.TemporaryDirectory(dir=_DISK)
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._all.cleanup()
+
+    def new(self) -> str:
+        return tempfile.mkdtemp(dir=Path(self._all.name))
