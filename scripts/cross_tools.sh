@@ -40,8 +40,8 @@ ar ar
 ranlib ranlib
 END
         # Its assembler is for other tools.
-        for_gmp=(--host=aarch64-apple-darwin --disable-assembly "CC=$tools/bin/clang" "CXX=$tools/bin/clang++" CFLAGS=-O2
-            CXXFLAGS=-O2 CC_FOR_BUILD=gcc "AR=$tools/bin/ar" "RANLIB=$tools/bin/ranlib")
+        for_gmp=(--host=aarch64-apple-darwin --disable-assembly CC_FOR_BUILD=gcc "CC=$tools/bin/clang" "CXX=$tools/bin/clang++"
+            "CFLAGS=-O2 -fvisibility=hidden" "CXXFLAGS=-O2 -fvisibility=hidden" "AR=$tools/bin/ar" "RANLIB=$tools/bin/ranlib")
         ;;
     *)
         echo "usage: cross_tools.sh windows-x64|macos-arm64 [VERSION|tests]..." >&2

@@ -61,7 +61,7 @@ def test_a_module_is_for_apples_processors_and_macos_11(modules):
 
 def test_a_module_needs_the_system_only(modules):
     for module in modules:
-        libraries = told(module, "--dylibs-used").splitlines()[1:]
+        libraries = told(module, "--dylibs-used").splitlines()[2:]  # after its own name, twice
         assert [line.split()[0] for line in libraries] == ["/usr/lib/libSystem.B.dylib"], module.name
 
 
@@ -75,7 +75,8 @@ def test_a_module_asks_for_nothing_but_python_and_the_system(modules):
 
 
 def test_a_module_shows_its_entry(modules):
+    """And allocation by the C++ library's own name, as that library wants it."""
     for module in modules:
-        shown = told(module, "--exports-trie")
+        shown = re.findall(r"^0x[0-9A-F]+ +(\S+)", told(module, "--exports-trie"), re.MULTILINE)
         assert "_PyInit__native" in shown
-        assert "realmodel" not in shown and "gmp" not in shown, module.name
+        assert [n for n in shown if not re.match(r"_PyInit__native|__Zn[aw]|__Zd[al]|___?(dso|mh)_", n)] == []
