@@ -29,17 +29,6 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         triangles.push_back({t[0].node, t[1].node, t[2].node});
 }
 
-void triangulate_face_beside(const ComplexView& model, std::size_t face,
-                             std::span<const std::int8_t> sides,
-                             std::vector<std::array<std::int32_t, 3>>& triangles) {
-    const auto [loop, rounding] = loop_of(model, model.face(face));
-    std::vector<std::array<LoopCorner, 3>> found;
-    triangles.clear();
-    triangulate_beside(loop, sides, rounding, found);
-    for (const auto& t : found)
-        triangles.push_back({t[0].node, t[1].node, t[2].node});
-}
-
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
     CutterSurface surface;
     std::vector<NodeId> number(model.vertex_count(), -1);

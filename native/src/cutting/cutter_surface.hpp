@@ -31,12 +31,6 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
 void triangulate_face(const ComplexView& model, std::size_t face,
                       std::vector<std::array<std::int32_t, 3>>& triangles);
 
-/// The same with few triangles that reach from one side of something to the other.
-/// @param sides  of the face's corners
-void triangulate_face_beside(const ComplexView& model, std::size_t face,
-                             std::span<const std::int8_t> sides,
-                             std::vector<std::array<std::int32_t, 3>>& triangles);
-
 /// A face in convex polygons, which are added.
 void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons);
 

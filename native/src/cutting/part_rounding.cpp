@@ -147,6 +147,15 @@ int winding_of(std::span<const NodeId> nodes) {
     return nodes[(least + 1) % n] < nodes[(least + n - 1) % n] ? 1 : -1;
 }
 
+/// The nodes of a loop from its least one on, toward the lesser of the two beside that: the same
+/// for loops that pass the same edges.
+void put_first(std::span<const NodeId> loop, std::vector<NodeId>& nodes) {
+    const auto least = std::min_element(loop.begin(), loop.end());
+    nodes.assign(least, loop.end());
+    nodes.insert(nodes.end(), loop.begin(), least);
+    if (winding_of(nodes) < 0) std::reverse(nodes.begin() + 1, nodes.end());
+}
+
 /// The same for equal nodes in any order.
 std::uint64_t hash_of(std::span<const NodeId> nodes) {
     std::uint64_t hash = nodes.size();
@@ -170,8 +179,8 @@ void PartRounding::add_contracted(std::size_t piece, std::vector<NodeId>& nodes)
 }
 
 /// What some of the polygons of a part are like, as contractions leave them. None where a polygon
-/// passes a node twice, or two are the same. Where models are joined, two that are the same and
-/// face each other make up for each other.
+/// passes a node twice, or two have the same nodes. Where models are joined, two that are the same
+/// and face each other make up for each other.
 std::optional<PartRounding::Around> PartRounding::around(std::span<const std::int32_t> pieces,
                                                          std::int32_t part, Memory& memory) const {
     auto& [faces, nodes, sorted, is_repeated, uses] = memory;
@@ -195,15 +204,24 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
     std::ranges::sort(faces, [](const Face& f, const Face& g) {
         return std::pair(f.hash, f.begin) < std::pair(g.hash, g.begin);
     });
-    const auto are_equal = [&listed = memory.sorted](const Face& f, const Face& g) {
+    const auto have_equal_nodes = [&listed = memory.sorted](const Face& f, const Face& g) {
         return std::ranges::equal(std::span(listed).subspan(f.begin, f.size),
                                   std::span(listed).subspan(g.begin, g.size));
+    };
+    std::vector<NodeId> one, other;
+    const auto are_equal = [&, &listed = memory.nodes](const Face& f, const Face& g) {
+        put_first(std::span(listed).subspan(f.begin, f.size), one);
+        put_first(std::span(listed).subspan(g.begin, g.size), other);
+        return one == other;
     };
     is_repeated.assign(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (std::size_t j = i; j-- > 0 && faces[j].hash == faces[i].hash;) {
-            if (is_repeated[j] != 0 || !are_equal(faces[i], faces[j])) continue;
-            if (!joins_models_ || faces[j].winding + faces[i].winding != 0) return std::nullopt;
+            if (is_repeated[j] != 0 || !have_equal_nodes(faces[i], faces[j])) continue;
+            // the same nodes in another order: corners in one line, of polygons without an extent
+            if (!joins_models_ || faces[j].winding + faces[i].winding != 0 ||
+                !are_equal(faces[i], faces[j]))
+                return std::nullopt;
             faces[j].winding = 0;
             is_repeated[i] = 1;
             break;
@@ -352,8 +370,8 @@ void PartRounding::contract_pieces() {
     find_pieces_of_parts();
 }
 
-/// Pieces near the cutter with their sorted nodes, in the order of these: among them all that are
-/// equal to others.
+/// Pieces near the cutter with their nodes as put_first() has them, in the order of these: among
+/// them all that are equal to others.
 std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doubled() const {
     // how many have the same hash, up to 2
     std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces_.size() + 1), 0);
@@ -377,8 +395,7 @@ std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doub
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         if (slot[p] == kFar || count[slot[p]] < 2) continue;
         const auto nodes = pieces_.polygons[p];
-        auto& key = found.emplace_back(std::vector<NodeId>(nodes.begin(), nodes.end()), p).first;
-        std::sort(key.begin(), key.end());
+        put_first(nodes, found.emplace_back(std::vector<NodeId>(), p).first);
     }
     std::sort(found.begin(), found.end());
     return found;

@@ -6,6 +6,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/parallel.hpp"
 #include "cutting/part_rounding.hpp"
 
 namespace realmodel::cutting {
@@ -166,17 +167,27 @@ bool PartRounding::leaves_wall(NodeId from, NodeId to) const {
 /// comes to touch itself for it: what two models have in common was rounded in each by itself.
 bool PartRounding::join_short_edges() {
     const double allowed = rounding_of(vertices_);
+    constexpr std::size_t kPieces = 1 << 12;  // at a time
+    std::vector<std::vector<std::array<NodeId, 2>>> found((pieces_.size() + kPieces - 1) / kPieces);
+    parallel_ranges(
+        pieces_.size(), kPieces, threads_, progress_,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto nodes = pieces_.polygons[p];
+                for (std::size_t i = 0; i < nodes.size(); ++i) {
+                    const auto edge = unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
+                    if (!is_new(edge[1])) continue;
+                    const Position away = minus(at(edge[0]), at(edge[1]));
+                    if (std::ranges::all_of(away,
+                                            [allowed](double x) { return std::abs(x) <= allowed; }))
+                        found[begin / kPieces].push_back(edge);
+                }
+            }
+        },
+        0.05);
     std::set<std::array<NodeId, 2>> edges;
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const auto nodes = pieces_.polygons[p];
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const auto edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
-            if (!is_new(edge[1])) continue;
-            const Position away = minus(at(edge[0]), at(edge[1]));
-            if (std::ranges::all_of(away, [allowed](double x) { return std::abs(x) <= allowed; }))
-                edges.insert(edge);
-        }
-    }
+    for (const auto& chunk : found)
+        edges.insert(chunk.begin(), chunk.end());
     if (edges.empty()) return false;
     ShortEdges short_edges(*this, allowed);
     short_edges.look_at(edges);

@@ -32,69 +32,9 @@ SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& su
       progress_(progress),
       arrangement_(points_) {
     find_active_faces();
-    name_vertices();
+    divide_active_faces();
     overlay_all();
     name_nodes();
-}
-
-/// The faces that come near the surface: near the box of one of its triangles, and not all to one
-/// side of the triangle's plane.
-void SurfaceOverlay::find_active_faces() {
-    margin_ = rounding_of(surface_.vertices);
-    for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
-        for (const double x : model_.vertex(static_cast<NodeId>(v)))
-            margin_ = std::max(margin_, 4 * computed_ulps(x));
-        model_box_.include(model_.vertex(static_cast<NodeId>(v)));
-    }
-    model_box_.widen(margin_);
-    std::vector<Box> boxes;
-    Box whole;
-    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
-        Box& box = boxes.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-            box.include(corner(t, i));
-        box.widen(margin_);
-        whole.include(box);
-    }
-    tree_ = std::make_unique<BoxTree>(std::move(boxes));
-    active_.assign(model_.face_count(), 0);
-    parallel_ranges(active_.size(), 1 << 12, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            Box box;
-                            for (const NodeId v : model_.face(f))
-                                box.include(model_.vertex(v));
-                            if (!box.meets(whole)) continue;
-                            tree_->find(box, [&](std::int32_t t) {
-                                if (active_[f] == 0 && !is_beside(f, t)) active_[f] = 1;
-                            });
-                        }
-                    });
-    for (std::size_t f = 0; f < active_.size(); ++f) {
-        if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
-    }
-}
-
-/// Whether all vertices of a face are on one side of the plane of a triangle, farther from it than
-/// rounding may put them.
-bool SurfaceOverlay::is_beside(std::size_t face, std::int32_t t) const {
-    constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
-    const Position a = corner(t, 0);
-    const Position normal = polygon_normal(std::array{a, corner(t, 1), corner(t, 2)});
-    int above = 0, below = 0;
-    for (const NodeId v : model_.face(face)) {
-        const Position p = model_.vertex(v);
-        double distance = 0, allowed = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            distance += normal[k] * (p[k] - a[k]);
-            allowed += std::abs(normal[k]) * (margin_ + kRounding * std::abs(p[k] - a[k]));
-        }
-        above += distance > allowed;
-        below += distance < -allowed;
-        if (above > 0 && below > 0) return false;
-    }
-    const std::size_t all = model_.face(face).size();
-    return index(above) == all || index(below) == all;
 }
 
 namespace {
@@ -195,19 +135,13 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) 
     return std::nullopt;
 }
 
-/// Exact points for the vertices of faces near the surface: where they are, or where they are but
-/// for their rounding. No two share one.
-void SurfaceOverlay::name_vertices() {
-    vertex_point_.assign(model_.vertex_count(), kNone);
-    name_vertices_of(active_faces_);
-    activate_beside_flat_triangles();
-}
-
+/// Gives the vertices of active faces exact points: where they are, or where they are but for their
+/// rounding. No two share one.
 void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     std::vector<NodeId> vertices;
     for (const std::int32_t f : faces) {
         for (const NodeId v : model_.face(index(f))) {
-            if (!is_near(v)) vertices.push_back(v);
+            if (vertex_point_[index(v)] == kNone) vertices.push_back(v);
         }
     }
     std::sort(vertices.begin(), vertices.end());
@@ -240,103 +174,6 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         is_taken(*found) = 1;
         point = *found;
     }
-}
-
-namespace {
-
-constexpr std::size_t kFaces = 1 << 9;  // triangulated at a time
-
-std::size_t chunks_of(std::span<const std::int32_t> faces) {
-    return (faces.size() + kFaces - 1) / kFaces;
-}
-
-}  // namespace
-
-/// Divides a face into triangles of which few pass the surface: those beside the first of its
-/// triangles that the face may meet are cut off first.
-void SurfaceOverlay::triangulate(std::size_t face,
-                                 std::vector<std::array<std::int32_t, 3>>& triangles) const {
-    const auto corners = model_.face(face);
-    std::int32_t first = INT32_MAX;
-    if (corners.size() > 3 && is_active(face)) {
-        Box box;
-        for (const NodeId v : corners)
-            box.include(model_.vertex(v));
-        tree_->find(box, [&](std::int32_t t) {
-            if (t < first && !is_beside(face, t)) first = t;
-        });
-    }
-    if (first == INT32_MAX) {
-        triangulate_face(model_, face, triangles);
-        return;
-    }
-    const Position a = corner(first, 0);
-    const Position normal = polygon_normal(std::array{a, corner(first, 1), corner(first, 2)});
-    std::vector<std::int8_t> sides;
-    for (const NodeId v : corners)
-        sides.push_back(dot(normal, minus(model_.vertex(v), a)) > 0 ? kAbove : kBelow);
-    triangulate_face_beside(model_, face, sides, triangles);
-}
-
-/// Calls visit(chunk, face, triangle) for the triangles of some faces, on several threads.
-template <class Visit>
-void SurfaceOverlay::each_triangle_of(std::span<const std::int32_t> faces,
-                                      const Visit& visit) const {
-    parallel_ranges(
-        faces.size(), kFaces, threads_, progress_,
-        [&](std::size_t begin, std::size_t end) {
-            std::vector<std::array<std::int32_t, 3>> triangles;
-            for (std::size_t i = begin; i < end; ++i) {
-                triangulate(index(faces[i]), triangles);
-                for (const auto& t : triangles)
-                    visit(begin / kFaces, faces[i], t);
-            }
-        },
-        0.02);
-}
-
-/// The edges of triangles without area; the vertices of the faces have exact points.
-std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
-    std::span<const std::int32_t> faces) const {
-    std::vector<std::vector<std::array<NodeId, 2>>> found(chunks_of(faces));
-    each_triangle_of(
-        faces, [&](std::size_t chunk, std::int32_t, const std::array<std::int32_t, 3>& t) {
-            const SpacePointId a = vertex_point_[index(t[0])], b = vertex_point_[index(t[1])],
-                               c = vertex_point_[index(t[2])];
-            bool flat = true;
-            for (std::size_t axis = 0; axis < 3 && flat; ++axis)
-                flat = exact::orient2d(points_, axis, a, b, c) == 0;
-            for (std::size_t i = 0; flat && i < 3; ++i)
-                found[chunk].push_back(unordered(t[i], t[(i + 1) % 3]));
-        });
-    std::vector<std::array<NodeId, 2>> edges;
-    for (const auto& chunk : found)
-        edges.insert(edges.end(), chunk.begin(), chunk.end());
-    std::sort(edges.begin(), edges.end());
-    return edges;
-}
-
-/// A triangle without area has no region in the overlay: the corner in its middle comes to lie on
-/// its long edge, and so on an edge of the face beyond, which must know it.
-void SurfaceOverlay::activate_beside_flat_triangles() {
-    std::vector<std::int32_t> fresh = active_faces_;
-    while (!fresh.empty()) {
-        const auto edges = edges_of_flat_triangles(fresh);
-        fresh.clear();
-        if (edges.empty()) return;
-        for (std::size_t f = 0; f < model_.face_count(); ++f) {
-            const auto face = model_.face(f);
-            for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
-                const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (!std::ranges::binary_search(edges, unordered(a, b))) continue;
-                active_[f] = 1;
-                fresh.push_back(static_cast<std::int32_t>(f));
-            }
-        }
-        name_vertices_of(fresh);
-        active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
-    }
-    std::sort(active_faces_.begin(), active_faces_.end());
 }
 
 void SurfaceOverlay::overlay_all() {
@@ -384,22 +221,14 @@ void SurfaceOverlay::overlay_all() {
 
 /// The triangles of active faces, then those of the surface.
 void SurfaceOverlay::add_triangles() {
-    struct Triangles {
-        std::vector<std::array<SpacePointId, 3>> corners;
-        std::vector<std::int32_t> faces;
-    };
-    std::vector<Triangles> found(chunks_of(active_faces_));
-    each_triangle_of(active_faces_, [&](std::size_t chunk, std::int32_t face, const auto& t) {
-        found[chunk].corners.push_back(
-            {vertex_point_[index(t[0])], vertex_point_[index(t[1])], vertex_point_[index(t[2])]});
-        found[chunk].faces.push_back(face);
-    });
     std::vector<std::array<SpacePointId, 3>> corners;
-    for (const Triangles& own : found) {
-        corners.insert(corners.end(), own.corners.begin(), own.corners.end());
-        face_of_.insert(face_of_.end(), own.faces.begin(), own.faces.end());
+    corners.reserve(parts_.triangles.size() + surface_.triangles.size());
+    for (const auto& t : parts_.triangles) {
+        corners.push_back(
+            {vertex_point_[index(t[0])], vertex_point_[index(t[1])], vertex_point_[index(t[2])]});
     }
-    first_cutter_ = checked_number(face_of_.size(), "triangles");
+    parts_.triangles = {};
+    first_cutter_ = checked_number(corners.size(), "triangles");
     std::vector<SpacePointId> of_vertex(surface_.vertices.size(), kNone);
     for (const auto& triangle : surface_.triangles) {
         auto& own = corners.emplace_back();
@@ -418,8 +247,6 @@ void SurfaceOverlay::name_nodes() {
     for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
         if (vertex_point_[v] != kNone) out[index(vertex_point_[v])] = static_cast<NodeId>(v);
     }
-    // edges and sides number regions and then faces in one row
-    checked_number(size() + model_.face_count(), "faces and their parts");
     const auto& of_points = arrangement_.regions().loops;
     loops_.loop_begins = of_points.loop_begins;
     loops_.region_begins = of_points.region_begins;
@@ -433,6 +260,13 @@ void SurfaceOverlay::name_nodes() {
         }
         loops_.nodes[i] = node;
     }
+    for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
+        loops_.add_loop(parts_.beside[i]);
+        loops_.end_region();
+    }
+    parts_.beside = {};
+    // edges and sides number regions and then faces in one row
+    checked_number(size() + model_.face_count(), "faces and their parts");
 }
 
 SpacePointId SurfaceOverlay::exact(NodeId node) {
@@ -442,12 +276,13 @@ SpacePointId SurfaceOverlay::exact(NodeId node) {
     return known != kNone ? known : points_.add(model_.vertex(node));
 }
 
-/// The corner of a face that is farthest from the line of one of its edges, as an exact point.
-SpacePointId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>& edge) {
+/// The corner of a polygon that is farthest from the line of one of its edges, as an exact point.
+SpacePointId SurfaceOverlay::far_corner(std::span<const NodeId> polygon,
+                                        const std::array<NodeId, 2>& edge) {
     const Position a = position(edge[0]), b = position(edge[1]);
     NodeId found = edge[0];
     double farthest = -1;
-    for (const NodeId v : model_.face(face)) {
+    for (const NodeId v : polygon) {
         const Position normal = polygon_normal(std::array{a, b, position(v)});
         const double away = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
         if (away > farthest) {
@@ -473,7 +308,9 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
         if (item >= size()) {
-            items.push_back({far_corner(item - size(), use.edge), -1, use.direction});
+            items.push_back({far_corner(model_.face(item - size()), use.edge), -1, use.direction});
+        } else if (is_beside(item)) {
+            items.push_back({far_corner(loops(item)[0], use.edge), -1, use.direction});
         } else {
             const std::int32_t t = triangle(item);
             const bool ahead = use.direction > 0;
@@ -484,9 +321,19 @@ void SurfaceOverlay::find_fan(std::span<const EdgeUse> uses,
     arrangement::find_fan(points_, a, b, items, fan);
 }
 
+std::pair<std::size_t, int> SurfaceOverlay::view_of(std::size_t region) const {
+    if (!is_beside(region)) return arrangement_.view_of(triangle(region));
+    std::vector<Position> corners;
+    for (const NodeId node : loops_[region][0])
+        corners.push_back(position(node));
+    const View view(polygon_normal(corners));
+    return {view.axis(), view.sign()};
+}
+
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
+    if (is_beside(region)) return exact(loops_[region][0][0]);
     const auto [axis, facing] = view_of(region);
     const auto outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;

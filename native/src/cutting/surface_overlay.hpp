@@ -9,6 +9,7 @@
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/cutter_surface.hpp"
+#include "cutting/triangulate.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -29,15 +30,18 @@ public:
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
     int threads() const { return threads_; }
-    std::size_t size() const { return arrangement_.regions().size(); }
-    bool of_cutter(std::size_t region) const { return triangle(region) >= first_cutter_; }
+    std::size_t size() const { return loops_.size(); }
+    bool of_cutter(std::size_t region) const {
+        return !is_beside(region) && triangle(region) >= first_cutter_;
+    }
     /// The triangle of the surface that a region is part of.
     std::int32_t cutter_triangle(std::size_t region) const {
         return triangle(region) - first_cutter_;
     }
     /// The face that a region is part of.
     std::size_t face_of(std::size_t region) const {
-        return index(face_of_[index(triangle(region))]);
+        return index(is_beside(region) ? parts_.face_of_beside[region - of_triangles()]
+                                       : parts_.face_of_triangle[index(triangle(region))]);
     }
     /// The region's outline, then its holes, in nodes.
     Loops<NodeId> loops(std::size_t region) const { return loops_[region]; }
@@ -56,7 +60,6 @@ public:
         new_positions_.push_back(p);
         return checked_number(model_.vertex_count() + new_positions_.size(), "nodes") - 1;
     }
-    bool is_near(NodeId vertex) const { return vertex_point_[index(vertex)] != kNone; }
 
     /// The exact point of a node. Those of regions have one already: of them several threads may
     /// ask at once.
@@ -71,12 +74,10 @@ public:
     /// The same for many edges one after another, in memory that they share.
     void find_fan(std::span<const arrangement::EdgeUse> uses,
                   std::vector<arrangement::HalfPlane>& scratch, arrangement::EdgeFan& fan);
-    /// A point within a region, on none of its edges.
+    /// A point within a region, on none of its edges; of one beside the surface one of its corners.
     SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
-    std::pair<std::size_t, int> view_of(std::size_t region) const {
-        return arrangement_.view_of(triangle(region));
-    }
+    std::pair<std::size_t, int> view_of(std::size_t region) const;
     /// Calls visit(face, corners as exact points) for the triangles of all faces, those away from
     /// the surface only where the line along `axis` through `p` may meet them.
     template <class Visit>
@@ -85,23 +86,41 @@ public:
     const spatial::Box& model_box() const { return model_box_; }
 
 private:
+    using Corners = std::array<LoopCorner, 3>;
+    /// What faces near the surface are divided into: triangles, which may pass it, and polygons
+    /// beside it, which do not.
+    struct FaceParts {
+        std::vector<std::array<NodeId, 3>> triangles;
+        std::vector<std::int32_t> face_of_triangle;
+        Polygons beside;
+        std::vector<std::int32_t> face_of_beside;
+
+        void add(std::int32_t face, std::span<const Corners> more);
+        void add_beside(std::int32_t face, std::span<const NodeId> polygon);
+        void add(const FaceParts& other);
+    };
+
+    std::size_t of_triangles() const { return arrangement_.regions().size(); }
+    /// Whether a region is a polygon beside the surface; these come last.
+    bool is_beside(std::size_t region) const { return region >= of_triangles(); }
     std::int32_t triangle(std::size_t region) const {
         return arrangement_.regions().triangles[region];
     }
     void find_active_faces();
-    void name_vertices();
+    bool is_beside(std::span<const NodeId> polygon, std::int32_t triangle) const;
+    std::int32_t first_passed(std::span<const NodeId> polygon) const;
+    void divide(std::int32_t face, std::span<const NodeId> polygon, FaceParts& parts) const;
+    template <class Which>
+    void triangulate_parts(FaceParts& parts, const Which& which) const;
+    std::vector<std::array<NodeId, 3>> triangles_of(std::size_t face) const;
+    void divide_all(std::span<const std::int32_t> faces);
+    std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(std::size_t first) const;
+    void divide_active_faces();
     void name_vertices_of(std::span<const std::int32_t> faces);
-    void activate_beside_flat_triangles();
-    std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(
-        std::span<const std::int32_t> faces) const;
-    SpacePointId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
+    SpacePointId far_corner(std::span<const NodeId> polygon, const std::array<NodeId, 2>& edge);
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
-    bool is_beside(std::size_t face, std::int32_t triangle) const;
-    void triangulate(std::size_t face, std::vector<std::array<std::int32_t, 3>>& triangles) const;
-    template <class Visit>
-    void each_triangle_of(std::span<const std::int32_t> faces, const Visit& visit) const;
     std::optional<SpacePointId> confirmed(SpacePointId found, const Position& p) const;
     std::optional<SpacePointId> point_on_edge(const Position& p, const Position& a,
                                               const Position& b);
@@ -128,7 +147,7 @@ private:
     std::vector<SpacePointId>
         vertex_point_;                    ///< of the model's vertices, none away from the surface
     std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
-    std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
+    FaceParts parts_;                     ///< of active faces
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
     std::vector<SpacePointId> exact_of_new_;  ///< the exact point of each new node
     std::vector<Position> new_positions_;
@@ -138,7 +157,6 @@ private:
 template <class Visit>
 void SurfaceOverlay::each_triangle(std::size_t axis, SpacePointId p, const Visit& visit) {
     const Position at = points_.rounded(p);
-    std::vector<std::array<std::int32_t, 3>> triangles;
     for (std::size_t f = 0; f < model_.face_count(); ++f) {
         bool meets = true;
         for (std::size_t k = 1; k < 3 && meets; ++k) {
@@ -151,8 +169,7 @@ void SurfaceOverlay::each_triangle(std::size_t axis, SpacePointId p, const Visit
             meets = at[(axis + k) % 3] >= low - margin_ && at[(axis + k) % 3] <= high + margin_;
         }
         if (!meets) continue;
-        triangulate(f, triangles);
-        for (const auto& t : triangles)
+        for (const auto& t : triangles_of(f))
             visit(f, std::array{exact(t[0]), exact(t[1]), exact(t[2])});
     }
 }

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "../validation/small_complex.hpp"
 #include "base/ulp.hpp"
 #include "exact/space_predicates.hpp"
 #include "level_cutter.hpp"
+#include "prism.hpp"
 #include "small_polygons.hpp"
 
 namespace realmodel::cutting {
@@ -53,6 +57,40 @@ TEST(SurfaceOverlay, SurfaceAndWallsDivideOneAnother) {
     EXPECT_EQ(cut.overlay.new_positions().size(), 8U + 3);
     for (const Position& p : cut.overlay.new_positions())
         EXPECT_EQ(p[2], 0.5);
+}
+
+TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
+    // each end of eight corners is a strip of two triangles, which the surface halves, and a
+    // polygon on either side of it
+    auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
+    const ComplexView model = owned.view();
+    const CutterSurface surface = level_cutter(1.5);
+    SurfaceOverlay overlay(model, surface, 1, nullptr);
+    std::map<std::size_t, std::size_t> regions, polygons;
+    std::map<std::array<NodeId, 2>, int> sum;
+    const auto add = [&sum](std::span<const NodeId> loop) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const NodeId a = loop[i], b = loop[(i + 1) % loop.size()];
+            sum[unordered(a, b)] += a < b ? 1 : -1;
+        }
+    };
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (overlay.of_cutter(r)) continue;
+        const auto outline = overlay.loops(r)[0];
+        ++regions[overlay.face_of(r)];
+        polygons[overlay.face_of(r)] += std::ranges::all_of(
+            outline, [&](NodeId v) { return index(v) < owned.vertices.size(); });
+        add(outline);
+        const auto inner = overlay.points().rounded(overlay.inner_point(r));
+        EXPECT_NE(inner[2], 1.5);
+    }
+    EXPECT_EQ(regions, (std::map<std::size_t, std::size_t>{{0, 6}, {1, 6}, {4, 4}, {8, 4}}));
+    EXPECT_EQ(polygons, (std::map<std::size_t, std::size_t>{{0, 2}, {1, 2}, {4, 0}, {8, 0}}));
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        if (!overlay.is_active(f)) add(model.face(f));
+    }
+    for (const auto& [edge, uses] : sum)
+        EXPECT_EQ(uses, 0) << edge[0] << ' ' << edge[1];
 }
 
 TEST(SurfaceOverlay, AroundTheCubesTheSurfaceHasAHole) {

@@ -225,7 +225,8 @@ def _stack(inputs: list, structures: Structures, part: int, number: int, first: 
         if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
-        stack = inside_body(stack, after, block, ends, plans)
+        covered = distinct_plans(sheets[: after + 1])
+        stack = inside_body(stack, after, block, ends, plans, covered)
     return stack
 
 

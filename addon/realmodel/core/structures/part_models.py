@@ -59,18 +59,24 @@ def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | Non
 
 
 def inside_body(
-    stack: Stack, after: int, block: int, ends: tuple[float, float], plans: list[Triangulation]
+    stack: Stack,
+    after: int,
+    block: int,
+    ends: tuple[float, float],
+    plans: list[Triangulation],
+    covered: list[Triangulation],
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
     body, block `block`, or NOTHING in a void. ends: heights below and above all. plans: triangulations that
-    together cover the rock mass in plan.
+    together cover the rock mass in plan; covered: what the surfaces up to `after` cover.
     """
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
         base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
     if block == NOTHING:
-        return _emptied(stack.without([number == DEEP for number in stack.surfaces]), after, base, ends[0])
+        stack = stack.without([number == DEEP for number in stack.surfaces])
+        return _emptied(stack, after, base, ends[0], covered)
     first = stack.emptied[-1] if stack.emptied else 0  # of those before it stays what they protect alone
     # what is protected depends on all that was there, and so does what is below the oldest surface
     keeps = base is None or any(RULES[rule].protects for rule in stack.rules[:older])
@@ -129,7 +135,9 @@ def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangula
     return [(level(stack.sheets[k], deep), stack.surfaces[k]) for k in upon]
 
 
-def _emptied(stack: Stack, after: int, base: float | None, deep: float) -> Stack:
+def _emptied(
+    stack: Stack, after: int, base: float | None, deep: float, covered: list[Triangulation]
+) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
     of what is below the oldest surface. The older ones only stay for that, and where they protect."""
     older = sum(number <= after for number in stack.surfaces)
@@ -138,8 +146,8 @@ def _emptied(stack: Stack, after: int, base: float | None, deep: float) -> Stack
     if base is None:
         floors, kept = _below_bodies(stack, older, deep), older
     else:
-        # where no older surface was, none that comes later forms a block
-        floors = [(level(plan, base), FLOOR) for plan in distinct_plans(stack.sheets[:older])]
+        # where no older surface was, none that comes later forms a block; bodies do not count
+        floors = [(level(plan, base), FLOOR) for plan in covered]
         protects = any(RULES[rule].protects for rule in stack.rules[:older])
         # upon a base the first that comes finds nothing to cut
         may_cut = any(RULES[rule].cuts for rule in stack.rules[older + 1 :])
