@@ -65,28 +65,25 @@ def undivided(project: str, folder: str, threads: int) -> dict:
 def in_tiles(project: str, folder: str, size: float, workers: int, keeps_vtu: bool) -> dict:
     """The model in tiles. keeps_vtu: else each .vtu is deleted once it is written, to spare the disk."""
     began, before = time.perf_counter(), time.process_time()
-    from distributed import Client, LocalCluster
     from realmodel.core import load_project
     from realmodel.distributed import build
+    from realmodel.distributed.workers import client_of
 
     folder = Path(folder)
     ended = threading.Event()
     if not keeps_vtu:
         threading.Thread(target=_delete_vtu, args=(folder / "tiles", ended), daemon=True).start()
-    with (
-        LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0"
-        ) as cluster,
-        Client(cluster) as client,
-    ):
+    with client_of(None, workers) as client:
         tiled = build(load_project(project), folder, (size, size), client)
         of_workers = list(client.run(_used).values())
     ended.set()
     if tiled.unequal:
         raise ValueError(f"{tiled.unequal} places on borders differ")
+    lead = time.process_time() - before
     return {
         "seconds": time.perf_counter() - began,
-        "processor": time.process_time() - before + sum(processor for processor, _ in of_workers),
+        "processor": lead + sum(processor for processor, _ in of_workers),
+        "lead": lead,
         "worker": max(peak for _, peak in of_workers),
         "all": peak_resident() + sum(peak for _, peak in of_workers),
         "cells": sum(tile.cells for tile in tiled.tiles),

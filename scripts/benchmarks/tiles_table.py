@@ -27,6 +27,7 @@ SIZES = (
     "cells",
     "s",
     "processors, s",
+    "of it the lead, s",
     "microseconds for each triangle",
     "lead, MB",
     "largest worker, MB",
@@ -109,7 +110,7 @@ def _sized(millions: int, memory: float) -> list[str]:
                 memory=memory,
             )
         except Skipped as why:
-            return [f"{millions},000,000", *["-"] * 8, f"SKIPPED: {why}"]
+            return [f"{millions},000,000", *["-"] * 9, f"SKIPPED: {why}"]
     triangles = 2 * _SURFACES * quads * quads
     return [
         f"{triangles:,}",
@@ -117,6 +118,7 @@ def _sized(millions: int, memory: float) -> list[str]:
         f"{found['cells']:,}",
         f"{found['seconds']:.0f}",
         f"{found['processor']:.0f}",
+        f"{found['lead']:.0f}",
         f"{1e6 * found['processor'] / triangles:.1f}",
         *(f"{found[key] / 1e6:,.0f}" for key in ("peak", "worker", "all")),
         "",

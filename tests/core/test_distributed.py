@@ -185,12 +185,11 @@ def test_without_dask(monkeypatch, tmp_path):
         run(tmp_path, None)
 
 
-def test_clusters_of_one_machine_stand_beside_each_other(monkeypatch):
+def test_clusters_of_one_machine_stand_beside_each_other():
     """No port is asked for: a second one would warn of the first one's."""
-    from realmodel.distributed import workers
+    from realmodel.distributed.workers import client_of
 
-    monkeypatch.setattr(workers.os, "cpu_count", lambda: 1)
-    with workers.client_of(None) as one, workers.client_of(None) as other:
+    with client_of(None, 1) as one, client_of(None, 1) as other:
         addresses = {client.scheduler.address for client in (one, other)}
         assert len(addresses) == 2
         assert all(address.startswith("tcp://127.0.0.1:") for address in addresses)
