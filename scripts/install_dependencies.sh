@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dev/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions|solvers|windows|wine]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions|solvers|windows|wine|macos]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -20,7 +20,8 @@ heights=(gmt=gmt r-cran-gstat)
 clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
 windows=(g++-mingw-w64-x86-64-posix m4 make googletest libcgal-dev libnanoflann-dev)
-wine=(wine64 wine)
+wine=(wine64 wine xvfb=Xvfb xauth=xauth)
+macos=(make m4 libcgal-dev libnanoflann-dev llvm=llvm-objdump)
 gui=(xvfb=Xvfb xauth=xauth blender=blender python3-numpy libegl1)
 
 is_present() { # PACKAGE[=COMMAND]
@@ -50,8 +51,9 @@ for group in "$@"; do
         solvers) wanted+=("${solvers[@]}") ;;
         windows) wanted+=("${windows[@]}") ;;
         wine) wanted+=("${wine[@]}") ;;
+        macos) wanted+=("${macos[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, heights, clang, tsan, gui, versions, solvers, windows, wine" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, heights, clang, tsan, gui, versions, solvers, windows, wine, macos" >&2
             exit 2
             ;;
     esac

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes the zips that users install: dist/realmodel-VERSION-PLATFORM.zip, for Blender 3.4 to 5.2 on
-# Linux x86-64 and on Windows x64. Each holds one native module for each version of Python that a Blender
-# comes with. The headers that these need are taken from Debian, whichever release has them, and kept in
-# ${XDG_CACHE_HOME:-~/.cache}/realmodel; those for Windows in build/windows (scripts/windows_tools.sh). The
-# same sources give the same bytes.
+# Linux x86-64, on Windows x64 and on macOS with Apple's processors. Each holds one native module for each version
+# of Python that a Blender comes with. The headers that these need are taken from Debian, whichever release has
+# them, and kept in ${XDG_CACHE_HOME:-~/.cache}/realmodel; those for Windows and macOS in build/windows and
+# build/macos (scripts/cross_tools.sh). The same sources give the same bytes.
 #
 #   scripts/package.sh [--platform NAME]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]
-#     --platform      linux-x64 or windows-x64 (default: both)
+#     --platform      linux-x64, windows-x64 or macos-arm64 (default: all)
 #     --pythons       the versions to compile for
 #     --skip-missing  leave out a version whose headers cannot be had, and say so, instead of failing
 #     --into FOLDER   default: dist
@@ -20,9 +20,9 @@ while (($# > 0)); do
     case $1 in
         --platform)
             case ${2-} in
-                linux-x64 | windows-x64) platforms+=("$2") && shift ;;
+                linux-x64 | windows-x64 | macos-arm64) platforms+=("$2") && shift ;;
                 *)
-                    echo "package.sh: --platform needs linux-x64 or windows-x64" >&2
+                    echo "package.sh: --platform needs linux-x64, windows-x64 or macos-arm64" >&2
                     exit 2
                     ;;
             esac
@@ -31,13 +31,13 @@ while (($# > 0)); do
         --skip-missing) skip_missing=yes ;;
         --into) into=${2:?package.sh: --into needs a folder} && shift ;;
         *)
-            echo 'usage: package.sh [--platform linux-x64|windows-x64]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
+            echo 'usage: package.sh [--platform linux-x64|windows-x64|macos-arm64]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
             exit 2
             ;;
     esac
     shift
 done
-((${#platforms[@]} > 0)) || platforms=(linux-x64 windows-x64)
+((${#platforms[@]} > 0)) || platforms=(linux-x64 windows-x64 macos-arm64)
 if [[ $(uname -sm) != "Linux x86_64" ]]; then
     echo "package.sh: the zips are made on Linux x86-64; this is $(uname -sm)" >&2
     exit 1
@@ -80,19 +80,28 @@ linux_x64() {
     done
 }
 
-windows_x64() {
-    "$root/scripts/windows_tools.sh"
+for_another_system() { # PLATFORM
+    "$root/scripts/cross_tools.sh" "$1"
     "$root/scripts/python_environment.sh" "$root/build/tools" "$root/scripts/requirements/build.txt" "$python"
     "$root/scripts/vendor_packages.sh" "$root/build/tools/bin/python"
-    local version suffix
+    local version suffix folder
     for version in $pythons; do
-        if ! "$root/scripts/windows_tools.sh" "$version"; then
+        if ! "$root/scripts/cross_tools.sh" "$1" "$version"; then
             missing+=("$version")
             continue
         fi
-        suffix=cp${version/./}-win_amd64.pyd
-        configured+="$suffix=$root/build/windows/python$version/include:$root/build/windows/python$version/libpython${version/./}.dll.a;"
-        modules+=("$root/build/windows-x64/packaged_modules/_native.$suffix")
+        folder=$root/build/${1%-*}/python$version
+        case $1 in
+            windows-x64)
+                suffix=cp${version/./}-win_amd64.pyd
+                configured+="$suffix=$folder/include:$folder/libpython${version/./}.dll.a;"
+                ;;
+            macos-arm64)
+                suffix=cpython-${version/./}-darwin.so
+                configured+="$suffix=$folder/include;"
+                ;;
+        esac
+        modules+=("$root/build/$1/packaged_modules/_native.$suffix")
     done
 }
 
@@ -100,7 +109,7 @@ for platform in "${platforms[@]}"; do
     modules=() configured="" missing=()
     case $platform in
         linux-x64) preset=release && linux_x64 ;;
-        windows-x64) preset=windows-x64 && windows_x64 ;;
+        *) preset=$platform && for_another_system "$platform" ;;
     esac
     if ((${#missing[@]} > 0)); then
         if [[ -z $skip_missing ]]; then

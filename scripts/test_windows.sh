@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Tries the zip for Windows under Wine, with CPython and Blender for Windows from PyPI (the module bpy). Installs
-# what it needs into build/windows (2 GB). Not part of scripts/test.sh.
+# what it needs into build/windows (4 GB). Not part of scripts/test.sh. Blender 5.0 reads pictures and Python 3.13
+# copies files by functions that Wine 8 lacks: for them there is Wine 10, of Debian 13 in a chroot, which takes root.
 #
 #   scripts/test_windows.sh [--zip FILE] [STEP]...      (default: all)
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
 #     native      the C++ tests
 #     digests     what the native part makes of a fixed set of stacks, meshes and interpolations: the same bytes as on Linux
-#     zip         what is in the zip, what Blender 4.5 and 5.0 say of it, and that Python 3.13 loads its module (no more,
-#                 since Wine 8 lacks functions of the C library that NumPy 2 asks for; and PyPI has no Python 3.14)
-#     files       tests/windows: the samples' models as on Linux, paths, line ends, files open elsewhere, Ctrl-C
+#     zip         what is in the zip, and what Blender 4.5 and 5.0 say of it
+#     files       tests/windows with Python 3.11 and NumPy 1: the samples' models as on Linux, paths, line ends, files
+#                 open elsewhere, Ctrl-C
+#     3.13        the same with Python 3.13 and NumPy 2 (PyPI has no Python 3.14 for Windows)
 #     4.5 5.0     tests/blender in this version of Blender
 #
 # shellcheck disable=SC2317  # functions are called by name
@@ -17,15 +19,15 @@ set -uo pipefail # and not -e: a step that fails does not keep the others from b
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
 results=$windows/results
-all=(native digests zip files 4.5 5.0)
+all=(digests zip files 3.13 4.5 5.0 native)
 
 zip="" steps=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
-        native | digests | zip | files | 4.5 | 5.0) steps+=("$1") ;;
+        native | digests | zip | files | 3.13 | 4.5 | 5.0) steps+=("$1") ;;
         *)
-            echo "usage: test_windows.sh [--zip FILE] [native|digests|zip|files|4.5|5.0]..." >&2
+            echo "usage: test_windows.sh [--zip FILE] [native|digests|zip|files|3.13|4.5|5.0]..." >&2
             exit 2
             ;;
     esac
@@ -37,8 +39,16 @@ mkdir -p "$results"
 "$root/scripts/install_dependencies.sh" build wine || exit 1
 # A folder of its own for Wine, and no window of its.
 export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEDLLOVERRIDES="winemenubuilder.exe,mscoree,mshtml=d"
+wine=(wine) display=:97
 windows_run() { # PROGRAM ARGUMENT...: through pipes, since Python for Windows takes no files of Wine's for its streams
-    wine "$@" </dev/null 2>&1 | cat
+    "${wine[@]}" "$@" </dev/null 2>&1 | cat
+}
+take_wine_10() {
+    local settings=("DISPLAY=$display" "XAUTHORITY=$windows/xauth" "WINEPREFIX=$WINEPREFIX-10" "WINEDEBUG=$WINEDEBUG"
+        "WINEDLLOVERRIDES=$WINEDLLOVERRIDES")
+    "$root/scripts/install_dependencies.sh" versions || return 1
+    "$root/scripts/debian_chroot.sh" make trixie "$windows/trixie" wine wine64 libgl1 libegl1 || return 1
+    wine=("$root/scripts/debian_chroot.sh" run "$windows/trixie" --bind "$root:$root" --bind /tmp:/tmp env "${settings[@]}" wine)
 }
 
 # CPython from PyPI, with packages that a list of requirements pins.
@@ -78,7 +88,7 @@ blender() { # VERSION
 compile() { # PRESET TARGET...
     local preset=$1
     shift
-    "$root/scripts/windows_tools.sh" tests || return 1
+    "$root/scripts/cross_tools.sh" windows-x64 tests || return 1
     (cd "$root" && cmake --preset "$preset" -DREALMODEL_BUILD_TESTS=ON --log-level=WARNING) || return 1
     cmake --build "$root/build/$preset" --target "$@" -j "$("$root/scripts/build_jobs.sh")"
 }
@@ -120,27 +130,41 @@ zip() {
         windows_run "$windows/blender-$version/python.exe" \
             "$windows/blender-$version/Lib/site-packages/bpy/$version/scripts/addons_core/bl_pkg/cli/blender_ext.py" validate "$zip" || return 1
     done
-    interpreter "$windows/python-3.13" 3.13 || return 1
-    (cd "$windows/tree/addon/realmodel" && windows_run "$windows/python-3.13/python.exe" -c \
-        "import sys; sys.path.insert(0, '.'); import _native; assert _native.available_memory() > 0; print(_native.__file__)") || return 1
     "$root/scripts/python_environment.sh" "$root/build/venv" "$root/scripts/requirements/test.txt" /usr/bin/python3 || return 1
     "$root/build/venv/bin/python" -m pytest -q "$root/tests/package/test_windows_zip.py" --windows-zip "$zip"
 }
 
-files() {
+# What Linux makes of the samples, for tests/windows.
+linux_models() {
     local made=$results/linux sample
-    blender 4.5 || return 1
     mkdir -p "$made"
     "$root/scripts/build.sh" /usr/bin/python3 || return 1
     for sample in "$root"/blend_samples/*/project.toml; do
         sample=$(dirname "$sample")
         /usr/bin/python3 "$root/build_model.py" "$sample/project.toml" --export "$made/$(basename "$sample").npz" --quiet || return 1
     done
-    windows_run "$windows/blender-4.5/python.exe" "$windows/tree/tests/windows/run.py" "$made"
 }
 
+files() {
+    blender 4.5 && linux_models || return 1
+    windows_run "$windows/blender-4.5/python.exe" "$windows/tree/tests/windows/run.py" "$results/linux"
+}
+
+numpy_2() {
+    local folder=$windows/python-3.13 wine
+    take_wine_10 && interpreter "$folder" 3.13 "$root/scripts/requirements/test.txt" numpy && linux_models || return 1
+    python3 "$root/tests/windows/add_complex_functions.py" "$folder" || return 1
+    windows_run "$folder/python.exe" "$windows/tree/tests/windows/run.py" "$results/linux"
+}
+
+# With a display, since Eevee draws by OpenGL.
 suite() { # VERSION
-    blender "$1" && windows_run "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py"
+    local wine=(wine)
+    blender "$1" || return 1
+    [[ $1 == 4.5 ]] || take_wine_10 || return 1
+    rm -f "$windows/xauth"
+    wine=(xvfb-run --server-num="${display#:}" --auth-file="$windows/xauth" "${wine[@]}")
+    windows_run "$windows/blender-$1/python.exe" "$windows/tree/tests/blender/run.py"
 }
 
 failed=0
@@ -164,6 +188,7 @@ stage >"$results/stage.log" 2>&1 || {
 for step in "${steps[@]}"; do
     case $step in
         4.5 | 5.0) run "$step" suite "$step" ;;
+        3.13) run "$step" numpy_2 ;;
         *) run "$step" "$step" ;;
     esac
 done

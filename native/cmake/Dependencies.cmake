@@ -7,7 +7,13 @@ find_package(Eigen3 REQUIRED NO_MODULE) # 3.4 or 5: asked for 3.4, Eigen says no
 if(Eigen3_VERSION VERSION_LESS 3.4)
     message(FATAL_ERROR "RealModel needs Eigen 3.4 or newer; ${Eigen3_DIR} is ${Eigen3_VERSION}")
 endif()
-find_package(OpenMP REQUIRED COMPONENTS CXX)
+if(REALMODEL_OPENMP)
+    find_package(OpenMP REQUIRED COMPONENTS CXX)
+    set(realmodel_threads OpenMP::OpenMP_CXX)
+else()
+    find_package(Threads REQUIRED)
+    set(realmodel_threads Threads::Threads)
+endif()
 find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
 
 # CGAL is used as headers only, without its CMake package, which would link GMP and MPFR into
@@ -22,7 +28,10 @@ target_include_directories(realmodel_dependencies SYSTEM INTERFACE
 target_compile_definitions(realmodel_dependencies INTERFACE
     CGAL_USE_GMP=1 CGAL_USE_GMPXX=1 EIGEN_MPL2_ONLY)
 target_link_libraries(realmodel_dependencies INTERFACE
-    Eigen3::Eigen OpenMP::OpenMP_CXX realmodel_gmp)
+    Eigen3::Eigen ${realmodel_threads} realmodel_gmp)
+if(NOT REALMODEL_OPENMP)
+    target_compile_options(realmodel_dependencies INTERFACE -fopenmp-simd) # takes no library
+endif()
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(realmodel_dependencies INTERFACE -Wl,--as-needed)
 endif()

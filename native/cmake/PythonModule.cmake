@@ -40,6 +40,10 @@ foreach(source IN LISTS bindings_sources)
 endforeach()
 configure_file("${CMAKE_CURRENT_LIST_DIR}/bind_parts.hpp.in" "${CMAKE_CURRENT_BINARY_DIR}/bindings/bind_parts.hpp" @ONLY)
 
+if(APPLE AND CMAKE_CROSSCOMPILING)
+    set(CMAKE_SHARED_MODULE_CREATE_CXX_FLAGS -shared) # ziglang links no bundles; Python loads both kinds
+endif()
+
 # What is the same for all of them.
 function(finish_python_module target)
     target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
@@ -56,6 +60,9 @@ function(finish_python_module target)
         # The compiler's libraries go inside, and only the entry is shown. The same objects give the same bytes.
         target_link_options(${target} PRIVATE
             -static -Wl,--exclude-all-symbols -Wl,--no-insert-timestamp $<$<CONFIG:Release>:-s>)
+    elseif(APPLE)
+        # Python's names are those of the process that loads it.
+        target_link_options(${target} PRIVATE -undefined dynamic_lookup $<$<CONFIG:Release>:-s>)
     endif()
 endfunction()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Toolchain file: compiles for Windows x64 on Debian, with mingw-w64. What is not of the compiler lies in
-# build/windows/root, where scripts/windows_tools.sh puts it: /usr/include has the headers of Linux.
+# build/windows/root, where scripts/cross_tools.sh puts it: /usr/include has the headers of Linux.
 
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR AMD64)

@@ -193,7 +193,8 @@ def write_files(folder: Path):
     (folder / "salt.off").write_text(f"OFF\n4 4 0\n{corners}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n")
     (folder / "library.toml").write_text(
         '[[property]]\nid = 4\nname = "Clay"\nrock = "clay"\nage = "Eocene"\nstructure = "bedded"\n'
-        'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\n'
+        'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\n',
+        encoding="utf-8",
     )
     rows = [(i * 13 % 97, i * 29 % 79, 5 + i % 7) for i in range(40)]
     own = "\n".join(f"{x},5;{y};{z};A;{2019 + n % 3};" for n, (x, y, z) in enumerate(rows))

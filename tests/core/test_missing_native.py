@@ -12,6 +12,7 @@ VERSION = f"3.{MINOR}"
 MODULES = {
     "linux-x86_64": "_native.cpython-3{}-x86_64-linux-gnu.so",
     "win-amd64": "_native.cp3{}-win_amd64.pyd",
+    "macosx-11.0-arm64": "_native.cpython-3{}-darwin.so",
 }
 
 
@@ -51,7 +52,10 @@ def test_a_copy_for_other_pythons_names_them(copy, system):
     assert "for Python 3.9, 3.99:" in copy(99, 9, of=system, on=system)
 
 
-@pytest.mark.parametrize(("system", "advice"), [("linux-x86_64", "glibc 2.35"), ("win-amd64", "security")])
+@pytest.mark.parametrize(
+    ("system", "advice"),
+    [("linux-x86_64", "glibc 2.35"), ("win-amd64", "security"), ("macosx-11.0-arm64", "never been tried")],
+)
 def test_a_module_that_cannot_be_loaded_says_why(copy, system, advice):
     text = copy(MINOR, 99, of=system, on=system)
     assert "GLIBC_9.9 not found" in text
@@ -64,9 +68,14 @@ def test_a_copy_for_another_system_names_the_right_zip(copy):
     assert "ends with windows-x64.zip" in text
 
 
+def test_any_version_of_macos_is_known(copy):
+    text = copy(MINOR, of="linux-x86_64", on="macosx-26.1-arm64")
+    assert "ends with macos-arm64.zip" in text
+
+
 def test_a_system_without_a_zip_is_told_so(copy):
-    text = copy(MINOR, on="macosx-11.0-arm64")
-    assert "Linux on x86-64 and Windows on x64 only" in text
+    text = copy(MINOR, on="macosx-11.0-x86_64")
+    assert "these only: Linux on x86-64, Windows on x64, macOS on Apple's processors" in text
 
 
 def test_core_can_be_imported_without_it(tmp_path):

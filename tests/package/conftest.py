@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zips that scripts/package.sh made: --zip FILE and --windows-zip FILE, or those in dist/."""
+"""The zips that scripts/package.sh made: --zip, --windows-zip and --macos-zip FILE, or those in dist/."""
 
 import zipfile
 from pathlib import Path
@@ -11,7 +11,8 @@ VERSION = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
 
 
 def pytest_addoption(parser):
-    for option, platform in (("--zip", "linux-x64"), ("--windows-zip", "windows-x64")):
+    platforms = {"--zip": "linux-x64", "--windows-zip": "windows-x64", "--macos-zip": "macos-arm64"}
+    for option, platform in platforms.items():
         parser.addoption(option, type=Path, default=ROOT / "dist" / f"realmodel-{VERSION}-{platform}.zip")
 
 
@@ -30,6 +31,11 @@ def package(request):
 @pytest.fixture(scope="session")
 def windows_package(request):
     return made(request, "--windows-zip")
+
+
+@pytest.fixture(scope="session")
+def macos_package(request):
+    return made(request, "--macos-zip")
 
 
 @pytest.fixture(scope="session")

@@ -17,11 +17,12 @@ class System(NamedTuple):
 
     name: str
     platform: str
-    module: str
+    module: str  # with the minor version of Python
     advice: str
 
 
-# By sysconfig.get_platform(): what the interpreter was built for, whatever machine that runs on.
+# By sysconfig.get_platform(), for macOS without its version: what the interpreter was built for, whatever
+# machine that runs on.
 SYSTEMS = {
     "linux-x86_64": System(
         "Linux on x86-64",
@@ -36,6 +37,12 @@ SYSTEMS = {
         "it needs nothing but Windows 10 or newer and Python: see that no security software keeps it from "
         f"being loaded, and install {ZIP} again",
     ),
+    "macosx-arm64": System(
+        "macOS on Apple's processors",
+        "macos-arm64",
+        r"cpython-3(\d+)-darwin\.so",
+        "it needs macOS 11 or newer, and has never been tried on one: please report this",
+    ),
 }
 
 
@@ -49,7 +56,7 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
     loaded.
     """
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
-    system = SYSTEMS.get(sysconfig.get_platform())
+    system = SYSTEMS.get(re.sub(r"^macosx-[\d.]+-", "macosx-", sysconfig.get_platform()))
     built_for = _versions(package, system) if system else []
     if version in built_for:
         missing = f"the native module for Python {version} cannot be loaded ({error})"
@@ -60,8 +67,10 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
         python = f"python{version}" if "bpy" in sys.modules else sys.executable
         return f"{missing}; build it with scripts/build.sh {python}"
     if system is None:
-        names = " and ".join(each.name for each in SYSTEMS.values())
-        return f"{missing}; there are zips for {names} only: build RealModel from source for this system"
+        names = ", ".join(each.name for each in SYSTEMS.values())
+        return (
+            f"{missing}; there are zips for these only: {names}. Build RealModel from source for this system"
+        )
     if version in built_for:
         return f"{missing}; {system.advice}"
     if built_for:

@@ -1,27 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The parallel loops of the whole core. No exception leaves an OpenMP region: where chunks of a
+/// The parallel loops of the whole core. No exception leaves a thread: where chunks of a
 /// loop throw, the exception of the lowest of them leaves the loop, so that the same input always
 /// gives the same error. Chunks above a failed one are skipped, those below it still run. Between
 /// chunks a loop asks whether it was cancelled; longer work may call Progress::check() itself.
 #pragma once
 
+#if defined(_OPENMP)
 #include <omp.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
+#include <thread>
 
 #include "realmodel/base/progress.hpp"
 
 namespace realmodel {
 
 inline int thread_count(int threads) {
-    return threads > 0 ? threads : omp_get_max_threads();
+    if (threads > 0) return threads;
+#if defined(_OPENMP)
+    return omp_get_max_threads();
+#else
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+#endif
 }
+
+/// Calls work(own, team) at once for every own below team, which is `threads`; inside of such a
+/// call it is 1. The work must not throw.
+#if defined(_OPENMP)
+template <class Work>
+void run_team(int threads, const Work& work) {
+#pragma omp parallel num_threads(threads) if (threads > 1)
+    work(static_cast<std::size_t>(omp_get_thread_num()),
+         static_cast<std::size_t>(omp_get_num_threads()));
+}
+#else  // with threads of the C++ library, made anew for every call
+void run_team(int threads, const std::function<void(std::size_t own, std::size_t team)>& work);
+#endif
 
 /// For loops of one thread: asks every 16384 rounds whether the caller wants to stop.
 /// @throws Cancelled
@@ -79,8 +101,7 @@ void parallel_workers(std::size_t count, int threads, const Progress* progress, 
                       double share = 0.2) {
     LoopGuard guard(progress, count, share);
     std::atomic<std::size_t> next{0};
-#pragma omp parallel num_threads(thread_count(threads)) if (count > 1)
-    {
+    run_team(count > 1 ? thread_count(threads) : 1, [&](std::size_t, std::size_t) {
         std::optional<decltype(make())> worker;
         for (;;) {
             const std::size_t chunk = next.fetch_add(1, std::memory_order_relaxed);
@@ -90,7 +111,7 @@ void parallel_workers(std::size_t count, int threads, const Progress* progress, 
             });
             if (!goes_on) break;
         }
-    }
+    });
     guard.finish();
 }
 
@@ -118,14 +139,11 @@ void parallel_ranges(std::size_t count, std::size_t size, int threads, const Pro
 template <class Work>
 void parallel_even(std::size_t count, int threads, const Work& work) {
     LoopGuard guard(nullptr, count, 0.0);
-#pragma omp parallel num_threads(thread_count(threads)) if (count > 1)
-    {
-        const auto team = static_cast<std::size_t>(omp_get_num_threads());
-        const auto own = static_cast<std::size_t>(omp_get_thread_num());
+    run_team(count > 1 ? thread_count(threads) : 1, [&](std::size_t own, std::size_t team) {
         for (std::size_t chunk = count * own / team; chunk < count * (own + 1) / team; ++chunk) {
             if (!guard.run(chunk, [&] { work(chunk); })) break;
         }
-    }
+    });
     guard.finish();
 }
 

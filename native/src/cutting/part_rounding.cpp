@@ -204,14 +204,14 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
     std::ranges::sort(faces, [](const Face& f, const Face& g) {
         return std::pair(f.hash, f.begin) < std::pair(g.hash, g.begin);
     });
-    const auto have_equal_nodes = [&sorted = memory.sorted](const Face& f, const Face& g) {
-        return std::ranges::equal(std::span(sorted).subspan(f.begin, f.size),
-                                  std::span(sorted).subspan(g.begin, g.size));
+    const auto have_equal_nodes = [&listed = memory.sorted](const Face& f, const Face& g) {
+        return std::ranges::equal(std::span(listed).subspan(f.begin, f.size),
+                                  std::span(listed).subspan(g.begin, g.size));
     };
     std::vector<NodeId> one, other;
-    const auto are_equal = [&, &nodes = memory.nodes](const Face& f, const Face& g) {
-        put_first(std::span(nodes).subspan(f.begin, f.size), one);
-        put_first(std::span(nodes).subspan(g.begin, g.size), other);
+    const auto are_equal = [&, &listed = memory.nodes](const Face& f, const Face& g) {
+        put_first(std::span(listed).subspan(f.begin, f.size), one);
+        put_first(std::span(listed).subspan(g.begin, g.size), other);
         return one == other;
     };
     is_repeated.assign(faces.size(), 0);

@@ -84,8 +84,8 @@ inline std::uint32_t SmallBoxes::meets(const Item& item, const Limits& limits) {
     return _mm_movemask_ps(within) == 15 ? 1 : 0;
 #else
     const auto& [a, b, c, d] = item.corners;
-    return static_cast<std::uint32_t>((a <= limits[0]) & (b <= limits[1]) & (c <= limits[2]) &
-                                      (d <= limits[3]));
+    return std::uint32_t{a <= limits[0]} & std::uint32_t{b <= limits[1]} &
+           std::uint32_t{c <= limits[2]} & std::uint32_t{d <= limits[3]};
 #endif
 }
 

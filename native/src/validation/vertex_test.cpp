@@ -100,8 +100,9 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
         all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end());
     Findings found;
-    for (const auto& [v, earlier] : all) {
-        found.fail([&, v = v, earlier = earlier] {
+    for (const EqualPair& pair : all) {
+        found.fail([&, pair] {
+            const auto& [v, earlier] = pair;
             return Offender{.text = "vertex " + std::to_string(v) +
                                     " has the coordinates of vertex " + std::to_string(earlier),
                             .vertex = v,

@@ -2,7 +2,9 @@
 #include "realmodel/meshing/region_mesh.hpp"
 
 #include <gtest/gtest.h>
+#if defined(_OPENMP)
 #include <omp.h>
+#endif
 
 #include <atomic>
 #include <numbers>
@@ -209,7 +211,9 @@ TEST(RegionMesh, SameBytesEveryTime) {
         rectangle(0, 0, 64, 64), rectangle(16, 16, 32, 32), {{60, 60}, {50, 61}, {60, 62}}};
     const PlanarMesh first = mesh_region(rings, 1);
     const std::vector<std::string> elsewhere(1000, "moves the heap about, so addresses differ");
+#if defined(_OPENMP)
     omp_set_num_threads(1);
+#endif
     const PlanarMesh second = mesh_region(rings, 1);
     EXPECT_EQ(first.vertices, second.vertices);
     EXPECT_EQ(first.triangles, second.triangles);

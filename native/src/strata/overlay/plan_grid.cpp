@@ -82,9 +82,9 @@ void PolygonCells::for_each_cell(const LocalArrangement& scope, PolygonView poly
             const double bottom = frame.low_y + r * cells_.step_y() - slack_y;
             const double top = frame.low_y + (r + 1.0) * cells_.step_y() + slack_y;
             auto& [from, to] = reach[index(r - span.low)];
-            const auto include = [&from = from, &to = to](double x) {
-                from = std::min(from, x);
-                to = std::max(to, x);
+            const auto include = [&least = from, &most = to](double x) {
+                least = std::min(least, x);
+                most = std::max(most, x);
             };
             const auto at = [&](double y) {
                 const double t = std::clamp((y - p.y) / (q.y - p.y), 0.0, 1.0);
