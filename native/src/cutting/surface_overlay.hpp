@@ -127,7 +127,6 @@ private:
     std::optional<SpacePointId> point_in_triangle(const Position& p,
                                                   const std::array<Position, 3>& corners);
     std::optional<SpacePointId> point_on_surface(const Position& p);
-    std::size_t upright_turn(std::size_t face, std::vector<NodeId>& corners) const;
     void add_triangles();
     void overlay_all();
     void name_nodes();
