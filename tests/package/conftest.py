@@ -38,13 +38,27 @@ def macos_package(request):
     return made(request, "--macos-zip")
 
 
-@pytest.fixture(scope="session")
-def unpacked(package, tmp_path_factory):
-    """The zip unpacked as Blender does it."""
+def unpack(package, tmp_path_factory):
     folder = tmp_path_factory.mktemp("unpacked")
     with zipfile.ZipFile(package) as archive:
         archive.extractall(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def unpacked(package, tmp_path_factory):
+    """The zip unpacked as Blender does it."""
+    return unpack(package, tmp_path_factory)
+
+
+@pytest.fixture(scope="session")
+def windows_addon(windows_package, tmp_path_factory):
+    return unpack(windows_package, tmp_path_factory) / "realmodel"
+
+
+@pytest.fixture(scope="session")
+def macos_addon(macos_package, tmp_path_factory):
+    return unpack(macos_package, tmp_path_factory) / "realmodel"
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import tomllib
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -15,16 +14,8 @@ VERSION = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
 
 
 @pytest.fixture(scope="module")
-def unpacked(macos_package, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("unpacked")
-    with zipfile.ZipFile(macos_package) as archive:
-        archive.extractall(folder)
-    return folder / "realmodel"
-
-
-@pytest.fixture(scope="module")
-def modules(unpacked):
-    found = sorted(unpacked.glob("_native.*"))
+def modules(macos_addon):
+    found = sorted(macos_addon.glob("_native.*"))
     assert found
     return found
 
@@ -41,8 +32,8 @@ def test_small(macos_package):
     assert macos_package.stat().st_size < 10e6
 
 
-def test_it_says_its_platform(unpacked):
-    manifest = tomllib.loads((unpacked / "blender_manifest.toml").read_text(encoding="utf-8"))
+def test_it_says_its_platform(macos_addon):
+    manifest = tomllib.loads((macos_addon / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert manifest["platforms"] == ["macos-arm64"]
     assert manifest["version"] == VERSION
 

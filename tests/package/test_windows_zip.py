@@ -4,7 +4,6 @@
 import re
 import subprocess
 import tomllib
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -17,17 +16,9 @@ SYSTEM = {"kernel32.dll", "msvcrt.dll"}
 
 
 @pytest.fixture(scope="module")
-def unpacked(windows_package, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("unpacked")
-    with zipfile.ZipFile(windows_package) as archive:
-        archive.extractall(folder)
-    return folder / "realmodel"
-
-
-@pytest.fixture(scope="module")
-def modules(unpacked):
+def modules(windows_addon):
     """{name: what objdump says of it}."""
-    found = sorted(unpacked.glob("_native.*"))
+    found = sorted(windows_addon.glob("_native.*"))
     assert found
     return {
         path.name: subprocess.run(["objdump", "-p", path], check=True, capture_output=True, text=True).stdout
@@ -39,8 +30,8 @@ def test_small(windows_package):
     assert windows_package.stat().st_size < 10e6
 
 
-def test_it_says_its_platform(unpacked):
-    manifest = tomllib.loads((unpacked / "blender_manifest.toml").read_text(encoding="utf-8"))
+def test_it_says_its_platform(windows_addon):
+    manifest = tomllib.loads((windows_addon / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert manifest["platforms"] == ["windows-x64"]
     assert manifest["version"] == VERSION
 
