@@ -403,7 +403,7 @@ NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
     Position middle;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] = at(edge[0])[k] + (at(edge[1])[k] - at(edge[0])[k]) / 2;
-    if (!taken_.insert(middle)) middle = free_position_beside(middle, Freedom::kAny, taken_);
+    if (!taken_.insert(middle)) middle = free_position_beside(middle, freedom_of(edge), taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }

@@ -88,6 +88,7 @@ private:
     std::vector<std::array<NodeId, 2>> touching_edges() const;
     void set_touching_apart();
     void set_apart();
+    Freedom freedom_of(std::span<const NodeId> nodes) const;
     void move_aside(NodeId node);
     bool is_upright(std::size_t piece) const;
     void give_extents();
