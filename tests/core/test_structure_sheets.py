@@ -8,7 +8,7 @@ from realmodel.core.structures.between_sheets import common_lines, torn_triangle
 from realmodel.core.structures.families import around_tips, families
 from realmodel.core.structures.rock_structure import RockStructure
 from realmodel.core.structures.sides import RockFaults
-from realmodel.core.structures.tips import _meet_within, _near
+from realmodel.core.structures.tips import _Drawn, _meet_within, _near
 from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
 from structure_cases import plane_fault
@@ -73,6 +73,18 @@ def test_a_sheet_counts_near_places_that_are_on_its_sides_of_all_faults(low, hig
     triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     found = _near(triangles, [x < low, x > high], [np.zeros(27, bool)] * 2)
     assert sorted(set(x[found].astype(int).tolist())) == near
+
+
+@pytest.mark.parametrize("near", [True, False])
+def test_a_branch_that_passes_between_two_sheets_beyond_a_tip_ends_in_nothing(near):
+    """Neither is passed itself: both its nodes are below the branch, both those of the other above."""
+    plan = np.array([[0.0, 0.0], [1.0, 0.0]])
+    low, high = np.full(2, -1, np.int8), np.full(2, 1, np.int8)
+    seen = {(-1, -1): np.array([True, True]), (-1, 1): np.array([near, near])}
+    drawn = _Drawn(plan, [0.0, 0.0], [[], [0]], seen, {(-1, -1): {1: low}, (-1, 1): {1: high}})
+    drawn.let_be_equal(0, np.array([[0, 1]]))
+    assert drawn.equal[0].tolist() == [True, True]
+    assert drawn.equal[1].tolist() == [near, near]
 
 
 def test_points_that_dsi_ignores_are_no_data_of_a_compartment():

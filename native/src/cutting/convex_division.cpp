@@ -12,21 +12,28 @@ namespace realmodel::cutting {
 namespace {
 
 /// Whether a loop turns left or goes straight on, up to rounding, at one of its corners: from the
-/// last corner before that is not in the same position to the first after.
+/// last corner before that is not in the same position to the first after. Of a way that is not
+/// much longer than rounding nobody knows where it points, so ways to corners farther off are
+/// looked at, too.
 bool left_or_straight(const Loop& loop, std::size_t corner, const PlanePosition& rounding) {
     const std::size_t n = loop.size();
     const PlanePosition& at = loop[corner].at;
-    const auto is_apart = [&](std::size_t i) {
-        return std::abs(loop[i].at[0] - at[0]) > 4 * rounding[0] ||
-               std::abs(loop[i].at[1] - at[1]) > 4 * rounding[1];
-    };
     std::size_t before = (corner + n - 1) % n, after = (corner + 1) % n;
-    while (before != corner && !is_apart(before))
-        before = (before + n - 1) % n;
-    while (after != corner && !is_apart(after))
-        after = (after + 1) % n;
-    const PlanePosition &a = loop[before].at, &c = loop[after].at;
-    return cross(a, at, c) >= -slack(a, at, c, rounding);
+    PlanePosition near{4 * rounding[0], 4 * rounding[1]};
+    for (int widened = 0; widened < 4; ++widened) {
+        const auto is_apart = [&](std::size_t i) {
+            return std::abs(loop[i].at[0] - at[0]) > near[0] ||
+                   std::abs(loop[i].at[1] - at[1]) > near[1];
+        };
+        while (before != corner && !is_apart(before))
+            before = (before + n - 1) % n;
+        while (after != corner && !is_apart(after))
+            after = (after + 1) % n;
+        const PlanePosition &a = loop[before].at, &c = loop[after].at;
+        if (cross(a, at, c) < -slack(a, at, c, rounding)) return false;
+        near.fill(64 * std::max(near[0], near[1]));
+    }
+    return true;
 }
 
 /// Whether the corners of a loop go there and back once along an axis, up to rounding. One that

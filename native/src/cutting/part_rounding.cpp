@@ -233,7 +233,7 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
         ++found.count;
         const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
+            uses.push_back(number_of(unordered(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0])));
             found.box.include(at(loop[k]));
         }
     }
@@ -456,14 +456,20 @@ void PartRounding::cancel_doubled() {
     drop_hollow();
 }
 
+/// How a node may move that is where some others are: on all of their faces.
+Freedom PartRounding::freedom_of(std::span<const NodeId> nodes) const {
+    const auto are_on = [nodes](const std::vector<std::uint8_t>& faces) {
+        return std::ranges::all_of(nodes, [&](NodeId node) { return faces[index(node)] != 0; });
+    };
+    return are_on(on_base_)   ? Freedom::kLevel
+           : are_on(on_wall_) ? Freedom::kUpright
+                              : Freedom::kAny;
+}
+
 /// Moves a node to the nearest free position beside it that its faces allow.
 void PartRounding::move_aside(NodeId node) {
     Position& p = moving(node);
-    const bool fixed = on_base_[index(node)] != 0;
-    const Freedom freedom = fixed                        ? Freedom::kLevel
-                            : on_wall_[index(node)] != 0 ? Freedom::kUpright
-                                                         : Freedom::kAny;
-    p = free_position_beside(p, freedom, taken_);
+    p = free_position_beside(p, freedom_of(std::array{node}), taken_);
 }
 
 void PartRounding::set_apart() {

@@ -41,7 +41,6 @@ std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
 /// Finds which borders are to be joined, and whether any is.
 bool find_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
                 Progress* progress) {
-    if (share_one_plan(rocks)) return false;
     begin_step(progress, 0.0, kBordersDone, "comparing the borders");
     entered.snapping = find_snapping(rocks, threads, progress);
     entered.joined = join_borders(rocks, entered.snapping, threads, progress);
@@ -62,10 +61,20 @@ void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int t
 }
 
 /// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
+/// In one plan only borders of its own parts may lie beside each other: they are looked at where
+/// these overlap.
 Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
     Entered entered;
-    if (find_joins(rocks, entered, threads, progress))
-        enter_with_joins(rocks, entered, threads, progress);
+    const auto join = [&] {
+        if (find_joins(rocks, entered, threads, progress))
+            enter_with_joins(rocks, entered, threads, progress);
+    };
+    const bool is_one_plan = share_one_plan(rocks);
+    if (!is_one_plan) join();
+    if (entered.is_joined) return entered;
+    entered.site = enter_as_given(rocks, {}, entered.warnings, threads, progress);
+    if (!is_one_plan || entered.site->is_single_valued) return entered;
+    join();
     if (!entered.is_joined)
         entered.site = enter_as_given(rocks, {}, entered.warnings, threads, progress);
     return entered;

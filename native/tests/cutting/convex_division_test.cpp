@@ -37,6 +37,15 @@ TEST(ConvexDivision, ADentCountsWhereItIsDeeperThanRounding) {
     EXPECT_FALSE(is_convex(numbered({{0, 0}, {1, 0.51}, {2, 1}, {0, 3}}), kNoRounding));
 }
 
+TEST(ConvexDivision, AShortEdgeHidesNoTurn) {
+    // a strip with a bend, on the inner side of which an edge is hardly longer than rounding
+    const Loop strip =
+        numbered({{0, 0}, {0.5, -3.4}, {1.5e-5, 0}, {1e-5, 0}, {-0.099, 1.9}, {-0.8, 15.2}});
+    constexpr PlanePosition kRounding{1e-6, 4e-3};
+    EXPECT_FALSE(is_convex(strip, kRounding));
+    EXPECT_EQ(divided(strip, kRounding).size(), 2U);
+}
+
 TEST(ConvexDivision, WhatWindsRoundTwiceIsNotConvex) {
     // a pentagram turns left at each of its points
     EXPECT_FALSE(is_convex(numbered({{0, 3}, {-2, -3}, {3, 1}, {-3, 1}, {2, -3}}), kNoRounding));

@@ -211,7 +211,7 @@ def with_equal_ends(
         [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
         for fault in faults
     ]
-    drawn = _Drawn(plan, ramps, ends, _sides_of_branches(work, plan, heights, faults, ends, threads))
+    drawn = _Drawn(plan, ramps, ends, near, _sides_of_branches(work, plan, heights, faults, ends, threads))
     looked_at: dict[tuple, np.ndarray] = {}
     while True:
         found = blended(heights, near, on_side, drawn.weights)
@@ -227,15 +227,15 @@ def with_equal_ends(
                 passes = met == _PASSES
                 divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
                 passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
-                drawn.let_be_equal(number, sides, some[passes])
+                drawn.let_be_equal(number, some[passes])
                 edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
                 lie_in = _lie_in(work, fault, sheet[edges], continuations[number], within, threads)
-                drawn.let_be_equal(number, sides, edges[lie_in])
+                drawn.let_be_equal(number, edges[lie_in])
                 touched = np.unique(some[met > 0]).astype(np.int32)
                 touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
                 on = _met(work, fault, sheet, sheet, alone, threads) > 0
-                drawn.let_be_equal(number, sides, touched[on, None])
+                drawn.let_be_equal(number, touched[on, None])
         if drawn.is_settled() and not _draw_between(
             work, plan, triangles, found, faults, continuations, within, near, drawn, threads
         ):
@@ -244,23 +244,28 @@ def with_equal_ends(
 
 class _Drawn:
     """Nodes at which the sheets on both sides of faults are to be equal, and what weight that leaves to the
-    difference around. ends: of each fault those at which it ends; sides: by the sides of each sheet the side
-    of each such branch that its nodes are on."""
+    difference around. ends: of each fault those at which it ends; near: as with_equal_ends has it; sides: by
+    the sides of each sheet the side of each such branch that its nodes are on."""
 
-    def __init__(self, plan: np.ndarray, ramps: list[float], ends: list[list[int]], sides: dict):
-        self.plan, self.ramps, self.ends, self.sides = plan, ramps, ends, sides
+    def __init__(self, plan: np.ndarray, ramps: list[float], ends: list[list[int]], near: dict, sides: dict):
+        self.plan, self.ramps, self.ends, self.near, self.sides = plan, ramps, ends, near, sides
         self.weights = [np.ones(len(plan)) for _ in ramps]
         self.equal = [np.zeros(len(plan), bool) for _ in ramps]
 
-    def let_be_equal(self, number: int, sides: tuple[int, ...], nodes: np.ndarray) -> None:
-        """For the sides of one fault, on one sheet, at the nodes (K, 1 to 3) of triangles or edges. A branch
-        of it that passes them there ends in nothing: its sides are equal, too."""
+    def let_be_equal(self, number: int, nodes: np.ndarray) -> None:
+        """For the sides of one fault, at the nodes (K, 1 to 3) of triangles or edges. A branch of it that
+        passes a sheet there, or between two of them, ends in nothing: its sides are equal, too."""
         self.equal[number][nodes] = True
-        for branch, side in self.sides[sides]:
-            if number not in self.ends[branch]:
+        for branch, own in enumerate(self.ends):
+            if number not in own:
                 continue
-            passed = (side[nodes] != side[nodes[:, :1]]).any(axis=1)
-            self.equal[branch][nodes[passed]] = True
+            above, below = np.zeros(len(nodes), bool), np.zeros(len(nodes), bool)
+            for sides, near in self.near.items():
+                there = near[nodes].any(axis=1)
+                side = self.sides[sides][branch][nodes]
+                above |= there & (side > 0).any(axis=1)
+                below |= there & (side < 0).any(axis=1)
+            self.equal[branch][nodes[above & below]] = True
 
     def is_settled(self) -> bool:
         """Whether nothing has changed since this was asked."""
@@ -274,14 +279,15 @@ class _Drawn:
 
 def _sides_of_branches(
     work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], ends: list, threads: int
-) -> dict[tuple[int, ...], list]:
-    """By the sides of each sheet: (number, sides (N,) of its nodes) of each fault that ends at others."""
+) -> dict[tuple[int, ...], dict[int, np.ndarray]]:
+    """By the sides of each sheet, and the number of each fault that ends at others: the sides (N,) of its
+    nodes."""
     branches = [number for number, own in enumerate(ends) if own]
     return {
-        sides: [
-            (n, fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads))
+        sides: {
+            n: fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads)
             for n in branches
-        ]
+        }
         for sides, z in heights.items()
     }
 
@@ -320,9 +326,9 @@ def _draw_between(
 
             torn = few[torn_triangles(plan, few, (found[one], found[other]), others, within, on_sides)]
             for sides in (one, other):
-                drawn.let_be_equal(number, sides, torn)
                 is_torn = is_torn or not near[sides][torn].all()
                 near[sides][torn] = True
+            drawn.let_be_equal(number, torn)
     return not drawn.is_settled() or is_torn
 
 

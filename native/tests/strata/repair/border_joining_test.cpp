@@ -45,6 +45,20 @@ TEST(BorderJoining, DividesEdgesAtVerticesBesideThem) {
     EXPECT_EQ(columns.cell_block.size(), 6u);
 }
 
+TEST(BorderJoining, PartsOfOneSurfaceDoNotOverlapByRounding) {
+    for (const double share : {1.0 / 3, 0.7, 0.9}) {
+        std::vector<Outline> both{Outline(0, share)};
+        both[0].vertices.insert(both[0].vertices.end(), {Outline::kX, 0, 0});
+        both[0].triangles = {0, 1, 2, 0, 4, 3, 3, 4, 1};  // the long edge, and its vertex beyond it
+        StackInput input = stack_of(both);
+        input.base_elevation = -1;
+        const CellComplex columns = build_stack(input, 1, nullptr);
+        const double area = Outline::kX * (2e6 + Outline::kY) / 2;
+        EXPECT_NEAR(columns.volumes[0], area, 1e-6 * area);
+        EXPECT_EQ(columns.cell_block.size(), columns.warnings.empty() ? 3u : 4u);
+    }
+}
+
 TEST(BorderJoining, LeavesVerticesOnTheLineAndFarFromItAlone) {
     Outline plain(0), on_line(1), away(2);
     for (Outline* o : {&plain, &on_line, &away})
