@@ -260,5 +260,4 @@ def interpolate_rock(
             entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
             entry.interpolations[number] = None
             del entry.told[number]
-    for number in sorted(waiting):
-        entry.warnings += points_too_low(work, entry, number, threads)
+    entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
