@@ -288,6 +288,7 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     box = frame.grid.box(*name)
     model, sides = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
     numbers, edges = sides["numbers"], BorderEdges.of(model, box)
+    sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, edges.on(model, side))
         ends = np.searchsorted(numbers, found.ends)
@@ -304,6 +305,7 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
+    faces = sides[name]["faces"]
     borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
     places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
@@ -311,11 +313,11 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
         neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
-    model = with_vertices_of(model, BorderEdges.of(model, box), neighbors)
+    model = with_vertices_of(model, BorderEdges.of(model, box, faces), neighbors)
     report = model.validate(_places(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches, border = {}, BorderEdges.of(model, box)
+    patches, border = {}, BorderEdges.of(model, box, faces)
     for side, *theirs in neighbors:
         edges = border.on(model, side)
         found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
