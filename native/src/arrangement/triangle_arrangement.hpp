@@ -135,7 +135,8 @@ private:
     std::vector<std::int32_t> large_triangles(std::span<const std::int32_t> among) const;
     void sort_all(int threads, const Progress* progress);
     std::vector<SegmentPair> crossing_segments(const Triangle& t) const;
-    std::vector<SegmentPair> crossing_segments(const Triangle& t, int threads,
+    struct LargeTriangle;
+    std::vector<SegmentPair> crossing_segments(const LargeTriangle& large, int threads,
                                                const Progress* progress) const;
     bool do_cross(const Triangle& t, const SegmentPair& pair) const;
     void intersect_segments(int threads, const Progress* progress);

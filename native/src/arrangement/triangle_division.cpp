@@ -190,6 +190,25 @@ std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& poin
     return boxed;
 }
 
+template <class Segment>
+std::vector<Box> boxes_of(const std::vector<BoxedSegment<Segment>>& boxed) {
+    std::vector<Box> boxes;
+    boxes.reserve(boxed.size());
+    for (const auto& own : boxed)
+        boxes.push_back(own.box);
+    return boxes;
+}
+
+/// make(i) for all i, on all threads.
+template <class Item, class Make>
+std::vector<std::optional<Item>> made_for_all(std::size_t count, int threads,
+                                              const Progress* progress, const Make& make) {
+    std::vector<std::optional<Item>> made(count);
+    parallel_chunks(
+        count, threads, progress, [&](std::size_t i) { made[i].emplace(make(i)); }, 0.02);
+    return made;
+}
+
 }  // namespace
 
 /// Pairs of segments of one triangle that cross each other.
@@ -211,15 +230,23 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
     return found;
 }
 
+/// The segments of a large triangle, which are found by a tree.
+struct TriangleArrangement::LargeTriangle {
+    LargeTriangle(const exact::SpacePoints& points, std::int32_t of, const Triangle& t)
+        : number(of),
+          boxed(boxed_segments(points, t.segments, (t.axis + 1) % 3)),
+          tree(boxes_of(boxed)) {}
+
+    std::int32_t number;
+    std::vector<BoxedSegment<Segment>> boxed;
+    spatial::BoxTree tree;
+};
+
 /// The same, in the same order, of a large triangle.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
-    const Triangle& t, int threads, const Progress* progress) const {
-    const auto boxed = boxed_segments(points_, t.segments, (t.axis + 1) % 3);
-    std::vector<Box> boxes;
-    boxes.reserve(boxed.size());
-    for (const auto& own : boxed)
-        boxes.push_back(own.box);
-    const spatial::BoxTree tree(std::move(boxes));
+    const LargeTriangle& large, int threads, const Progress* progress) const {
+    const Triangle& t = triangles_[index(large.number)];
+    const auto& boxed = large.boxed;
     std::vector<std::vector<SegmentPair>> found((boxed.size() + kChunk - 1) / kChunk);
     parallel_ranges(
         boxed.size(), kChunk, threads, progress,
@@ -227,7 +254,7 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
             std::vector<std::size_t> near;
             for (std::size_t i = begin; i < end; ++i) {
                 near.clear();
-                tree.find(boxed[i].box, [&](std::int32_t j) {
+                large.tree.find(boxed[i].box, [&](std::int32_t j) {
                     if (index(j) > i) near.push_back(index(j));
                 });
                 std::sort(near.begin(), near.end());
@@ -249,10 +276,21 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
     each_triangle(threads, progress, [&](std::size_t i) {
         if (triangles_[i].segments.size() <= kLarge) found[i] = crossing_segments(triangles_[i]);
     });
-    std::vector<std::pair<std::size_t, SegmentPair>> pairs;
+    std::vector<std::int32_t> with_many;
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (triangles_[i].facing != 0 && triangles_[i].segments.size() > kLarge)
-            found[i] = crossing_segments(triangles_[i], threads, progress);
+            with_many.push_back(static_cast<std::int32_t>(i));
+    }
+    auto large =
+        made_for_all<LargeTriangle>(with_many.size(), threads, progress, [&](std::size_t i) {
+            return LargeTriangle(points_, with_many[i], triangles_[index(with_many[i])]);
+        });
+    for (auto& own : large) {
+        found[index(own->number)] = crossing_segments(*own, threads, progress);
+        own.reset();
+    }
+    std::vector<std::pair<std::size_t, SegmentPair>> pairs;
+    for (std::size_t i = 0; i < found.size(); ++i) {
         for (const SegmentPair& pair : found[i])
             pairs.push_back({i, pair});
         found[i] = {};
@@ -349,9 +387,12 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
                                                 edges[index(changed[i])]);
                             }
                         });
-        for (const std::int32_t triangle : large) {
+        auto nodes_on_large = made_for_all<NodesOnLines>(
+            large.size(), threads, progress,
+            [&](std::size_t i) { return NodesOnLines(*this, triangles_[index(large[i])]); });
+        for (std::size_t which = 0; which < large.size(); ++which) {
+            const std::int32_t triangle = large[which];
             const Triangle& t = triangles_[index(triangle)];
-            const NodesOnLines nodes_on(*this, t);
             const std::size_t first = messages.size();
             const std::size_t chunks = (t.line_count() + kChunk - 1) / kChunk;
             messages.resize(first + chunks);
@@ -359,11 +400,12 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
             parallel_ranges(
                 t.line_count(), kChunk, threads, progress,
                 [&](std::size_t begin, std::size_t end) {
-                    messages_of(triangle, nodes_on, begin, end, messages[first + begin / kChunk],
-                                own[begin / kChunk]);
+                    messages_of(triangle, *nodes_on_large[which], begin, end,
+                                messages[first + begin / kChunk], own[begin / kChunk]);
                 },
                 0.02);
             edges[index(triangle)] = joined(own);
+            nodes_on_large[which].reset();
         }
         changed.clear();
         for (const auto& chunk : messages) {

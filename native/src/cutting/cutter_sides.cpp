@@ -94,14 +94,20 @@ void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
             }
         },
         overlay.threads(), progress);
-    for (std::size_t begin = 0, end = 0; begin < uses.values.size(); begin = end) {
-        const EdgeUse& one = uses.values[begin];
-        for (end = begin + 1; end < uses.values.size() && uses.values[end].edge == one.edge;)
-            ++end;
-        if (end == begin + 1 || winding.is_edge(one.edge)) continue;
-        for (std::size_t i = begin + 1; i < end; ++i)
-            join(one.item, uses.values[i].item);
-    }
+    parallel_ranges(overlay.node_count(), kChunk, overlay.threads(), progress,
+                    [&](std::size_t first_node, std::size_t end_node) {
+                        for (std::size_t node = first_node; node < end_node; ++node) {
+                            const auto own = uses[node];
+                            for (std::size_t begin = 0, end = 0; begin < own.size(); begin = end) {
+                                for (end = begin + 1;
+                                     end < own.size() && own[end].edge == own[begin].edge;)
+                                    ++end;
+                                if (end == begin + 1 || winding.is_edge(own[begin].edge)) continue;
+                                for (std::size_t i = begin + 1; i < end; ++i)
+                                    join(own[begin].item, own[i].item);
+                            }
+                        }
+                    });
 }
 
 bool CutterSides::join(std::int32_t a, std::int32_t b, bool opposite) {

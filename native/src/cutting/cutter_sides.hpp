@@ -62,7 +62,8 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 
 /// Calls join(one, other) for items that are on the same side: those around a cell that does not
 /// reach the surface, and those that meet at an edge that is none of the surface's. An item is a
-/// region of a face, or, counted after all regions, a face that has none.
+/// region of a face, or, counted after all regions, a face that has none. Several threads call join
+/// at once.
 /// @param reaches  of cells (cells_near_surface)
 void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
                          std::span<const std::uint8_t> reaches, const Progress* progress,

@@ -15,13 +15,8 @@ namespace realmodel::cutting {
 /// other cells, which stay as they are.
 class WholePieces {
 public:
-    /// Calls visit(polygon, piece) for all of them, in the order of the model's faces; caps last.
-    template <class Visit>
-    void each(const Visit& visit) const {
-        for (std::size_t chunk = 0; chunk < chunks(); ++chunk)
-            each_of(chunk, visit);
-    }
-    /// The same in chunks, of which several threads may visit some each.
+    /// In chunks, of which several threads may visit some each: calls visit(polygon, piece) in the
+    /// order of the model's faces; caps last.
     std::size_t chunks() const { return chunks_of(model_.face_count()) + chunks_of(cap_count()); }
     template <class Visit>
     void each_of(std::size_t chunk, const Visit& visit) const;

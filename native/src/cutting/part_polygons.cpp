@@ -320,7 +320,7 @@ std::vector<std::size_t> way_back(std::span<const EdgeOfPiece> uses) {
 std::vector<std::array<NodeId, 2>> PartRounding::touching_edges() const {
     std::vector<std::int32_t> parts(half_cells_.size());
     std::iota(parts.begin(), parts.end(), 0);
-    std::vector<std::vector<std::array<NodeId, 2>>> of_parts(parts.size());
+    std::vector<std::vector<std::uint64_t>> of_parts(parts.size());
     each_of_parts(parts, [&](std::size_t part, Memory& memory) {
         auto& uses = memory.uses;
         uses.clear();
@@ -329,7 +329,7 @@ std::vector<std::array<NodeId, 2>> PartRounding::touching_edges() const {
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 const NodeId a = nodes[i], b = nodes[i + 1 < nodes.size() ? i + 1 : 0];
                 if (is_near_[index(a)] != 0 && is_near_[index(b)] != 0)
-                    uses.push_back(unordered(a, b));
+                    uses.push_back(number_of(unordered(a, b)));
             }
         }
         std::sort(uses.begin(), uses.end());
@@ -339,7 +339,7 @@ std::vector<std::array<NodeId, 2>> PartRounding::touching_edges() const {
     });
     std::vector<std::array<NodeId, 2>> found;
     for (const auto& own : of_parts)
-        found.insert(found.end(), own.begin(), own.end());
+        std::ranges::transform(own, std::back_inserter(found), edge_of);
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;

@@ -233,7 +233,7 @@ std::optional<PartRounding::Around> PartRounding::around(std::span<const std::in
         ++found.count;
         const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
+            uses.push_back(number_of(unordered(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0])));
             found.box.include(at(loop[k]));
         }
     }

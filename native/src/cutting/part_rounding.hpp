@@ -65,8 +65,15 @@ private:
         std::vector<Face> faces;
         std::vector<NodeId> nodes, sorted;  ///< of all, the latter of each in order
         std::vector<std::uint8_t> is_repeated;
-        std::vector<std::array<NodeId, 2>> uses;
+        std::vector<std::uint64_t> uses;  ///< of edges
     };
+    /// An edge as one number: these are sorted sooner.
+    static std::uint64_t number_of(const std::array<NodeId, 2>& edge) {
+        return static_cast<std::uint64_t>(edge[0]) << 32 | static_cast<std::uint64_t>(edge[1]);
+    }
+    static std::array<NodeId, 2> edge_of(std::uint64_t number) {
+        return {static_cast<NodeId>(number >> 32), static_cast<NodeId>(number & UINT32_MAX)};
+    }
     std::optional<Around> around(std::span<const std::int32_t> pieces, std::int32_t part,
                                  Memory& memory) const;
     std::optional<Around> around(std::int32_t part, Memory& memory) const;

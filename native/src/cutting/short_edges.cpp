@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes of joined models that are as near as rounding become one.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
 #include <unordered_map>
 
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "cutting/part_rounding.hpp"
 
@@ -16,36 +18,91 @@ namespace realmodel::cutting {
 /// either end. The others stay as they are.
 class PartRounding::ShortEdges {
 public:
-    ShortEdges(PartRounding& of, double allowed) : of_(of), allowed_(allowed) {
+    using Edge = std::array<NodeId, 2>;
+
+    ShortEdges(PartRounding& of, double allowed, const std::set<Edge>& edges)
+        : of_(of), allowed_(allowed) {
         pieces_at_ = bucketize<std::int32_t>(of.becomes_.size(), [&of](const auto& put) {
             for (std::size_t p = 0; p < of.pieces_.size(); ++p) {
                 for (const NodeId node : of.pieces_.polygons[p])
                     put(index(node), static_cast<std::int32_t>(p));
             }
         });
+        find_rounds(edges);
     }
 
-    /// Finds on all threads what parts around edges are like now.
-    void look_at(const std::set<std::array<NodeId, 2>>& edges) {
-        std::vector<std::int32_t> parts;
-        for (const auto& edge : edges) {
-            for (const std::int32_t p : pieces_at_[index(edge[1])]) {
+    /// @return whether any was contracted
+    bool contract_all() {
+        std::atomic<bool> any = false;
+        for (const std::vector<Edge>& round : rounds_) {
+            constexpr std::size_t kAtOnce = 1 << 3;
+            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, of_.threads_, of_.progress_,
+                             [&] {
+                                 return [&, memory = Memory()](std::size_t chunk) mutable {
+                                     const std::size_t begin = chunk * kAtOnce;
+                                     for (const Edge& edge : std::span(round).subspan(
+                                              begin, std::min(kAtOnce, round.size() - begin))) {
+                                         if (contract(edge, memory)) any = true;
+                                     }
+                                 };
+                             },
+                             0.01);
+        }
+        return any;
+    }
+
+private:
+    static constexpr std::size_t kMany = 200;
+
+    /// Divides the edges into rounds. Two of one round have no part in common around them, nor
+    /// around what their nodes may become one with; of others the first comes in an earlier round.
+    void find_rounds(const std::set<Edge>& edges) {
+        std::vector<NodeId> nodes;
+        for (const Edge& edge : edges)
+            nodes.insert(nodes.end(), edge.begin(), edge.end());
+        std::ranges::sort(nodes);
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        const auto number = [&nodes](NodeId node) {
+            return static_cast<std::int32_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+        };
+        DisjointSets clusters(nodes.size());
+        for (const Edge& edge : edges)
+            clusters.join(number(edge[0]), number(edge[1]));
+        std::vector<std::vector<std::int32_t>> parts(nodes.size());  // around each cluster
+        for (const NodeId node : nodes) {
+            auto& around = parts[index(clusters.find(number(node)))];
+            for (const std::int32_t p : pieces_at_[index(node)]) {
                 for (const std::int32_t part : of_.pieces_[index(p)].parts) {
-                    if (part >= 0) parts.push_back(part);
+                    if (part >= 0) around.push_back(part);
                 }
             }
+            nodes_[node] = {node};
         }
-        std::ranges::sort(parts);
-        parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-        std::vector<std::optional<Around>> found(parts.size());
-        of_.each_of_parts(
-            parts, [&](std::size_t i, Memory& memory) { found[i] = of_.around(parts[i], memory); });
-        for (std::size_t i = 0; i < parts.size(); ++i)
-            now_.emplace(parts[i], found[i]);
+        for (auto& around : parts) {
+            std::ranges::sort(around);
+            around.erase(std::unique(around.begin(), around.end()), around.end());
+            for (const std::int32_t part : around)
+                now_.try_emplace(part);
+        }
+        std::vector<std::size_t> rounds(of_.half_cells_.size(), 0);  // of a part's edges
+        for (const Edge& edge : edges) {
+            const auto& around = parts[index(clusters.find(number(edge[0])))];
+            std::size_t round = 0;
+            for (const std::int32_t part : around)
+                round = std::max(round, rounds[index(part)]);
+            for (const std::int32_t part : around)
+                rounds[index(part)] = round + 1;
+            if (rounds_.size() <= round) rounds_.resize(round + 1);
+            rounds_[round].push_back(edge);
+        }
     }
 
-    /// Makes the greater node the lesser one where no part comes to touch itself for it.
-    bool contract(NodeId to, NodeId from) {
+    /// Makes the greater of the nodes that its ends became the lesser one where no part comes to
+    /// touch itself for it.
+    bool contract(const Edge& edge, Memory& memory) {
+        const NodeId a = of_.becomes_[index(edge[0])], b = of_.becomes_[index(edge[1])];
+        const NodeId to = std::min(a, b), from = std::max(a, b);
+        if (a == b || !of_.is_new(from) || of_.leaves_wall(from, to)) return false;
         std::map<std::int32_t, std::optional<Around>> after;
         for (const NodeId node : nodes_of(from)) {
             for (const std::int32_t p : pieces_at_[index(node)]) {
@@ -54,24 +111,22 @@ public:
                 }
             }
         }
-        if (std::ranges::any_of(after, [this](const auto& own) { return !now(own.first); }))
+        if (std::ranges::any_of(after, [&](const auto& own) { return !now(own.first, memory); }))
             return false;
         for (auto& [part, found] : after) {
-            found = contracted(part, to, from);
-            if (!found || found->touches > now(part)->touches) return false;
+            found = contracted(part, to, from, memory);
+            if (!found || found->touches > now(part, memory)->touches) return false;
         }
         become(from, to);
-        auto& nodes = nodes_[to] = nodes_of(to);
-        const std::vector<NodeId> added = nodes_of(from);
+        auto& nodes = nodes_.at(to);
+        auto& added = nodes_.at(from);
         nodes.insert(nodes.end(), added.begin(), added.end());
-        nodes_.erase(from);
+        added.clear();
         for (auto& [part, found] : after)
-            now_[part] = found;
+            now_.at(part) = found;
+        of_.on_wall_[index(to)] |= of_.on_wall_[index(from)];
         return true;
     }
-
-private:
-    static constexpr std::size_t kMany = 200;
 
     /// The nodes that became one.
     std::vector<NodeId> nodes_of(NodeId node) const {
@@ -83,28 +138,28 @@ private:
             of_.becomes_[index(node)] = to;
     }
     /// What a part is like now.
-    const std::optional<Around>& now(std::int32_t part) {
-        const auto [at, is_new] = now_.try_emplace(part);
-        if (is_new) at->second = of_.around(part, memory_);
-        return at->second;
+    const std::optional<Around>& now(std::int32_t part, Memory& memory) {
+        auto& known = now_.at(part);
+        if (!known) known.emplace(of_.around(part, memory));
+        return *known;
     }
     /// What a part, which is sound, would be like.
-    std::optional<Around> contracted(std::int32_t part, NodeId to, NodeId from) {
+    std::optional<Around> contracted(std::int32_t part, NodeId to, NodeId from, Memory& memory) {
         if (of_.pieces_of_[index(part)].size() > kMany) {
             const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
-            const auto before = of_.around(pieces, part, memory_);
+            const auto before = of_.around(pieces, part, memory);
             become(from, to);
-            const auto found = of_.around(pieces, part, memory_);
+            const auto found = of_.around(pieces, part, memory);
             become(from, from);
             if (!before || !found) return std::nullopt;
-            Around known = *now(part);
+            Around known = *now(part, memory);
             known.touches += found->touches - before->touches;
             known.count += found->count - before->count;
             if (keeps_extent(known.box, found->box))
                 return known.count < 4 ? std::nullopt : std::optional(known);
         }
         become(from, to);
-        auto found = of_.around(part, memory_);
+        auto found = of_.around(part, memory);
         become(from, from);
         return found;
     }
@@ -146,9 +201,10 @@ private:
     PartRounding& of_;
     double allowed_;
     Buckets<std::int32_t> pieces_at_;  ///< of nodes
-    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;
-    std::unordered_map<std::int32_t, std::optional<Around>> now_;  ///< of parts
-    Memory memory_;
+    std::vector<std::vector<Edge>> rounds_;
+    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;  ///< that became one, of ends of edges
+    /// What the parts around are like: nothing where nobody has asked yet.
+    std::unordered_map<std::int32_t, std::optional<std::optional<Around>>> now_;
 };
 
 /// Whether a node on a wall would go off it, if it moved to another one: near 0 on an axis walls
@@ -189,18 +245,7 @@ bool PartRounding::join_short_edges() {
     for (const auto& chunk : found)
         edges.insert(chunk.begin(), chunk.end());
     if (edges.empty()) return false;
-    ShortEdges short_edges(*this, allowed);
-    short_edges.look_at(edges);
-    bool any = false;
-    for (const auto& edge : edges) {
-        const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
-        const NodeId to = std::min(a, b), from = std::max(a, b);
-        if (a == b || !is_new(from) || leaves_wall(from, to)) continue;
-        if (!short_edges.contract(to, from)) continue;
-        any = true;
-        on_wall_[index(to)] |= on_wall_[index(from)];
-    }
-    return any;
+    return ShortEdges(*this, allowed, edges).contract_all();
 }
 
 }  // namespace realmodel::cutting

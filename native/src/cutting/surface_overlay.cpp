@@ -53,15 +53,10 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 
 }  // namespace
 
-/// A point that was found near p in floating point, if it is indeed as near.
-std::optional<SpacePointId> SurfaceOverlay::confirmed(SpacePointId found, const Position& p) const {
-    if (!is_within(p, points_.rounded(found), tolerance_of(p), 3)) return std::nullopt;
-    return found;
-}
-
-/// The point of an edge of the surface that a vertex is at but for its rounding.
-std::optional<SpacePointId> SurfaceOverlay::point_on_edge(const Position& p, const Position& a,
-                                                          const Position& b) {
+/// Where on an edge of the surface a vertex may be but for its rounding.
+std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_on_edge(const Position& p,
+                                                                   const Position& a,
+                                                                   const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
     const Position tolerance = tolerance_of(p);
@@ -82,12 +77,11 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_edge(const Position& p, con
     }
     const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
     if (from > to || !(share > 0 && share < 1)) return std::nullopt;
-    const std::array of{points_.add(p), points_.add(a), points_.add(b)};  // in this order
-    return confirmed(points_.projected(axis, of[0], of[1], of[2]), p);
+    return Place{2, axis, {a, b}};
 }
 
-/// The point within a triangle of the surface that a vertex is at but for its rounding.
-std::optional<SpacePointId> SurfaceOverlay::point_in_triangle(
+/// The same within a triangle of the surface.
+std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_in_triangle(
     const Position& p, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
     const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
@@ -105,14 +99,12 @@ std::optional<SpacePointId> SurfaceOverlay::point_in_triangle(
         if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
             return std::nullopt;
     }
-    const std::array of{points_.add(p), points_.add(corners[0]), points_.add(corners[1]),
-                        points_.add(corners[2])};  // in this order
-    return confirmed(points_.projected(axis, of[0], of[1], of[2], of[3]), p);
+    return Place{3, axis, corners};
 }
 
-/// The point of the surface that a vertex is at but for its rounding; none where it is elsewhere.
-/// Corners of the surface come first, then its edges, then its triangles.
-std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) {
+/// Where on the surface a vertex may be but for its rounding: at a corner, or on edges, then in
+/// triangles.
+std::vector<SurfaceOverlay::Place> SurfaceOverlay::places_on_surface(const Position& p) const {
     Box box;
     box.include(p);
     std::vector<std::int32_t> near;
@@ -120,17 +112,35 @@ std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) 
     std::sort(near.begin(), near.end());
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (is_within(p, corner(t, i), tolerance_of(p), 1)) return points_.add(corner(t, i));
+            if (is_within(p, corner(t, i), tolerance_of(p), 1)) return {{1, 0, {corner(t, i)}}};
         }
     }
+    std::vector<Place> places;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (const auto found = point_on_edge(p, corner(t, i), corner(t, i + 1))) return found;
+            if (const auto found = place_on_edge(p, corner(t, i), corner(t, i + 1)))
+                places.push_back(*found);
         }
     }
     for (const std::int32_t t : near) {
-        if (const auto found = point_in_triangle(p, {corner(t, 0), corner(t, 1), corner(t, 2)}))
-            return found;
+        if (const auto found = place_in_triangle(p, {corner(t, 0), corner(t, 1), corner(t, 2)}))
+            places.push_back(*found);
+    }
+    return places;
+}
+
+/// The first of the places of a vertex that is indeed as near; none where it is elsewhere.
+std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p,
+                                                             std::span<const Place> places) {
+    for (const Place& place : places) {
+        const auto& [count, axis, corners] = place;
+        if (count == 1) return points_.add(corners[0]);
+        std::array<SpacePointId, 4> of{points_.add(p)};
+        for (std::size_t i = 0; i < count; ++i)
+            of[i + 1] = points_.add(corners[i]);
+        const SpacePointId found = count == 2 ? points_.projected(axis, of[0], of[1], of[2])
+                                              : points_.projected(axis, of[0], of[1], of[2], of[3]);
+        if (is_within(p, points_.rounded(found), tolerance_of(p), 3)) return found;
     }
     return std::nullopt;
 }
@@ -152,23 +162,19 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     };
     for (const NodeId v : vertices)
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
-    // only where a triangle of the surface is near
-    std::vector<std::uint8_t> has_near(vertices.size(), 0);
+    std::vector<std::vector<Place>> places(vertices.size());
     parallel_ranges(
         vertices.size(), 1 << 10, threads_, progress_,
         [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                Box box;
-                box.include(model_.vertex(vertices[i]));
-                tree_->find(box, [&](std::int32_t) { has_near[i] = 1; });
-            }
+            for (std::size_t i = begin; i < end; ++i)
+                places[i] = places_on_surface(model_.vertex(vertices[i]));
         },
         0.02);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (has_near[i] == 0) continue;
+        if (places[i].empty()) continue;
         poll(progress_, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
-        const auto found = point_on_surface(model_.vertex(vertices[i]));
+        const auto found = point_on_surface(model_.vertex(vertices[i]), places[i]);
         if (!found || *found == point || is_taken(*found) != 0) continue;
         is_taken(point) = 0;
         is_taken(*found) = 1;

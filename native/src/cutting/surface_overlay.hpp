@@ -100,6 +100,13 @@ private:
         void add(const FaceParts& other);
     };
 
+    /// A corner of the surface, the line of an edge or the plane of a triangle, by as many corners.
+    /// A vertex near it is moved along `axis` into the plane; on the line it keeps that coordinate.
+    struct Place {
+        std::size_t count, axis;
+        std::array<Position, 3> corners;
+    };
+
     std::size_t of_triangles() const { return arrangement_.regions().size(); }
     /// Whether a region is a polygon beside the surface; these come last.
     bool is_beside(std::size_t region) const { return region >= of_triangles(); }
@@ -121,12 +128,12 @@ private:
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
-    std::optional<SpacePointId> confirmed(SpacePointId found, const Position& p) const;
-    std::optional<SpacePointId> point_on_edge(const Position& p, const Position& a,
+    static std::optional<Place> place_on_edge(const Position& p, const Position& a,
                                               const Position& b);
-    std::optional<SpacePointId> point_in_triangle(const Position& p,
+    static std::optional<Place> place_in_triangle(const Position& p,
                                                   const std::array<Position, 3>& corners);
-    std::optional<SpacePointId> point_on_surface(const Position& p);
+    std::vector<Place> places_on_surface(const Position& p) const;
+    std::optional<SpacePointId> point_on_surface(const Position& p, std::span<const Place> places);
     void add_triangles();
     void overlay_all();
     void name_nodes();

@@ -34,12 +34,19 @@ int finest_exponent(double value, int exponent) {
 }
 
 mpz_class whole_number(double value, int exponent) {
-    int own = 0;
-    const std::int64_t mantissa = odd_mantissa(value, own);
-    mpz_class result = whole_number_of(static_cast<std::uint64_t>(std::abs(mantissa)));
-    if (mantissa < 0) mpz_neg(result.get_mpz_t(), result.get_mpz_t());
-    if (mantissa != 0 && own > exponent) result <<= static_cast<unsigned>(own - exponent);
+    int own = exponent;
+    mpz_class result = whole_number_of(Int128{odd_mantissa(value, own)});
+    if (own > exponent) result <<= static_cast<unsigned>(own - exponent);
     return result;
+}
+
+mpz_class whole_difference(double p, double q, int exponent) {
+    constexpr int kMost = 126 - 53;  // so that neither has more than 126 bits
+    int of_p = exponent, of_q = exponent;
+    const Int128 from = odd_mantissa(p, of_p), to = odd_mantissa(q, of_q);
+    if (std::max(of_p, of_q) - exponent > kMost)
+        return whole_number(p, exponent) - whole_number(q, exponent);
+    return whole_number_of((from << (of_p - exponent)) - (to << (of_q - exponent)));
 }
 
 double nearest_double(mpz_class num, mpz_class den, int exponent) {

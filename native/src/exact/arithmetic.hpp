@@ -11,6 +11,8 @@ namespace realmodel::exact {
 
 /// A double as a whole multiple of 2^exponent, which it must be.
 mpz_class whole_number(double value, int exponent);
+/// p - q in units of 2^exponent, of which both must be whole multiples.
+mpz_class whole_difference(double p, double q, int exponent);
 
 /// num / den * 2^exponent as the nearest double, ties to even.
 double nearest_double(mpz_class num, mpz_class den, int exponent);
@@ -22,16 +24,13 @@ int finest_exponent(double value, int exponent);
 struct IntegerArithmetic {
     const PlanArrangement& g;
     mpz_class dx(VertexId v, VertexId o) const {
-        return whole_number(g.point(v).x, g.plan_exponent()) -
-               whole_number(g.point(o).x, g.plan_exponent());
+        return whole_difference(g.point(v).x, g.point(o).x, g.plan_exponent());
     }
     mpz_class dy(VertexId v, VertexId o) const {
-        return whole_number(g.point(v).y, g.plan_exponent()) -
-               whole_number(g.point(o).y, g.plan_exponent());
+        return whole_difference(g.point(v).y, g.point(o).y, g.plan_exponent());
     }
     mpz_class dz(SpaceId s, SpaceId t) const {
-        return whole_number(g.space(s).z, g.height_exponent()) -
-               whole_number(g.space(t).z, g.height_exponent());
+        return whole_difference(g.space(s).z, g.space(t).z, g.height_exponent());
     }
     mpz_class plan(double value) const { return whole_number(value, g.plan_exponent()); }
     mpz_class height(double value) const { return whole_number(value, g.height_exponent()); }

@@ -174,7 +174,7 @@ private:
             if constexpr (std::is_same_v<Integer, Int126>) {
                 result[k] = Int126::difference(p[k], q[k], std::ldexp(1.0, -unit_));
             } else {
-                if (p[k] != q[k]) result[k] = whole_number(p[k], unit_) - whole_number(q[k], unit_);
+                if (p[k] != q[k]) result[k] = whole_difference(p[k], q[k], unit_);
             }
         }
         return result;

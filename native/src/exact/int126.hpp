@@ -3,6 +3,7 @@
 
 #include <gmpxx.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,12 +15,14 @@ namespace realmodel::exact {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
-/// A number of 64 bits as GMP's, whose own constructors take a `long`: on Windows 32 bits.
-inline mpz_class whole_number_of(std::uint64_t number) {
-    if constexpr (sizeof(unsigned long) == sizeof number)
-        return mpz_class(static_cast<unsigned long>(number));
+/// A number as GMP's, whose own constructors take a `long`: on Windows 32 bits.
+inline mpz_class whole_number_of(Int128 number) {
+    const UInt128 size = number < 0 ? -static_cast<UInt128>(number) : static_cast<UInt128>(number);
+    const std::array words{static_cast<std::uint64_t>(size),
+                           static_cast<std::uint64_t>(size >> 64)};
     mpz_class result;
-    mpz_import(result.get_mpz_t(), 1, -1, sizeof number, 0, 0, &number);
+    mpz_import(result.get_mpz_t(), words[1] == 0 ? 1 : 2, -1, sizeof words[0], 0, 0, words.data());
+    if (number < 0) mpz_neg(result.get_mpz_t(), result.get_mpz_t());
     return result;
 }
 
@@ -43,14 +46,7 @@ public:
 
     friend bool is_known(const Int126& a) { return a.bits_ <= kMostBits; }
     friend int sign_of(const Int126& a) { return a.value_ > 0 ? 1 : (a.value_ < 0 ? -1 : 0); }
-    mpz_class to_mpz() const {
-        const UInt128 size =
-            value_ < 0 ? -static_cast<UInt128>(value_) : static_cast<UInt128>(value_);
-        mpz_class result = whole_number_of(static_cast<std::uint64_t>(size >> 64));
-        result <<= 64;
-        result += whole_number_of(static_cast<std::uint64_t>(size));
-        return value_ < 0 ? mpz_class(-result) : result;
-    }
+    mpz_class to_mpz() const { return whole_number_of(value_); }
 
     friend Int126 operator-(const Int126& a) { return {-a.value_, a.bits_}; }
     friend Int126 operator+(const Int126& a, const Int126& b) {

@@ -15,9 +15,7 @@ int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b,
     int unit = 0;
     for (const auto& p : {a, b, c})
         unit = finest_exponent(p[1], finest_exponent(p[0], unit));
-    const auto d = [&](double p, double q) {
-        return mpz_class(whole_number(p, unit) - whole_number(q, unit));
-    };
+    const auto d = [&](double p, double q) { return whole_difference(p, q, unit); };
     return sgn(mpz_class(d(b[0], a[0]) * d(c[1], a[1]) - d(b[1], a[1]) * d(c[0], a[0])));
 }
 

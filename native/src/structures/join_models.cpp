@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
+#include "cutting/chunked_complex.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/nearest_side.hpp"
@@ -35,7 +37,7 @@ Box box_of(const ComplexView& model) {
 /// Cells of several models with the vertices that they share once.
 struct Together {
     std::vector<Position> vertices;
-    std::vector<std::int64_t> face_offsets{0};
+    std::vector<std::int64_t> face_offsets;
     std::vector<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
     std::vector<std::int32_t> model_of_cell;
     std::vector<std::uint8_t> is_near;  ///< of cells
@@ -43,8 +45,8 @@ struct Together {
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
-    void reserve(std::span<const PartModel> models);
-    void add(const ComplexView& model, std::int32_t number, std::span<const Place> places);
+    Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
+             int threads, const Progress* progress);
     void share_vertices(int threads, const Progress* progress);
     ComplexView view() const {
         return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
@@ -59,56 +61,77 @@ struct Together {
     }
 };
 
-void Together::reserve(std::span<const PartModel> models) {
-    std::size_t positions = 0, faces = 0, corners = 0, cells = 0;
+/// @param places  of the cells of each model
+Together::Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
+                   int threads, const Progress* progress) {
+    // the cells and faces of each model that are wanted: how many, then how many before
+    std::vector<std::size_t> positions, cells(models.size()), faces(models.size()),
+        corners(models.size());
+    const auto is_wanted = [&](std::size_t m, std::int32_t cell) {
+        return cell >= 0 && places[m][index(cell)] != Place::kElsewhere;
+    };
+    const auto each_face = [&](std::size_t m, const auto& visit) {
+        const ComplexView& model = models[m].model;
+        for (std::size_t f = 0; f < model.face_count(); ++f) {
+            const std::array wanted{is_wanted(m, model.cell(f, 0)), is_wanted(m, model.cell(f, 1))};
+            if (wanted[0] || wanted[1]) visit(f, wanted);
+        }
+    };
     for (const PartModel& own : models) {
-        positions += own.model.vertex_count();
-        faces += own.model.face_count();
-        corners += own.model.face_vertices.size();
-        cells += own.model.cell_count();
+        positions.push_back(own.model.vertex_count());
+        blocks = std::max(blocks, own.model.blocks);
+        surfaces = std::max(surfaces, own.model.surfaces);
+        if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
     }
-    vertices.reserve(positions);
-    face_offsets.reserve(faces + 1);
-    face_vertices.reserve(corners);
-    face_cells.reserve(2 * faces);
-    face_surface.reserve(faces);
-    for (auto* of_cells : {&cell_block, &model_of_cell})
-        of_cells->reserve(cells);
-    is_near.reserve(cells);
-}
-
-void Together::add(const ComplexView& model, std::int32_t number, std::span<const Place> places) {
-    const auto first_vertex = checked_number(vertices.size() + model.vertex_count(), "vertices") -
-                              static_cast<std::int32_t>(model.vertex_count());
-    std::vector<std::int32_t> cell(model.cell_count(), -1);
-    for (std::size_t c = 0; c < cell.size(); ++c) {
-        if (places[c] == Place::kElsewhere) continue;
-        cell[c] = checked_number(cell_block.size(), "cells");
-        cell_block.push_back(model.cell_block[c]);
-        model_of_cell.push_back(number);
-        is_near.push_back(places[c] == Place::kNear ? 1 : 0);
-    }
-    for (std::size_t v = 0; v < model.vertex_count(); ++v)
-        vertices.push_back(model.vertex(static_cast<std::int32_t>(v)));
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        std::array<std::int32_t, 2> own{-1, -1};
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (model.cell(f, k) >= 0) own[k] = cell[index(model.cell(f, k))];
+    parallel_chunks(models.size(), threads, progress, [&](std::size_t m) {
+        cells[m] = places[m].size() -
+                   static_cast<std::size_t>(std::ranges::count(places[m], Place::kElsewhere));
+        std::size_t own_faces = 0, own_corners = 0;
+        each_face(m, [&](std::size_t f, const auto&) {
+            ++own_faces;
+            own_corners += models[m].model.face(f).size();
+        });
+        faces[m] = own_faces;
+        corners[m] = own_corners;
+    });
+    vertices.resize(count_before(positions));
+    cell_block.resize(count_before(cells));
+    checked_number(vertices.size(), "vertices");
+    checked_number(cell_block.size(), "cells");
+    model_of_cell.resize(cell_block.size());
+    is_near.resize(cell_block.size());
+    face_surface.resize(count_before(faces));
+    face_cells.resize(2 * face_surface.size());
+    face_vertices.resize(count_before(corners));
+    face_offsets.resize(face_surface.size() + 1);
+    face_offsets.back() = static_cast<std::int64_t>(face_vertices.size());
+    parallel_chunks(models.size(), threads, progress, [&](std::size_t m) {
+        const ComplexView& model = models[m].model;
+        std::vector<std::int32_t> number(model.cell_count(), -1);
+        std::size_t cell = cells[m], face = faces[m], corner = corners[m];
+        for (std::size_t c = 0; c < number.size(); ++c) {
+            if (places[m][c] == Place::kElsewhere) continue;
+            number[c] = static_cast<std::int32_t>(cell);
+            cell_block[cell] = model.cell_block[c];
+            model_of_cell[cell] = static_cast<std::int32_t>(m);
+            is_near[cell++] = places[m][c] == Place::kNear ? 1 : 0;
         }
-        if (own[0] < 0 && own[1] < 0) continue;
-        const auto corners = model.face(f);
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            face_vertices.push_back(first_vertex +
-                                    corners[own[0] >= 0 ? i : corners.size() - 1 - i]);
-        }
-        face_offsets.push_back(static_cast<std::int64_t>(face_vertices.size()));
-        face_cells.push_back(own[0] >= 0 ? own[0] : own[1]);
-        face_cells.push_back(own[0] >= 0 ? own[1] : -1);
-        face_surface.push_back(model.face_surface[f]);
-    }
-    blocks = std::max(blocks, model.blocks);
-    surfaces = std::max(surfaces, model.surfaces);
-    if (model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
+        for (std::size_t v = 0; v < model.vertex_count(); ++v)
+            vertices[positions[m] + v] = model.vertex(static_cast<std::int32_t>(v));
+        each_face(m, [&](std::size_t f, const std::array<bool, 2>& wanted) {
+            const auto own = model.face(f);
+            face_offsets[face] = static_cast<std::int64_t>(corner);
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                face_vertices[corner++] = static_cast<std::int32_t>(positions[m]) +
+                                          own[wanted[0] ? i : own.size() - 1 - i];
+            }
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::size_t which = wanted[0] ? k : 1 - k;
+                face_cells[2 * face + k] = wanted[which] ? number[index(model.cell(f, which))] : -1;
+            }
+            face_surface[face++] = model.face_surface[f];
+        });
+    });
 }
 
 /// Equal positions get one vertex, those that no face has none.
@@ -142,37 +165,37 @@ void begin(Progress* progress, double from, double to, const char* what) {
 /// The faces of what is left of the cells.
 CellComplex assemble(const Together& together, const std::vector<Position>& new_positions,
                      const cutting::WholePieces& pieces, std::span<const cutting::HalfCell> cells,
-                     const Progress* progress) {
+                     int threads, const Progress* progress) {
     CellComplex complex;
     complex.cell_kind = together.cell_kind;
     for (const cutting::HalfCell& cell : cells)
         complex.cell_block.push_back(together.cell_block[index(cell.cell)]);
     const std::size_t own = together.vertices.size();
-    std::vector<std::int32_t> number(own + new_positions.size(), -1);
-    const cutting::Pieces& near = pieces.near();
-    complex.face_offsets.reserve(together.face_surface.size() + near.size() + 1);
-    complex.face_vertices.reserve(together.face_vertices.size() + near.polygons.nodes.size());
-    complex.face_cells.reserve(together.face_surface.size() + near.size());
-    complex.face_surface.reserve(together.face_surface.size() + near.size());
-    complex.face_offsets.push_back(0);
-    std::size_t visited = 0;
-    pieces.each([&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
-        poll(progress, visited++);
-        if (piece.parts[0] < 0 && piece.parts[1] < 0) return;
-        const bool reversed = piece.parts[0] < 0;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const auto node = index(nodes[reversed ? nodes.size() - 1 - i : i]);
-            if (number[node] < 0) {
-                number[node] = static_cast<std::int32_t>(complex.vertices.size());
-                complex.vertices.push_back(node < own ? together.vertices[node]
-                                                      : new_positions[node - own]);
-            }
-            complex.face_vertices.push_back(number[node]);
-        }
-        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
-        complex.face_cells.push_back(reversed ? std::array{piece.parts[1], -1} : piece.parts);
-        complex.face_surface.push_back(piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
-                                                      : together.face_surface[index(piece.face)]);
+    cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(), threads,
+                                    progress);
+    const auto is_left = [](const cutting::Piece& piece) {
+        return piece.parts[0] >= 0 || piece.parts[1] >= 0;
+    };
+    parallel_chunks(pieces.chunks(), threads, progress, [&](std::size_t chunk) {
+        pieces.each_of(chunk,
+                       [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
+                           if (is_left(piece)) chunked.count(chunk, nodes.size());
+                       });
+    });
+    chunked.make_room();
+    parallel_chunks(pieces.chunks(), threads, progress, [&](std::size_t chunk) {
+        cutting::ChunkedComplex::Writer writer(chunked, chunk);
+        pieces.each_of(chunk,
+                       [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
+                           if (!is_left(piece)) return;
+                           writer.write(nodes, piece.parts,
+                                        piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
+                                                       : together.face_surface[index(piece.face)]);
+                       });
+    });
+    chunked.number([&](cutting::NodeId node) {
+        return index(node) < own ? together.vertices[index(node)]
+                                 : new_positions[index(node) - own];
     });
     return complex;
 }
@@ -209,7 +232,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     begin(progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
     joined.complex =
-        assemble(together, overlay.new_positions(), *pieces, made.half_cells, progress);
+        assemble(together, overlay.new_positions(), *pieces, made.half_cells, threads, progress);
     for (const cutting::HalfCell& cell : made.half_cells)
         joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
     joined.complex.volumes =
@@ -255,7 +278,6 @@ std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> s
 
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
                    std::span<const std::uint8_t> acts, int threads, Progress* progress) {
-    Together together;
     Box rock;
     for (const PartModel& own : models) {
         cutting::check_model(own.model);
@@ -264,12 +286,12 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     const StructureSurface surface = structure_surface(structures, rock);
     const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(progress, 0, 0.1, "leaving out what is in other parts");
-    together.reserve(models);
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        together.add(models[m].model, static_cast<std::int32_t>(m),
-                     places_of_cells(models[m].model, models[m].sides, nearest, structures, threads,
-                                     progress));
+    std::vector<std::vector<Place>> places;
+    for (const PartModel& own : models) {
+        places.push_back(
+            places_of_cells(own.model, own.sides, nearest, structures, threads, progress));
     }
+    Together together(models, places, threads, progress);
     together.share_vertices(threads, progress);
     if (auto joined = join(together, surface, models, structures, acts, threads, progress))
         return *std::move(joined);

@@ -144,8 +144,7 @@ void StructureSides::join_sectors(const Progress* progress) {
         if (item >= overlay_.size() || !overlay_.of_cutter(item)) return use.item;
         return static_cast<std::int32_t>(side == 0 ? item : items_ + item);
     };
-    for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
-        poll(progress, e);
+    const auto join_around = [&](std::size_t e) {
         const auto uses = winding_.edge(e);
         const auto& fan = winding_.sectors(e).fan;
         const auto& windings = winding_.sectors(e).windings;
@@ -171,7 +170,12 @@ void StructureSides::join_sectors(const Progress* progress) {
             join_all(b, true);
             join_all((b + 1) % fan.blades(), false);
         }
-    }
+    };
+    parallel_ranges(winding_.edge_count(), 1 << 10, overlay_.threads(), progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t e = begin; e < end; ++e)
+                            join_around(e);
+                    });
 }
 
 void StructureSides::number_parts() {

@@ -110,7 +110,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
         EXPECT_EQ(cells[index(c)].cell, c);
     EXPECT_EQ(whole->near().size(), near.face_count());
     std::size_t f = 0;
-    whole->each([&](std::span<const NodeId> polygon, const Piece& piece) {
+    const auto visit = [&](std::span<const NodeId> polygon, const Piece& piece) {
         ASSERT_LT(f, all.face_count());
         EXPECT_EQ(piece.face, static_cast<std::int32_t>(f));
         std::vector<NodeId> own(polygon.begin(), polygon.end());
@@ -122,7 +122,9 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
         EXPECT_EQ(parts, (std::array{all.cell(f, 0), all.cell(f, 1)}));
         EXPECT_TRUE(std::ranges::equal(own, all.face(f)));
         ++f;
-    });
+    };
+    for (std::size_t chunk = 0; chunk < whole->chunks(); ++chunk)
+        whole->each_of(chunk, visit);
     EXPECT_EQ(f, all.face_count());
 }
 

@@ -44,11 +44,22 @@ TEST(Arithmetic, WholeNumbersAreTheDoublesInUnitsOfTheFinest) {
 TEST(Arithmetic, WholeNumbersOf64BitsAreWhole) {
     EXPECT_EQ(whole_number_of(0), 0);
     EXPECT_EQ(whole_number_of(UINT64_MAX).get_str(), "18446744073709551615");
+    EXPECT_EQ(whole_number_of(-(Int128{1} << 126)).get_str(),
+              "-85070591730234615865843651857942052864");
     EXPECT_EQ(whole_number_of(std::uint64_t{1} << 32).get_str(), "4294967296");
     // more than 32 bits of mantissa, and a negative one
     EXPECT_EQ(whole_number(0x1.fffffffffffffp52, 0).get_str(), "9007199254740991");
     EXPECT_EQ(whole_number(-0x1.0000000000001p52, 0).get_str(), "-4503599627370497");
     EXPECT_EQ(whole_number(-0x1p40, 0).get_str(), "-1099511627776");
+    EXPECT_EQ(whole_number(0, -1000), 0);
+    EXPECT_EQ(whole_difference(1, -0x1p-60, -60).get_str(), "1152921504606846977");
+    EXPECT_EQ(whole_difference(0, 0x1.fffffffffffffp72, 20),
+              -whole_number(0x1.fffffffffffffp72, 20));  // just as wide as is short
+    for (const int wide : {70, 73, 74, 75, 200}) {
+        const double p = std::ldexp(0x1.fffffffffffffp52, wide), q = -std::ldexp(5.0, wide);
+        EXPECT_EQ(whole_difference(p, q, 0), whole_number(p, 0) - whole_number(q, 0));
+        EXPECT_EQ(whole_difference(q, p, 0), whole_number(q, 0) - whole_number(p, 0));
+    }
 }
 
 TEST(Arithmetic, NearestDoubleTiesToEven) {

@@ -60,6 +60,56 @@ TEST(SpacePoints, SignsAreThoseOfRationalPoint) {
     }
 }
 
+/// Walls of several models over the same lines in plan, crossed by a fault: many points lie on one
+/// line though they were not constructed on it.
+TEST(SpacePoints, SignsOfPointsOnUprightWallsAreThoseOfRationalPoints) {
+    std::mt19937_64 random(11);
+    const auto part = [&random] { return static_cast<double>(random() % 1000) / 1000; };
+    const auto sign_in_view = [](const SpacePoints& points, std::size_t axis,
+                                 const std::array<SpacePointId, 3>& of) {
+        const RationalPoint o = points.exact(of[0]);
+        return sgn(cross(minus(points.exact(of[1]), o), minus(points.exact(of[2]), o), axis));
+    };
+    int zeros = 0;
+    for (int round = 0; round < 20; ++round) {
+        SpacePoints points;
+        const auto at = [&points](double x, double y, double z) {
+            return points.add(SpacePosition{x, y, z});
+        };
+        // two planes, of which one leans; all walls are between x = 0.1 and 0.9
+        const std::array<std::array<SpacePointId, 3>, 2> planes{
+            {{at(0.5, -3, -9 + part()), at(0.5 + part() / 9, 3, -9), at(0.5 + part() / 9, 0, 9)},
+             {at(0.4, -3, -9), at(0.4 + part() / 9, 3, -9), at(0.4 + part() / 9, 0, 9)}}};
+        std::array<std::array<double, 2>, 2> ends{{{0.1, part()}, {0.9, part()}}};
+        std::vector<SpacePointId> made;
+        for (const auto& [a, b, c] : planes) {
+            std::vector<SpacePointId> own;
+            for (int i = 0; i < 4; ++i) {
+                const SpacePointId p = at(ends[0][0], ends[0][1], part()),
+                                   q = at(ends[1][0], ends[1][1], part());
+                own.push_back(points.intersection(p, q, a, b, c));
+                made.push_back(p);
+            }
+            // beside the wall
+            own.push_back(points.intersection(at(ends[0][0], ends[0][1], part()),
+                                              at(0.9, 2 + part(), part()), a, b, c));
+            own.push_back(points.intersection(0, own[0], own[4], own[1], a));
+            made.insert(made.end(), own.begin(), own.end());
+        }
+        const auto any = [&] { return made[random() % made.size()]; };
+        for (int i = 0; i < 200; ++i) {
+            const SpacePointId a = any(), b = any(), c = any(), d = any();
+            EXPECT_EQ(orient3d(points, a, b, c, d), sign_of_determinant(points, a, b, c, d));
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const int found = orient2d(points, axis, a, b, c);
+                EXPECT_EQ(found, sign_in_view(points, axis, {a, b, c}));
+                zeros += found == 0 && a != b && a != c && b != c;
+            }
+        }
+    }
+    EXPECT_GT(zeros, 100);
+}
+
 TEST(SpacePoints, EqualPointsHaveOneNumberWhateverTheyWereMadeOf) {
     SpacePoints points;
     const auto at = [&points](double x, double y, double z) {
