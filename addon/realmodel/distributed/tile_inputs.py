@@ -219,8 +219,10 @@ def _joined(surfaces: SurfaceSet, cancel):
 
 
 def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]) -> str:
-    """Of what was read and how it is used: heights follow from that."""
-    digest = hashlib.sha256(repr((frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode())
+    """Of what was read and how it is used: heights follow from that, in one version."""
+    digest = hashlib.sha256(
+        repr((native_module().VERSION, frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode()
+    )
     digest.update(repr((frame.grid.y.tolist(), frame.project)).encode())
     for entry in inputs:
         for array in entry.region or ():
