@@ -3,6 +3,7 @@
 
 import csv
 import json
+import os
 import sys
 
 import numpy as np
@@ -193,3 +194,6 @@ def test_clusters_of_one_machine_stand_beside_each_other():
         addresses = {workers.client.scheduler.address for workers in (one, other)}
         assert len(addresses) == 2
         assert all(address.startswith("tcp://127.0.0.1:") for address in addresses)
+        environments = one.client.run(lambda: dict(os.environ)).values()
+        assert [each["OMP_NUM_THREADS"] for each in environments] == ["1"]
+        assert not any("MALLOC_TRIM_THRESHOLD_" in each for each in environments)
