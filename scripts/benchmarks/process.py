@@ -38,9 +38,9 @@ def resident() -> int:
     return pages * os.sysconf("SC_PAGESIZE")
 
 
-def peak_resident() -> int:
-    """Bytes that this process had in memory at most. (ru_maxrss would count its parent's at the fork too.)"""
-    for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
+def peak_resident(process: int | str = "self") -> int:
+    """Bytes that a process had in memory at most. (ru_maxrss would count its parent's at the fork too.)"""
+    for line in Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines():
         if line.startswith("VmHWM:"):
             return 1024 * int(line.split()[1])
     raise OSError("no VmHWM in /proc/self/status")

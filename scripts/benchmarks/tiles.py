@@ -7,8 +7,10 @@ Processors' seconds are those of all processes; they depend less on what else ru
 
 from __future__ import annotations
 
+import resource
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -67,36 +69,46 @@ def in_tiles(project: str, folder: str, size: float, workers: int, keeps_vtu: bo
     began, before = time.perf_counter(), time.process_time()
     from realmodel.core import load_project
     from realmodel.distributed import build
-    from realmodel.distributed.workers import client_of
 
-    folder = Path(folder)
-    ended = threading.Event()
-    if not keeps_vtu:
-        threading.Thread(target=_delete_vtu, args=(folder / "tiles", ended), daemon=True).start()
-    with client_of(None, workers) as client:
-        tiled = build(load_project(project), folder, (size, size), client)
-        of_workers = list(client.run(_used).values())
-    ended.set()
+    watch = _Watch(None if keeps_vtu else Path(folder) / "tiles")
+    with watch:
+        tiled = build(load_project(project), folder, (size, size), workers=workers)
     if tiled.unequal:
         raise ValueError(f"{tiled.unequal} places on borders differ")
-    lead = time.process_time() - before
+    lead, ended = time.process_time() - before, resource.getrusage(resource.RUSAGE_CHILDREN)
     return {
         "seconds": time.perf_counter() - began,
-        "processor": lead + sum(processor for processor, _ in of_workers),
+        "processor": lead + ended.ru_utime + ended.ru_stime,
         "lead": lead,
-        "worker": max(peak for _, peak in of_workers),
-        "all": peak_resident() + sum(peak for _, peak in of_workers),
+        "worker": max(watch.peaks.values()),
+        "all": peak_resident() + sum(watch.peaks.values()),
         "cells": sum(tile.cells for tile in tiled.tiles),
         "tiles": len(tiled.tiles),
     }
 
 
-def _used() -> tuple[float, int]:
-    """Of a worker: seconds of its processor, and its peak memory."""
-    return time.process_time(), peak_resident()
+class _Watch:
+    """While it lasts: peaks, of each process that this one started the memory at most; and deletes each .vtu
+    in a folder, where there is one."""
 
+    def __init__(self, folder: Path | None):
+        self._folder = folder
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._look, daemon=True)
+        self.peaks: dict[int, int] = {}
 
-def _delete_vtu(folder: Path, ended: threading.Event) -> None:
-    while not ended.wait(_SEEN):
-        for file in folder.glob("*.vtu"):
-            file.unlink()
+    def __enter__(self) -> None:
+        self._thread.start()
+
+    def __exit__(self, *_) -> None:
+        self._ended.set()
+        self._thread.join()
+
+    def _look(self) -> None:
+        while not self._ended.wait(_SEEN):
+            for children in Path("/proc/self/task").glob("*/children"):
+                for process in map(int, children.read_text(encoding="ascii").split()):
+                    with suppress(OSError):  # it has ended
+                        self.peaks[process] = peak_resident(process)
+            for file in self._folder.glob("*.vtu") if self._folder else ():
+                file.unlink()

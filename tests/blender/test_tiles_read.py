@@ -2,6 +2,7 @@
 """A model in tiles comes into Blender: coarse as a whole, or tile by tile."""
 
 import contextlib
+from concurrent.futures import Future
 from unittest import mock
 
 import bpy
@@ -10,21 +11,24 @@ from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import origin, scene
 from realmodel.core import load_project
 from realmodel.distributed import build, tile_folder
+from realmodel.distributed.workers import Workers
 
 
-def in_order(_client, function, shared, tasks, cancel=None):
-    """Tasks in this process, for Blender's Python has no Dask."""
-    for task in tasks:
-        yield task, function(shared, task)
+class NoWorkers(Workers):
+    """This process does all tasks, for Blender's Python has no Dask."""
+
+    def __init__(self):
+        super().__init__(Future())
+
+    def in_any_order(self, *arguments, **options):
+        return super().in_any_order(*arguments, **{**options, "here": True})
 
 
 class Tiles(PanelCase):
     def setUp(self):
         super().setUp()
-        with (
-            mock.patch.object(tile_folder, "client_of", contextlib.nullcontext),
-            mock.patch.object(tile_folder, "in_any_order", in_order),
-        ):
+        nobody = contextlib.nullcontext(NoWorkers())
+        with mock.patch.object(tile_folder, "workers_of", lambda *_: nobody):
             project = load_project(SAMPLES / "two_layers" / "project.toml")
             self.tiled = build(project, self.folder / "tiles", (60, 60))
         self.path = str(self.folder / "tiles" / "tiles.toml")

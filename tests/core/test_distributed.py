@@ -187,9 +187,9 @@ def test_without_dask(monkeypatch, tmp_path):
 
 def test_clusters_of_one_machine_stand_beside_each_other():
     """No port is asked for: a second one would warn of the first one's."""
-    from realmodel.distributed.workers import client_of
+    from realmodel.distributed.workers import workers_of
 
-    with client_of(None, 1) as one, client_of(None, 1) as other:
-        addresses = {client.scheduler.address for client in (one, other)}
+    with workers_of(None, 1) as one, workers_of(None, 1) as other:
+        addresses = {workers.client.scheduler.address for workers in (one, other)}
         assert len(addresses) == 2
         assert all(address.startswith("tcp://127.0.0.1:") for address in addresses)

@@ -124,3 +124,19 @@ def test_a_scheduler_that_goes_away(tmp_path):
         command, capture_output=True, text=True, check=False, timeout=60, env=os.environ | paths
     )
     assert "REFUSED" in done.stdout and "start again" in done.stdout, done.stderr
+
+
+def test_files_are_read_by_workers(client, tmp_path):
+    """And what is wrong with them is told as by this process."""
+    from realmodel.core import InputRefused
+    from realmodel.distributed import build as build_tiles
+
+    project = load_project(PROJECT)
+    (tmp_path / "bad.csv").write_text("x,y,z\n1,2,three\n")
+    project.rocks[0].surfaces[1].points = tmp_path / "bad.csv"
+    with pytest.raises(InputRefused, match=r"bad\.csv.*surface 'ground'") as told:
+        build_tiles(project, tmp_path / "t", (35, 30), client)
+    with pytest.raises(InputRefused) as here:
+        build(project)
+    assert str(told.value) == str(here.value)
+    assert not (tmp_path / "t").exists()

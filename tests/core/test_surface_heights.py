@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, interpolate, load_project
+from realmodel.core import wrong_sides as wrong_side_module
 from realmodel.core.exporters.report import model_report
 from realmodel.core.rules import RULES
 
@@ -201,3 +202,16 @@ def test_a_smooth_surface_that_keeps_off_another():
     assert set(vertices[on_border, 2]) == {6.0}
     told = interpolate(None, wells[:, :2], "parallel", to=(vertices, triangles), thickness=0).z
     assert told == pytest.approx(wells[:, 2], abs=1e-5)
+
+
+def test_each_surface_is_asked_once_for_the_points_of_all_younger_ones(monkeypatch):
+    asked, real = [], wrong_side_module.heights_at
+
+    def counted(work, shape, plan, threads):
+        asked.append(len(plan))
+        return real(work, shape, plan, threads)
+
+    monkeypatch.setattr(wrong_side_module, "heights_at", counted)
+    stack = [Surface(f"s{k}", points=points(*[10 - k] * 4), method="tin", rule="base") for k in range(5)]
+    assert wrong_sides(*stack) == [(f"s{k}", (0, 1, 2, 3)) for k in range(1, 5)]
+    assert asked == [16, 12, 8, 4]

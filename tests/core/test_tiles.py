@@ -7,6 +7,7 @@ import itertools
 import math
 import shutil
 import weakref
+from concurrent.futures import Future
 from types import SimpleNamespace
 
 import numpy as np
@@ -28,6 +29,7 @@ from realmodel.core import (
 from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
+from realmodel.distributed.workers import Workers
 from sample_scripts import SAMPLES
 from stacks.generate import random_stack
 from stacks.judge import volume_allowance
@@ -46,13 +48,18 @@ def one_after_another(monkeypatch):
     _in_this_process(monkeypatch)
 
 
-def _in_this_process(patch):
-    def in_order(_client, function, shared, tasks, cancel=None):
-        for task in tasks:
-            yield task, function(shared, task)
+class NoWorkers(Workers):
+    """This process does all tasks."""
 
-    patch.setattr(tile_folder, "client_of", contextlib.nullcontext)
-    patch.setattr(tile_folder, "in_any_order", in_order)
+    def __init__(self):
+        super().__init__(Future())
+
+    def in_any_order(self, *arguments, **options):
+        return super().in_any_order(*arguments, **{**options, "here": True})
+
+
+def _in_this_process(patch):
+    patch.setattr(tile_folder, "workers_of", lambda *_: contextlib.nullcontext(NoWorkers()))
 
 
 def assert_same_blocks(tiled, whole, allowed=None):
@@ -255,8 +262,8 @@ def test_the_base_must_be_below(tmp_path):
 
 
 def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
-    project, calls = ready(OUTLINE), []
-    real = tile_folder._join
+    project, calls, built = ready(OUTLINE), [], []
+    real, build_one = tile_folder._join, tile_folder._build
 
     def stops(shared, name):
         calls.append(name)
@@ -272,11 +279,16 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
     assert {path.name for path in (tmp_path / "t" / "run").glob("joined-*")} == {
         f"joined-{tile}.json" for tile in ("0000-0000", "0001-0000")
     }
-    left = {path.stem for path in (tmp_path / "t" / "run").glob("built-*.arrays")}
-    assert len(left) == 7 and not left.intersection({"built-0000-0000", "built-0001-0000"})
-    monkeypatch.setattr(tile_folder, "_build", None)  # all are built
+    run = tmp_path / "t" / "run"
+    left = {path.stem for path in run.glob("built-*.arrays")}
+    assert left == {"built-0002-0000", "built-0000-0001", "built-0001-0001", "built-0002-0001"}
+    assert len(list(run.glob("built-*.json"))) == 6  # a tile is joined as soon as those around it are built
+    monkeypatch.setattr(
+        tile_folder, "_build", lambda shared, name: built.append(name) or build_one(shared, name)
+    )
     tiled = build_tiles(project, tmp_path / "t", (40, 40))
     assert len(calls) == 3 + len(tiled.tiles) - 2
+    assert built == [(0, 2), (1, 2), (2, 2)]
     assert_same_blocks(tiled, build(project))
     assert not (tmp_path / "t" / "run").exists()
     monkeypatch.setattr(tile_folder, "_join", None)
@@ -286,7 +298,7 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
 
 def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
     """The lead has none of them while workers are at work."""
-    real, arrays, left = tile_folder._prepared, [], []
+    real, arrays, left = tile_folder.prepared, [], []
 
     def prepared(*arguments):
         made = real(*arguments)
@@ -299,33 +311,32 @@ def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
         return real_build(shared, name)
 
     real_build = tile_folder._build
-    monkeypatch.setattr(tile_folder, "_prepared", prepared)
+    monkeypatch.setattr(tile_folder, "prepared", prepared)
     monkeypatch.setattr(tile_folder, "_build", build_one)
     build_tiles(sample("two_layers"), tmp_path / "t", (37, 23))
     assert arrays and left and not any(left)
 
 
-def test_surfaces_of_files_are_kept_in_files(monkeypatch, tmp_path):
-    """Read or interpolated: the lead has one in memory at a time, and the files are gone at the end."""
+def test_surfaces_are_kept_in_files(monkeypatch, tmp_path):
+    """Read, interpolated or given: one is in memory at a time, and the files are gone at the end."""
     ready_one = sample("two_layers")
     vertices, triangles = build(ready_one).surface(0)
     ready_one.rocks[0].surfaces[0] = Surface("given", vertices, triangles)
     found = []
 
-    def look(rocks, *rest):
-        meshes = [mesh for shapes, region, *_ in rocks for mesh in (*shapes, region) if mesh is not None]
-        found.append([isinstance(each, np.memmap) for mesh in meshes for each in mesh])
+    def look(prepared, *rest):
+        meshes = [mesh for shapes, region, *_ in prepared.rocks for mesh in (*shapes, region) if mesh]
+        found.extend(isinstance(each, np.memmap) for mesh in meshes for each in mesh)
         assert len(list((tmp_path / "t" / "run").glob("inputs-*"))) == 1
-        return real(rocks, *rest)
+        return real(prepared, *rest)
 
-    real = tile_folder.write_parts
-    monkeypatch.setattr(tile_folder, "write_parts", look)
+    real = tile_folder.divided
+    monkeypatch.setattr(tile_folder, "divided", look)
     for project in (sample("haut_barr"), ready_one):
         build_tiles(project, tmp_path / "t", (1e6, 1e6))
+        assert found and all(found)
         assert not list((tmp_path / "t").rglob("inputs-*"))
         shutil.rmtree(tmp_path / "t")
-    assert all(found[0])
-    assert found[1] == [False, False, True, True, True, True]  # what the project has in memory stays there
 
 
 def test_nothing_is_left_of_a_model_that_is_refused(tmp_path):

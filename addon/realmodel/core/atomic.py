@@ -63,7 +63,7 @@ class Outputs:
             raise OutputFailed(f"{target}: this is a file that is read; choose another name")
         if any(target == other for _, other in self._written):
             raise OutputFailed(f"{target}: two outputs have this name")
-        with _explained(target):
+        with explained(target):
             path = self._waiting_folder(target) / target.name
             yield path
             if not path.is_file():
@@ -80,7 +80,7 @@ class Outputs:
         Raises OutputFailed in the place of OSError, and where the target is a folder without `renewed`.
         """
         target = writable_folder(target, renewed)
-        with _explained(target):
+        with explained(target):
             waiting = self._waiting_folder(target)
             path = waiting / target.name
             path.mkdir()
@@ -108,7 +108,7 @@ class Outputs:
         undone: list[tuple[Path | None, Path]] = []  # (what stood there or None, where)
         try:
             for path, target in self._written:
-                with _explained(target):
+                with explained(target):
                     target.parent.mkdir(parents=True, exist_ok=True)
                     before = None
                     if path.is_dir() and target.is_dir():
@@ -146,13 +146,13 @@ def _remove(folders: list[Path]) -> None:
 
 def make_folder(path: str | Path) -> None:
     """Makes a folder where there is none. Raises OutputFailed."""
-    with _explained(path):
+    with explained(path):
         Path(path).mkdir(parents=True, exist_ok=True)
 
 
 def writable_target(target: str | Path) -> Path:
     """The path, links followed, where an output will stand. Raises OutputFailed where it cannot."""
-    with _explained(target):
+    with explained(target):
         resolved = Path(os.path.realpath(target))
         if resolved.is_dir():
             raise OutputFailed(f"{target}: this is a folder; give a file name")
@@ -165,7 +165,7 @@ def writable_target(target: str | Path) -> Path:
 def writable_folder(target: str | Path, renewed: str) -> Path:
     """The path, links followed, where a folder of outputs will stand: a new one, an empty one, or one that
     has the folder `renewed`. Raises OutputFailed where it cannot."""
-    with _explained(target):
+    with explained(target):
         resolved = Path(os.path.realpath(target))
         if resolved.is_dir():
             if any(resolved.iterdir()) and not (resolved / renewed).is_dir():
@@ -185,7 +185,7 @@ def _require_writable(target: str | Path, folder: Path) -> None:
 
 
 @contextmanager
-def _explained(target: str | Path) -> Iterator[None]:
+def explained(target: str | Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:

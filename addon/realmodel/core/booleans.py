@@ -11,7 +11,7 @@ import numpy as np
 
 from .errors import InputRefused, UsageError, place_text
 from .method_options import check_threads
-from .rock_input import checked_triangulation
+from .surface_input import checked_triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
 SURFACES = ("the first surface", "the second surface")  # as refusals name them

@@ -13,9 +13,9 @@ import numpy as np
 from .blocks import count_blocks
 from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
-from .rock_input import checked_triangulation
 from .section import Fence, Section
 from .section_faults import traces_on_fence, traces_on_plane
+from .surface_input import checked_triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -22,36 +23,50 @@ def as_it_is(array: np.ndarray) -> np.ndarray:
 
 
 class MappedArrays:
-    """Keeps arrays in files of a folder of their own as long as the `with` block lasts.
+    """Keeps arrays in files of a folder, which lasts as long as the `with` block. Other processes may keep
+    theirs in the folder, too.
 
     Raises OutputFailed."""
 
     def __init__(self, folder: Path):
-        self._folder = folder
-        self._count = 0
+        self.folder = folder
+        self._files: dict[int, tuple[np.ndarray, Path]] = {}  # by the id of the array
 
     def __enter__(self) -> MappedArrays:
         try:
-            self._folder.mkdir(parents=True)
+            self.folder.mkdir(parents=True)
         except OSError as error:
-            raise OutputFailed(f"{self._folder}: {error.strerror or error}") from error
+            raise OutputFailed(f"{self.folder}: {error.strerror or error}") from error
         return self
 
     def __exit__(self, *_) -> None:
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._files.clear()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def keep(self, array: np.ndarray) -> np.ndarray:
         """The array in a file, read-only; itself where it is in one, or empty."""
-        if isinstance(array, np.memmap) or not array.size:
+        if id(array) in self._files or not array.size:
             return array
-        file = self._folder / f"{self._count}.npy"
-        self._count += 1
+        file = self.folder / f"{secrets.token_hex(8)}.npy"
         try:
             np.save(file, array)
-            return np.load(file, mmap_mode="r")
+            return self.opened(file)
         except OSError as error:
             text = f"{file}: {error.strerror or error}; make room, or choose another folder"
             raise OutputFailed(text) from error
+
+    def place(self, array: np.ndarray) -> Path | np.ndarray:
+        """What tells another process of an array: its file, or itself where it is empty."""
+        kept = self.keep(array)
+        return self._files[id(kept)][1] if kept.size else kept
+
+    def opened(self, place: Path | np.ndarray) -> np.ndarray:
+        """The array that was told of by its place."""
+        if isinstance(place, np.ndarray):
+            return place
+        array = np.load(place, mmap_mode="r")
+        self._files[id(array)] = array, place
+        return array
 
 
 _ALIGNED = 64  # bytes: where an array may begin

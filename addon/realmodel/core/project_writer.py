@@ -20,9 +20,9 @@ from .library import Library, Property
 from .meshers import DEFAULT_MESHER
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
-from .rock_input import checked_triangulation
 from .rules import DEFAULT_RULE
 from .structures.entries import Body, Fault
+from .surface_input import checked_triangulation
 from .units import MODEL_UNIT
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")

@@ -11,18 +11,18 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .distant_points import require_points_near
-from .errors import InputRefused, number_list, place_text
+from .errors import InputRefused, number_list
 from .heights import Interpolation
-from .interpolation import checked_points
 from .mapped_arrays import Keep, as_it_is
 from .mesh_sizes import AUTO
 from .plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
-from .project import Project, Rock, Surface, rock_item, surface_item
-from .readers import Picks, read_boreholes, read_mesh, read_point_file
+from .project import Project, Rock, rock_item
+from .readers import Picks, read_boreholes
 from .readers.text import no_step
 from .structures.rock_structure import RockStructure
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
+from .surface_input import Reader, SurfaceInput, read_each
 from .work import Work, run
 from .wrong_sides import points_too_low
 
@@ -99,45 +99,42 @@ class RockInput:
         )
 
 
-def read_rocks(work: Work, project: Project, keep: Keep = as_it_is) -> list[RockInput]:
+def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
-    in `surfaces` is None. keep: where what a surface's file holds is, once it is read."""
-    total = sum(1 + len(rock.surfaces) for rock in project.rocks)
-    done = 0
-    inputs = []
+    in `surfaces` is None. reader: how surfaces are read."""
+    rocks, warnings, asked = [], [], []
     for rock in project.rocks:
-        rock, warnings = _read_region(work, rock, project.units)
+        rock, told = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
         picks = _read_picks(rock, project.units)
-        warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
-        done += 1
-        surfaces, shapes, faces = [], [], []
+        told += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
         for surface in rock.surfaces:
-            first = done
-
-            def step(share: float, first=first) -> None:
-                work.step((first + share) / total)
-
-            step(0.0)
             met = picks.points.pop(surface.name, None) if surface.interpolated else None
-            has_file = surface.input_file is not None
-            surface, shape, face, told = _read_surface(rock, surface, met, project.units, step)
-            if has_file:
-                surface, shape, face = _kept(surface, shape, face, keep)
-            warnings += [BuildWarning(text, "points", rock.name, surface.name) for text in told]
-            surfaces.append(surface)
-            shapes.append(shape)
-            faces.append(face)
-            done += 1
-        if picks.points:
-            what = (
-                f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
-            )
-            warnings.append(BuildWarning(what, "points", rock.name))
-        rock = replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes)
+            asked.append(SurfaceInput.of(rock, surface, met, project.units))
+        rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes))
+        warnings.append((told, _unnamed(rock, picks)))
+    found = dict(reader(work, asked))
+    inputs, first = [], 0
+    for rock, (told, of_picks) in zip(rocks, warnings, strict=True):
+        own = [found[number] for number in range(first, first + len(rock.surfaces))]
+        first += len(own)
+        told += [
+            BuildWarning(text, "points", rock.name, each.surface.name) for each in own for text in each.told
+        ]
+        told += of_picks
+        rock = replace(rock, surfaces=[each.surface for each in own])
         require_points_near(rock, project.units)
-        inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
+        shapes, faces = [each.shape for each in own], [each.faces for each in own]
+        inputs.append(RockInput(rock, shapes, None, [None] * len(own), faces, told))
     return inputs
+
+
+def _unnamed(rock: Rock, picks: Picks) -> list[BuildWarning]:
+    """What to tell of picks that are left when surfaces have taken theirs."""
+    if not picks.points:
+        return []
+    what = f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
+    return [BuildWarning(what, "points", rock.name)]
 
 
 def with_arrays(project: Project) -> Project:
@@ -158,7 +155,7 @@ def with_arrays(project: Project) -> Project:
             for surface in rock.surfaces:
                 met = picks.points.get(surface.name) if surface.interpolated else None
                 if met is not None:
-                    surface = _read_surface(rock, surface, met, project.units, no_step)[0]
+                    surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
                 surfaces.append(surface)
             rocks.append(replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes))
         return rocks
@@ -202,92 +199,6 @@ def _read_picks(rock: Rock, units: str) -> Picks:
         return read_boreholes(rock.boreholes, units)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
-
-
-def _read_surface(
-    rock: Rock, surface: Surface, met: np.ndarray | None, units: str, step
-) -> tuple[Surface, Triangulation | None, np.ndarray | None, list[str]]:
-    """The surface with arrays in it, its triangulation if it is a ready mesh, the faces of its file, and what
-    there is to tell. met: its points in boreholes."""
-    faces, shape_file = None, surface.input_file or surface.shape_file
-    if shape_file is None and surface.points is None and rock.boreholes is not None:
-        shape_file = rock.boreholes.files[-1]
-    try:
-        if surface.interpolated:
-            points, told = surface.points, []
-            if surface.point_file is not None:
-                points, told = read_point_file(surface.point_file, units, step)
-            if met is not None:
-                own = np.empty((0, 3)) if points is None else checked_points(points)
-                points = np.concatenate([own, met])
-            if points is None and surface.needs_points:
-                raise InputRefused("it has no points, and no borehole has a pick of it", file=shape_file)
-            if points is None or (not len(points) and not surface.needs_points):
-                points = np.empty((0, 3))
-            else:
-                points = checked_points(points)
-            return (
-                replace(
-                    surface,
-                    points=points,
-                    shape_file=shape_file,
-                ),
-                None,
-                None,
-                told,
-            )
-        if surface.mesh is not None:
-            mesh = read_mesh(surface.input_file, step)
-            triangles, faces = mesh.triangles, mesh.face_of_triangle
-            vertices, told = mesh.in_model(surface.mesh_file, units)
-        else:
-            told = []
-            vertices, triangles = checked_triangulation(surface.vertices, surface.triangles)
-    except InputRefused as error:
-        raise error.within(surface_item(rock, surface)) from error
-    surface = replace(
-        surface,
-        vertices=vertices,
-        triangles=triangles,
-        mesh=None,
-        shape_file=shape_file,
-    )
-    return surface, (vertices, triangles), faces, told
-
-
-def _kept(surface: Surface, shape: Triangulation | None, faces: np.ndarray | None, keep: Keep):
-    """What a file of a surface holds, kept in another place."""
-    faces = None if faces is None else keep(faces)
-    if shape is None:
-        return replace(surface, points=keep(surface.points)), None, faces
-    vertices, triangles = map(keep, shape)
-    return replace(surface, vertices=vertices, triangles=triangles), (vertices, triangles), faces
-
-
-def checked_triangulation(vertices, triangles) -> Triangulation:
-    """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
-    try:
-        vertices = np.ascontiguousarray(vertices, np.float64)
-        triangles = np.asarray(triangles)
-    except (TypeError, ValueError) as error:
-        raise InputRefused("vertices or triangles are not an array of numbers") from error
-    if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise InputRefused(f"vertices must be an array (V, 3), not {vertices.shape}")
-    if triangles.size == 0 or triangles.ndim != 2 or triangles.shape[1] != 3:
-        raise InputRefused(f"triangles must be an array (T, 3) with T > 0, not {triangles.shape}")
-    if not np.issubdtype(triangles.dtype, np.integer):
-        raise InputRefused(f"triangles must be whole numbers, not {triangles.dtype}")
-    if triangles.min() < 0 or triangles.max() >= len(vertices):
-        bad = int(np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))[0])
-        raise InputRefused(
-            f"triangle {bad} names vertices {triangles[bad].tolist()}",
-            triangles=(bad,),
-            advice=f"they are numbered from 0 to {len(vertices) - 1}",
-        )
-    if not np.isfinite(vertices).all():
-        bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
-        raise InputRefused(f"vertex {bad} is {place_text(vertices[bad])}, not finite")
-    return vertices, np.ascontiguousarray(triangles, np.int32)
 
 
 def mesh_rock(work: Work, entry: RockInput) -> None:
@@ -349,5 +260,4 @@ def interpolate_rock(
             entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
             entry.interpolations[number] = None
             del entry.told[number]
-    for number in sorted(waiting):
-        entry.warnings += points_too_low(work, entry, number, threads)
+    entry.warnings += points_too_low(work, entry, sorted(waiting), threads)

@@ -20,6 +20,7 @@ from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
 from .structures.parts import Structures, structures_of
 from .structures.reading import read_structures
 from .structures.setup import make_structures
+from .surface_input import Reader, read_each
 from .work import Cancel, Progress, Work, native_module, run
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
@@ -103,11 +104,13 @@ def build_surfaces(
     *,
     stage: int | None = None,
     keep: Keep = as_it_is,
+    reader: Reader = read_each,
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
     Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
-    surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave.
+    surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
+    how surfaces are read.
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
@@ -117,12 +120,14 @@ def build_surfaces(
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(lambda work: _build(work, project, threads, stage, keep), progress, cancel)
+    return run(lambda work: _build(work, project, threads, stage, keep, reader), progress, cancel)
 
 
-def _build(work: Work, project: Project, threads: int, stage: int | None, keep: Keep) -> SurfaceSet:
+def _build(
+    work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader
+) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project, keep)
+        inputs = read_rocks(work, project, reader)
         faults, bodies, told = read_structures(work, project, threads)
         inputs[0].warnings += told
     count = len(inputs)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from .build_warning import BuildWarning
@@ -20,38 +22,58 @@ def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int)
     return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
 
 
-def points_too_low(work: Work, entry, number: int, threads: int) -> list[BuildWarning]:
-    """The points of a surface of a RockInput below what its rule keeps it above, where heights of all older
-    ones are known.
+def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
+    """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
+    where heights of all older ones are known. Each older surface is asked once for the points of all.
 
     A surface that does not cut ends on the top that is there, and any surface on one that protects itself; a
     minimum thickness keeps it above the one before it. What an older surface's points do above a younger
     one is no contradiction: there the younger one ends, or has cut.
     """
-    rock = entry.rock
-    surface = rock.surfaces[number]
-    points = surface.points
-    if number == 0 or points is None or not len(points):
-        return []
-    top, firm = _Floor(len(points)), _Floor(len(points))
-    before = None
-    for older in range(number):
+    surfaces = entry.rock.surfaces
+    beneath = {
+        number: _Beneath(len(surfaces[number].points))
+        for number in numbers
+        if number > 0 and surfaces[number].points is not None and len(surfaces[number].points)
+    }
+    for older in range(max(beneath, default=0)):
+        younger = [number for number in beneath if number > older]
         if entry.surfaces[older] is None:
             continue
-        before = heights_at(work, entry.surfaces[older], points[:, :2], threads)
-        own = _Floor(len(points))
-        own.raise_to(before, older)
-        covered = np.isfinite(before)
-        if not RULES[rock.surfaces[older].rule].cuts:
-            own.raise_to(np.where(covered, top.z, np.nan), top.surface)
-        own.raise_to(np.where(covered, firm.z, np.nan), firm.surface)
-        top.take(own, covered)
-        if RULES[rock.surfaces[older].rule].protects:
-            firm.take(own, covered)
-    floor = firm if RULES[surface.rule].cuts else top
-    if surface.minimum_thickness is not None and entry.surfaces[number - 1] is not None:
-        floor.raise_to(before, number - 1)
-    return listed(rock, number, floor.z - points[:, 2], "below", floor.surface)
+        plan = np.concatenate([surfaces[number].points[:, :2] for number in younger])
+        z = heights_at(work, entry.surfaces[older], plan, threads)
+        ends = np.cumsum([len(surfaces[number].points) for number in younger])
+        for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
+            beneath[number].add(own, older, RULES[surfaces[older].rule])
+    warnings = []
+    for number, found in beneath.items():
+        surface = surfaces[number]
+        floor = found.firm if RULES[surface.rule].cuts else found.top
+        if surface.minimum_thickness is not None and entry.surfaces[number - 1] is not None:
+            floor.raise_to(found.last, number - 1)
+        warnings += listed(entry.rock, number, floor.z - surface.points[:, 2], "below", floor.surface)
+    return warnings
+
+
+class _Beneath:
+    """What there is beneath (N,) points: the top, and what may not be cut; last: the heights of the youngest
+    surface of those that were added, oldest first."""
+
+    def __init__(self, count: int):
+        self.top, self.firm = _Floor(count), _Floor(count)
+        self.last: np.ndarray | None = None
+
+    def add(self, z: np.ndarray, number: int, rule) -> None:
+        own = _Floor(len(z))
+        own.raise_to(z, number)
+        covered = np.isfinite(z)
+        if not rule.cuts:
+            own.raise_to(np.where(covered, self.top.z, np.nan), self.top.surface)
+        own.raise_to(np.where(covered, self.firm.z, np.nan), self.firm.surface)
+        self.top.take(own, covered)
+        if rule.protects:
+            self.firm.take(own, covered)
+        self.last = z
 
 
 class _Floor:

@@ -17,7 +17,7 @@ from ..core.atomic import Outputs
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
-from .workers import client_of, in_any_order
+from .workers import workers_of
 
 _BATCHES = "batches"
 _BUILT = 0.05  # of the time: the model that all realizations start from
@@ -62,8 +62,8 @@ def ensemble(
     done = realizations - sum(map(len, todo))
     if todo:
         realizer.prepare()
-        with client_of(client) as workers:
-            for numbers, sums in in_any_order(workers, _batch, (realizer, points), todo, cancel):
+        with workers_of(client) as workers:
+            for numbers, sums in workers.in_any_order(_batch, (realizer, points), todo, cancel):
                 store.put(numbers, sums)
                 done += len(numbers)
                 told(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")

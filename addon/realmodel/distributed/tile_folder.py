@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import secrets
@@ -11,12 +10,12 @@ import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..core import BuildFailed, BuildWarning, OutputFailed, UsageError, build_surfaces
+from ..core import BuildFailed, BuildWarning, OutputFailed, UsageError
 from ..core.atomic import Outputs
 from ..core.blocks import Block
 from ..core.build_options import check_cells
@@ -24,7 +23,7 @@ from ..core.errors import place_text
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
-from ..core.mapped_arrays import Keep, MappedArrays, read_mapped, write_mapped
+from ..core.mapped_arrays import MappedArrays, read_mapped, write_mapped
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
@@ -40,28 +39,28 @@ from ..core.tiles.borders import (
     with_vertices_of,
 )
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
-from ..core.tiles.grid import checked_size, tile_grid
+from ..core.tiles.grid import checked_size
 from ..core.tiles.settling import BorderVertices, Box, settled
 from ..core.tiles.tile_model import (
     Frame,
+    Name,
     build_tile,
     model_of,
     read_arrays,
     tile_arrays,
-    without_shapes,
     write_model,
-    write_parts,
 )
 from ..core.tiles.tiled_model import file_digest, tiled_model
 from ..core.validation import PLACES_OF_REPORT
-from ..core.work import Work, native_module, run
-from .workers import client_of, in_any_order
+from ..core.work import run
+from .tile_inputs import Prepared, divided, prepared
+from .workers import Workers, no_workers, workers_of
 
 _RUN = "run"  # what only a run needs, in the folder
 _DIGEST = "digest"  # in there: of all that the result depends on
-_PREPARED, _BUILT, _JOINED = 0.25, 0.75, 0.97  # of the time
+_PREPARED, _JOINED = 0.25, 0.97  # of the time
+_BUILT = 0.6  # of the time of a tile
 _LEAST_PLACES = 100  # of a tile that are compared with the closed form
-Name = tuple[int, int]  # column and row of a tile
 
 
 def build(
@@ -70,6 +69,7 @@ def build(
     tile_size: tuple[float, float],
     client=None,
     *,
+    workers: int | None = None,
     cells: str = "columns",
     progress=None,
     cancel=None,
@@ -77,9 +77,9 @@ def build(
     """Builds a model in tiles on workers of Dask, and leaves it in a folder that core.open_tiles opens.
 
     tile_size: width and height in plan, model units; a line between tiles may be off by a sixteenth of this.
-    client: of distributed; None: a LocalCluster with a process for each processor. All workers have to see
-    the folder under the same path. cells: as of core.build. A run that was stopped goes on where it was when
-    it is started again with the same arguments; a folder that is finished is opened.
+    client: of distributed; None: a LocalCluster of so many `workers`, None: one for each processor. All
+    workers have to see the folder under the same path. cells: as of core.build. A run that was stopped goes
+    on where it was when it is started again with the same arguments; a folder that is finished is opened.
 
     Each tile is validated, and its borders compared with its neighbors', before the result is there. Raises
     as core.build; UsageError where Dask is missing, or the folder holds another model; OutputFailed.
@@ -91,44 +91,61 @@ def build(
     folder = Path(folder)
     told = progress or (lambda _share, _text: None)
     _require_own(folder)
-    with _mapped_arrays(folder) as keep:
-        prepared = _prepared(
-            project, size, cells, keep, lambda share, text: told(_PREPARED * share, text), cancel
-        )
-        if (folder / CATALOG).exists():
-            return _finished(folder, prepared.digest)
-        store = _Store(folder, prepared.digest)
-        names = store.write_parts(prepared)
-        prepared = replace(prepared, rocks=[])  # from here on the workers have them
-    with client_of(client) as workers:
-        shared = (store, prepared.frame, frozenset(names))
-        done = sum(store.has("built", name) for name in names)
-        todo = [name for name in names if not store.has("built", name)]
-        for _ in in_any_order(workers, _build, shared, todo, cancel):
-            done += 1
-            share = _PREPARED + (_BUILT - _PREPARED) * done / len(names)
-            told(share, f"{done} of {len(names)} tiles built")
-        done = sum(store.has("joined", name) for name in names)
-        todo = [name for name in names if not store.has("joined", name)]
-        for _ in in_any_order(workers, _join, shared, todo, cancel):
-            done += 1
-            told(_BUILT + (_JOINED - _BUILT) * done / len(names), f"{done} of {len(names)} tiles joined")
-    catalog = _catalog(prepared, store, names)
+    is_finished = (folder / CATALOG).exists()
+    with no_workers() if is_finished else workers_of(client, workers) as done_by:
+        with _mapped_arrays(folder) as arrays:
+            found = prepared(
+                project,
+                size,
+                cells,
+                arrays,
+                done_by,
+                lambda share, text: told(_PREPARED * share, text),
+                cancel,
+            )
+            if is_finished:
+                return _finished(folder, found.digest)
+            store = _Store(folder, found.digest)
+            names = store.divided(found, arrays, done_by, cancel)
+            found = replace(found, rocks=[])  # from here on the workers have them
+        _build_all(store, found.frame, names, done_by, told, cancel)
+    catalog = _catalog(found, store, names)
     write_index(store, [f"{TILES}/{_stem(name)}.vtu" for name in names])
     write_catalog(catalog, folder)
     store.remove()
     return tiled_model(catalog, folder)
 
 
-@dataclass(frozen=True)
-class _Prepared:
-    """frame: what tiles share. rocks: as the stack builder takes them, all of them. blocks: of the whole,
-    empty. digest: of all that the result depends on."""
+def _build_all(store: _Store, frame: Frame, names: list[Name], workers: Workers, told, cancel) -> None:
+    """Builds all tiles, and joins each as soon as those around it are built."""
+    everywhere = frozenset(names)
+    built = {name for name in names if store.has("built", name)}
+    joined = {name for name in names if store.has("joined", name)}
 
-    frame: Frame
-    rocks: list[tuple]
-    warnings: list[BuildWarning]
-    digest: str
+    def following(task: tuple[str, Name]) -> list[tuple[str, Name]]:
+        kind, name = task
+        if kind == "joined":
+            return []
+        near = _around(name, everywhere)
+        return [("joined", other) for other in near if built.issuperset(_around(other, everywhere))]
+
+    tasks = [("built", name) for name in names if name not in built]
+    tasks += [
+        ("joined", name)
+        for name in names
+        if name not in joined and built.issuperset(_around(name, everywhere))
+    ]
+    shared = (store, frame, everywhere)
+    for (kind, name), _ in workers.in_any_order(_step, shared, tasks, cancel, following=following):
+        (built if kind == "built" else joined).add(name)
+        done = (_BUILT * len(built) + (1 - _BUILT) * len(joined)) / len(names)
+        text = f"{len(built)} of {len(names)} tiles built, {len(joined)} joined"
+        told(_PREPARED + (_JOINED - _PREPARED) * done, text)
+
+
+def _step(shared: tuple[_Store, Frame, frozenset], task: tuple[str, Name]) -> None:
+    kind, name = task
+    (_build if kind == "built" else _join)(shared, name)
 
 
 def _require_own(folder: Path) -> None:
@@ -143,7 +160,7 @@ def _require_own(folder: Path) -> None:
 
 
 @contextmanager
-def _mapped_arrays(folder: Path) -> Iterator[Keep]:
+def _mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
     """Where arrays are kept until the tiles have them: on the disk of the result, unless this is finished."""
     if (folder / CATALOG).exists():
         run_folder, made = Path(tempfile.gettempdir()), []
@@ -152,60 +169,11 @@ def _mapped_arrays(folder: Path) -> Iterator[Keep]:
         made = [each for each in (run_folder, folder) if not each.exists()]
     try:
         with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
-            yield arrays.keep
+            yield arrays
     finally:
         for each in made:
             with suppress(OSError):
                 each.rmdir()  # where nothing else came
-
-
-def _prepared(project, size, cells: str, keep: Keep, progress, cancel) -> _Prepared:
-    surfaces = build_surfaces(
-        project, progress=lambda share, text: progress(0.9 * share, text), cancel=cancel, keep=keep
-    )
-    inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
-    rocks = [entry.native() for entry in inputs]
-    joined = run(lambda work: _joined(work, rocks), cancel=cancel)
-    if joined is not None:
-        rocks, text = joined
-        rocks = [_kept(rock, keep) for rock in rocks]
-        warnings.append(BuildWarning(text, "joined"))
-    # surfaces on the region's own mesh end where it ends
-    clips = tuple(
-        region is not None and not all(surface.interpolated for surface in entry.rock.surfaces)
-        for (_, region, _, _), entry in zip(rocks, inputs, strict=True)
-    )
-    meshes = [vertices for shapes, *_ in rocks for vertices, _ in shapes]
-    meshes += [rocks[r][1][0] for r in np.flatnonzero(clips)]
-    grid = tile_grid(meshes, size)
-    frame = Frame(without_shapes(project, inputs), cells, grid, clips)
-    return _Prepared(frame, rocks, warnings, _digest(frame, rocks))
-
-
-def _kept(rock: tuple, keep: Keep) -> tuple:
-    """A rock mass as the stack builder takes it with its arrays in another place."""
-    shapes, region, *rest = rock
-    region = None if region is None else tuple(map(keep, region))
-    return [tuple(map(keep, shape)) for shape in shapes], region, *rest
-
-
-def _joined(work: Work, rocks: list[tuple]):
-    native = native_module()
-    with work.phase(0.0, 1.0, "comparing the borders"):
-        try:
-            return work.native(native.join_rock_masses, rocks)
-        except native.InputError:
-            return None  # the tile where it is tells of it in the user's names
-
-
-def _digest(frame: Frame, rocks: list[tuple]) -> str:
-    digest = hashlib.sha256(repr((frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode())
-    digest.update(repr((frame.grid.y.tolist(), frame.project)).encode())
-    for shapes, region, base, rules in rocks:
-        digest.update(repr((base, rules)).encode())
-        for array in (*(each for shape in shapes for each in shape), *(region or ())):
-            digest.update(np.ascontiguousarray(array))
-    return digest.hexdigest()
 
 
 def _stem(name: Name) -> str:
@@ -240,9 +208,9 @@ class _Store:
         ending = "arrays" if kind == "built" else "npz"
         return folder / f"{prefix}{_stem(name)}.{ending}"
 
-    def parts(self, column: int, row: int) -> Path:
+    def parts(self, name: Name) -> Path:
         """The folder with what a tile needs of each surface."""
-        return self._run / f"parts-{_stem((column, row))}"
+        return self._run / f"parts-{_stem(name)}"
 
     def record(self, kind: str, name: Name) -> Path:
         return self._run / f"{kind}-{_stem(name)}.json"
@@ -262,20 +230,19 @@ class _Store:
             text = f"{self.record(kind, name)}: cannot be read; delete {self._run} and start again"
             raise BuildFailed(text) from error
 
-    def write_parts(self, prepared: _Prepared) -> list[Name]:
+    def divided(self, found: Prepared, arrays: MappedArrays, workers: Workers, cancel) -> list[Name]:
         """Writes what each tile needs; the tiles that need something, in order of the grid."""
-        grid = prepared.frame.grid
         listed = self._run / "parts.json"
         if not listed.exists():
             try:
-                for name in grid:
-                    self.parts(*name).mkdir(exist_ok=True)
+                for name in found.frame.grid:
+                    self.parts(name).mkdir(exist_ok=True)
             except OSError as error:
                 raise OutputFailed(f"{self._run}: {error.strerror or error}") from error
-            names = sorted(write_parts(prepared.rocks, prepared.frame.clips, grid, self.parts))
+            names = divided(found, arrays, workers, self.parts, cancel)
             with Outputs() as outputs, outputs.file(listed) as file:
                 file.write(json.dumps(names).encode())
-        return sorted((tuple(name) for name in json.loads(listed.read_text())), key=lambda n: n[::-1])
+        return [tuple(name) for name in json.loads(listed.read_text())]
 
     def write(self, path: Path, arrays: dict[str, np.ndarray]) -> None:
         with Outputs() as outputs, outputs.file(path) as file:
@@ -319,8 +286,9 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model, sides = run(lambda work: build_tile(work, frame, box, store.parts(*name), threads=1))
+    model, sides = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
     numbers, edges = sides["numbers"], BorderEdges.of(model, box)
+    sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, edges.on(model, side))
         ends = np.searchsorted(numbers, found.ends)
@@ -337,6 +305,7 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     model = model_of(frame.project, read_mapped(store.file("built", name)))
     around, box = _around(name, names), frame.grid.box(*name)
     sides = {other: read_arrays(store.file("sides", other)) for other in around}
+    faces = sides[name]["faces"]
     borders = {other: BorderVertices.of_arrays(arrays, box) for other, arrays in sides.items()}
     places = dict(zip(around, settled(box, borders.values()), strict=True))
     model.vertices[borders[name].numbers] = places[name]
@@ -344,11 +313,11 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
         neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
-    model = with_vertices_of(model, BorderEdges.of(model, box), neighbors)
+    model = with_vertices_of(model, BorderEdges.of(model, box, faces), neighbors)
     report = model.validate(_places(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches, border = {}, BorderEdges.of(model, box)
+    patches, border = {}, BorderEdges.of(model, box, faces)
     for side, *theirs in neighbors:
         edges = border.on(model, side)
         found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
@@ -421,10 +390,10 @@ class _Parts:
         return np.bincount(np.array(roots, np.int64), minlength=blocks)
 
 
-def _catalog(prepared: _Prepared, store: _Store, names: list[Name]) -> Catalog:
+def _catalog(found: Prepared, store: _Store, names: list[Name]) -> Catalog:
     """The table of the whole."""
-    frame = prepared.frame
-    parts, patches, warnings = _Parts(), np.zeros(2, np.int64), list(prepared.warnings)
+    frame = found.frame
+    parts, patches, warnings = _Parts(), np.zeros(2, np.int64), list(found.warnings)
     for name in names:
         arrays = read_arrays(store.file("patches", name))
         for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
@@ -435,22 +404,22 @@ def _catalog(prepared: _Prepared, store: _Store, names: list[Name]) -> Catalog:
             if side.name not in ("east", "north"):
                 continue
             theirs = read_arrays(store.file("patches", other))
-            found = matched(_patches(own, side.name), _patches(theirs, OPPOSITE[side.name]), side)
-            if found.unequal:
-                near = "" if found.place is None else f" near {place_text(found.place)}"
+            match = matched(_patches(own, side.name), _patches(theirs, OPPOSITE[side.name]), side)
+            if match.unequal:
+                near = "" if match.place is None else f" near {place_text(match.place)}"
                 text = (
-                    f"tiles {name} and {other} differ at {found.unequal} places on their border"
+                    f"tiles {name} and {other} differ at {match.unequal} places on their border"
                     f"{near}; the parts of blocks were joined by their areas there"
                 )
                 warnings.append(BuildWarning(text, "borders"))
-            patches += [found.patches, found.unequal]
-            for one, another in found.cells.tolist():
+            patches += [match.patches, match.unequal]
+            for one, another in match.cells.tolist():
                 parts.join((*name, one), (*other, another))
     told = [store.told("joined", name) for name in names]
     return Catalog(
         frame.project,
         frame.cell_kind,
-        prepared.digest,
+        found.digest,
         frame.grid,
         _blocks(frame, told, parts),
         [_entry(name, record) for name, record in zip(names, told, strict=True)],

@@ -6,13 +6,15 @@ from __future__ import annotations
 import concurrent.futures
 import contextlib
 import os
-import time
-from collections.abc import Callable, Iterator, Sequence
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ..core import Cancelled, UsageError
 
 _POLL_SECONDS = 0.2
 _ANY_PORT = "127.0.0.1:0"  # None would be Dask's usual port, and a warning where this is taken
+_starts = threading.Lock()  # Dask imports what it needs when it starts, which two threads cannot do at once
 # What Dask measures of itself takes seven percent of a processor while workers are at work
 _QUIET = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s"}
 _LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
@@ -27,51 +29,114 @@ def connected(address: str):
         raise UsageError(f"no scheduler of Dask answers at {address}") from error
 
 
+class Workers:
+    """The workers of a client of Dask, which may be starting yet."""
+
+    def __init__(self, starting: concurrent.futures.Future):
+        self._starting = starting
+
+    @property
+    def are_up(self) -> bool:
+        return self._starting.done()
+
+    @property
+    def client(self):
+        """The client; waits until it is there."""
+        return self._starting.result()
+
+    def in_any_order(
+        self,
+        function: Callable,
+        shared,
+        tasks: Iterable,
+        cancel=None,
+        *,
+        following: Callable[..., Sequence] = lambda _task: (),
+        here: bool = False,
+    ) -> Iterator[tuple]:
+        """(task, function(shared, task)) of each task, as they are done. `shared` goes to each worker once.
+        following(task): tasks that can be done when this one is, before what waits. here: this process does
+        tasks, too, until the workers are up.
+
+        Raises what a task raises, and Cancelled; the other tasks are then given up.
+        """
+        tasks = deque(tasks)
+        while here and tasks and not self.are_up:
+            _check(cancel)
+            task = tasks.popleft()
+            yield task, function(shared, task)
+            tasks.extendleft(reversed(following(task)))
+        if not tasks:
+            return
+        distributed, client = _distributed(), self.client
+        everywhere = client.scatter(shared, broadcast=True, hash=False)
+        one_is_done = threading.Event()
+
+        def submitted(task, priority: int):
+            future = client.submit(function, everywhere, task, pure=False, priority=priority)
+            future.add_done_callback(lambda _: one_is_done.set())
+            return future
+
+        waiting = {submitted(task, 0): task for task in tasks}
+        try:
+            while waiting:
+                _check(cancel)
+                one_is_done.wait(_POLL_SECONDS)
+                one_is_done.clear()
+                for future in [future for future in waiting if future.done()]:
+                    task = waiting.pop(future)
+                    yield task, _result(distributed, future)
+                    waiting.update((submitted(next_one, 1), next_one) for next_one in following(task))
+        finally:
+            client.cancel(list(waiting))
+
+
+def _check(cancel) -> None:
+    if cancel is not None and cancel():
+        raise Cancelled("cancelled")
+
+
+def no_workers() -> contextlib.AbstractContextManager[Workers]:
+    """Some that never come up: for tasks that this process can do."""
+    return contextlib.nullcontext(Workers(concurrent.futures.Future()))
+
+
 @contextlib.contextmanager
-def client_of(given, workers: int | None = None):
-    """`given`, or a client of so many processes of this machine, None: one for each processor, which end with
-    it.
+def workers_of(client, count: int | None = None) -> Iterator[Workers]:
+    """The workers of a client, or None: so many processes of this machine (None: one for each processor),
+    which end with it. They start while the caller goes on.
 
     They listen on free ports of this machine alone, so that several of them run beside each other."""
-    if given is not None:
-        yield given
+    starting = concurrent.futures.Future()
+    if client is not None:
+        starting.set_result(client)
+        yield Workers(starting)
         return
     distributed = _distributed()
     import dask
 
-    with (
-        dask.config.set(_QUIET),
-        distributed.LocalCluster(
-            n_workers=workers or os.cpu_count(),
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=_ANY_PORT,
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        yield client
+    with contextlib.ExitStack() as ends, concurrent.futures.ThreadPoolExecutor(1) as apart:
+        ends.enter_context(dask.config.set(_QUIET))
+
+        def start():
+            with _starts:
+                cluster = distributed.LocalCluster(
+                    n_workers=count or os.cpu_count(),
+                    threads_per_worker=1,
+                    processes=True,
+                    dashboard_address=_ANY_PORT,
+                )
+            ends.enter_context(cluster)
+            client = distributed.Client(cluster)
+            ends.callback(client.close)
+            client.run(_ready)
+            return client
+
+        yield Workers(apart.submit(start))
 
 
-def in_any_order(client, function: Callable, shared, tasks: Sequence, cancel=None) -> Iterator[tuple]:
-    """(task, function(shared, task)) of each task, as they are done. `shared` goes to each worker once.
-
-    Raises what a task raises, and Cancelled; the other tasks are then given up.
-    """
-    distributed = _distributed()
-    everywhere = client.scatter(shared, broadcast=True, hash=False)
-    waiting = {client.submit(function, everywhere, task, pure=False): task for task in tasks}
-    try:
-        while waiting:
-            if cancel is not None and cancel():
-                raise Cancelled("cancelled")
-            done = [future for future in waiting if future.done()]
-            if not done:
-                time.sleep(_POLL_SECONDS)
-            for future in done:
-                task = waiting.pop(future)
-                yield task, _result(distributed, future)
-    finally:
-        client.cancel(list(waiting))
+def _ready() -> None:
+    """On a worker: what all tasks import is there when this is."""
 
 
 def _result(distributed, future):

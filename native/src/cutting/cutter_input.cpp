@@ -21,14 +21,6 @@ namespace {
 using Triangle = std::array<std::int32_t, 3>;
 using Edge = std::array<NodeId, 2>;
 
-bool is_flat(const Position& a, const Position& b, const Position& c) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-        if (exact::orient2d({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
-    }
-    return true;
-}
-
 /// Triangles of a surface, and the number that each had in the input.
 class SurfaceInput {
 public:
@@ -77,7 +69,7 @@ SurfaceInput::SurfaceInput(const TriangleView& given) {
                                  {static_cast<std::int64_t>(t / 3)});
             corners[i] = first[index(v)];
         }
-        if (is_flat(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
+        if (in_one_line(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
         surface_.triangles.push_back(corners);
         original_.push_back(static_cast<std::int64_t>(t / 3));
     }
@@ -344,6 +336,14 @@ CutterSurface SurfaceInput::ready(bool with_seam) && {
 }
 
 }  // namespace
+
+bool in_one_line(const Position& a, const Position& b, const Position& c) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+        if (exact::orient2d({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
+    }
+    return true;
+}
 
 CutterSurface oriented_surface(const TriangleView& given, bool with_seam) {
     return SurfaceInput(given).ready(with_seam);

@@ -16,6 +16,9 @@ struct CutterSurface {
     bool is_closed = false;  ///< every edge has an even number of triangles
 };
 
+/// Whether three points lie in one line, exactly.
+bool in_one_line(const Position& a, const Position& b, const Position& c);
+
 /// A surface as a user gives it: checked, triangles that are there twice left out of an open one,
 /// its parts oriented upward on the whole. Where a border runs along another the edges are divided
 /// so that they are shared; other borders are extended by a seam, wider than rounding, where asked.

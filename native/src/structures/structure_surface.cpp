@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "base/disjoint_sets.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
 #include "structures/mean_plane.hpp"
@@ -70,15 +71,21 @@ std::array<double, 2> reaches(double size) {
 /// farther: where they cross, they cross all through.
 class Continuation {
 public:
-    /// @param in_its_plane  of vertices: edges between such ones are continued so
+    /// @param beyond  for each fault at which it ends, of vertices: whether they are beyond that.
+    ///                Edges between such ones are continued in its plane, those that hang together
+    ///                all in one direction: at bays of the border others would come back
     /// @param size  of a box around the rock and all structures
-    Continuation(const CutterSurface& fault, std::vector<std::uint8_t> in_its_plane, double size)
-        : fault_(fault), in_its_plane_(std::move(in_its_plane)), lengths_(reaches(size)) {}
+    Continuation(const CutterSurface& fault, const std::vector<std::vector<std::uint8_t>>& beyond,
+                 double size)
+        : fault_(fault), border_(border_of(fault)), lengths_(reaches(size)) {
+        find_directions(beyond);
+    }
 
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
-        for (const BorderEdge& edge : border_of(fault_)) {
-            const Position way = direction(edge);
+        for (std::size_t i = 0; i < border_.size(); ++i) {
+            const BorderEdge& edge = border_[i];
+            const Position& way = direction_[i];
             Position a = at(edge.from), b = at(edge.to);
             for (const double length : lengths_) {
                 const Position far_a = beyond(at(edge.from), way, length);
@@ -106,17 +113,55 @@ public:
 private:
     Position at(NodeId v) const { return fault_.vertices[index(v)]; }
 
-    Position direction(const BorderEdge& edge) const {
+    /// Away from an edge, in the plane of its triangle.
+    Position away_from(const BorderEdge& edge) const {
         const Position along = minus(at(edge.to), at(edge.from));
         const Position inward = minus(at(edge.corner), at(edge.from));
         const double share = dot(inward, along) / dot(along, along);
         Position away;
         for (std::size_t k = 0; k < 3; ++k)
             away[k] = share * along[k] - inward[k];
-        away = unit(away);
-        if (in_its_plane_[index(edge.from)] != 0 && in_its_plane_[index(edge.to)] != 0) return away;
-        if (std::abs(away[2]) < 0.5) return away;
-        return {0, 0, away[2] > 0 ? 1.0 : -1.0};
+        return unit(away);
+    }
+
+    void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
+        const auto is_beyond = [&](NodeId v) {
+            return std::ranges::any_of(beyond, [v](const auto& own) { return own[index(v)] != 0; });
+        };
+        for (const BorderEdge& edge : border_) {
+            const Position away = away_from(edge);
+            const bool is_steep = std::abs(away[2]) >= 0.5;
+            direction_.push_back(is_steep && !(is_beyond(edge.from) && is_beyond(edge.to))
+                                     ? Position{0, 0, away[2] > 0 ? 1.0 : -1.0}
+                                     : away);
+        }
+        for (const auto& own : beyond)
+            find_common_directions(own);
+    }
+
+    /// Gives edges that hang together beyond a fault their mean direction, unless they go round.
+    void find_common_directions(const std::vector<std::uint8_t>& is_beyond) {
+        constexpr double kRound = 0.25;  // of all directions: their sum, at least
+        std::vector<std::size_t> some;
+        DisjointSets chains(fault_.vertices.size());
+        for (std::size_t i = 0; i < border_.size(); ++i) {
+            const auto& [from, to, corner] = border_[i];
+            if (is_beyond[index(from)] == 0 || is_beyond[index(to)] == 0) continue;
+            some.push_back(i);
+            chains.join(from, to);
+        }
+        std::map<std::int32_t, std::pair<Position, double>> sums;
+        for (const std::size_t i : some) {
+            const Position along = minus(at(border_[i].to), at(border_[i].from));
+            const double length = std::sqrt(dot(along, along));
+            auto& [way, whole] = sums[chains.find(border_[i].from)];
+            way = beyond(way, away_from(border_[i]), length);
+            whole += length;
+        }
+        for (const std::size_t i : some) {
+            const auto& [way, whole] = sums[chains.find(border_[i].from)];
+            if (std::sqrt(dot(way, way)) >= kRound * whole) direction_[i] = unit(way);
+        }
     }
 
     /// What lies between two neighboring edges' continuations, from that of the edge that arrives
@@ -142,7 +187,8 @@ private:
     }
 
     const CutterSurface& fault_;
-    std::vector<std::uint8_t> in_its_plane_;
+    std::vector<BorderEdge> border_;
+    std::vector<Position> direction_;  ///< of these
     std::array<double, 2> lengths_;
     std::vector<std::array<Position, 3>> triangles_;
 };
@@ -200,13 +246,14 @@ bool divides(const CutterSurface& fault, const Box& rock) {
            });
 }
 
-/// Of the vertices of a fault: whether its continuation there must go on in its plane. That is so
-/// beyond a fault that it ends at: straight up or down it might come back through that.
-std::vector<std::uint8_t> in_its_plane(const Structure& structure,
-                                       std::span<const CutterSurface> given,
-                                       const CutterSurface& own) {
-    std::vector<std::uint8_t> found(own.vertices.size(), 0);
+/// For each fault that a fault ends at, of the vertices of the latter: whether they are beyond it.
+/// There its continuation must go on in its plane: straight up or down it might come back.
+std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
+                                                     std::span<const CutterSurface> given,
+                                                     const CutterSurface& own) {
+    std::vector<std::vector<std::uint8_t>> all;
     for (const std::int32_t other : structure.ends_at) {
+        std::vector<std::uint8_t>& found = all.emplace_back(own.vertices.size(), 0);
         const cutting::NearestSide nearest(given[index(other)]);
         double above = 0;
         for (const auto& t : own.triangles) {
@@ -222,7 +269,7 @@ std::vector<std::uint8_t> in_its_plane(const Structure& structure,
             if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
         }
     }
-    return found;
+    return all;
 }
 
 /// What continues a fault beyond its border.
@@ -232,7 +279,7 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
     const Structure& structure = structures[index(number)];
     const CutterSurface& own = given[index(number)];
     if (!structure.dies_out)
-        return Continuation(own, in_its_plane(structure, given, own), size).triangles();
+        return Continuation(own, beyond_others(structure, given, own), size).triangles();
     std::vector<std::array<NodeId, 2>> border;
     for (const BorderEdge& edge : border_of(own))
         border.push_back({edge.from, edge.to});
@@ -270,7 +317,7 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
         const CutterSurface& own = given[index(s)];
         const auto add = [&](const std::array<Position, 3>& corners, bool is_continuation) {
             const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
-            if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return;
+            if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
             all.surface.triangles.push_back(t);
             all.structure.push_back(s);
             all.is_continuation.push_back(is_continuation ? 1 : 0);

@@ -419,6 +419,29 @@ TEST(TrianglesBeyond, AreMetWhereAFaultThatDiesOutWouldGoOn) {
               (std::vector<std::uint8_t>{2, 2, 2, 1}));
 }
 
+TEST(ContinuationOf, ABranchDoesNotComeBackThroughTheFaultThatItEndsAt) {
+    const OwnedSurface trunk = sheet(0, 0);  // x = 0
+    OwnedSurface branch;                     // level, with a corner beyond that leans over a bay
+    const std::array<std::array<double, 2>, 6> places{
+        {{-9, -9}, {1, -9}, {1, 0}, {1, 9}, {-9, 9}, {4, 3}}};
+    for (const auto& [x, y] : places)
+        branch.vertex(x, y, 0);
+    for (const auto& [a, b, c] :
+         std::array<std::array<std::int32_t, 3>, 4>{{{0, 1, 2}, {0, 2, 4}, {2, 3, 4}, {1, 5, 2}}})
+        branch.triangle(a, b, c);
+    Structure ends = fault(branch);
+    ends.ends_at = {1};
+    std::size_t found = 0;
+    for (const auto& t :
+         continuation_of(std::array{ends, fault(trunk)}, {{{0, 0, -1}, {2, 2, 1}}})) {
+        if (std::ranges::count(t, std::array{4.0, 3.0, 0.0}) == 0) continue;
+        ++found;
+        for (const auto& p : t)
+            EXPECT_GT(p[0], 0);
+    }
+    EXPECT_GE(found, 3U);
+}
+
 TEST(ContinuationOf, AFaultThatDiesOutDoesNotCrossItselfWhereItBends) {
     OwnedSurface bent;  // an arc that leans outward: its lower border is longer than the upper one
     constexpr int kSticks = 9;

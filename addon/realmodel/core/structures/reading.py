@@ -12,7 +12,7 @@ from ..errors import InputRefused, place_text
 from ..interpolation import checked_points
 from ..readers import read_mesh
 from ..readers.fault_sticks import read_fault_points
-from ..rock_input import checked_triangulation
+from ..surface_input import checked_triangulation
 from ..work import Work
 from ..wrong_sides import Triangulation
 from .entries import Body, Fault, body_item, fault_item

@@ -79,7 +79,7 @@ def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             warnings=[],
             structure=None,
         )
-        for warning in points_too_low(work, one, number, threads):
+        for warning in points_too_low(work, one, [number], threads):
             structure.tell([compartment], warning)
 
 

@@ -66,13 +66,21 @@ class BorderEdges:
     second: np.ndarray
 
     @classmethod
-    def of(cls, model, box: tuple[float, float, float, float]) -> BorderEdges:
+    def of(
+        cls, model, box: tuple[float, float, float, float], faces: np.ndarray | None = None
+    ) -> BorderEdges:
+        """faces: among which all are that have an edge there, ascending; None: not known."""
         on = np.zeros(len(model.vertices), bool)
         for side in sides_of(box):
             on |= model.vertices[:, side.axis] == side.line
         corners = model.face_vertices
-        at = np.flatnonzero(on[corners])
-        face = np.searchsorted(model.face_offsets, at, "right") - 1
+        if faces is None:
+            at = np.flatnonzero(on[corners])
+            face = np.searchsorted(model.face_offsets, at, "right") - 1
+        else:
+            size = model.face_offsets[faces + 1] - model.face_offsets[faces]
+            at, face = _spread(model.face_offsets[faces], size), np.repeat(faces, size)
+            at, face = at[on[corners[at]]], face[on[corners[at]]]
         following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
         kept = on[corners[following]]
         at, face, following = at[kept], face[kept], following[kept]
@@ -139,17 +147,15 @@ def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side,
         for name in ("face", "at", "count", "numbers")
     )
     order = np.argsort(at)  # and so by face
-    pieces = np.split(numbers.astype(model.face_vertices.dtype), np.cumsum(size)[:-1])
-    corners, start = [], 0
-    for k in order.tolist():
-        corners += [model.face_vertices[start : at[k] + 1], pieces[k]]
-        start = at[k] + 1
+    begin = np.cumsum(size) - size
+    numbers = numbers[_spread(begin[order], size[order])].astype(model.face_vertices.dtype)
+    after = np.repeat(at[order] + 1, size[order])
     ends = np.concatenate([[0], face[order] + 1, [len(model.face_offsets)]])
     more = np.concatenate([[0], np.cumsum(size[order])])
     return replace(
         model,
         vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
-        face_vertices=np.concatenate([*corners, model.face_vertices[start:]]),
+        face_vertices=np.insert(model.face_vertices, after, numbers),
         face_offsets=model.face_offsets + np.repeat(more, np.diff(ends)),
     )
 

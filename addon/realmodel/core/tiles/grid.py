@@ -77,11 +77,17 @@ def tile_grid(meshes: Sequence[np.ndarray], tile_size: tuple[float, float]) -> T
         if count > _MOST_TILES:
             raise UsageError(f"{count} tiles along one axis are too many; make them larger")
         beyond = max((high - low) * _BEYOND, abs(low) * 2.0**-20, abs(high) * 2.0**-20, 2.0**-20)
-        inner = [_line_near(values, low + k * size, size * _SEARCHED) for k in range(1, count)]
+        near = [_near_lines(each, low, size) for each in values] if count > 1 else []
+        inner = [_line_near(near, low + k * size, size * _SEARCHED) for k in range(1, count)]
         lines.append(np.array([low - beyond, *inner, high + beyond]))
     if len(lines[0]) * len(lines[1]) > _MOST_TILES:
         raise UsageError(f"more than {_MOST_TILES} tiles are too many; make them larger")
     return TileGrid(*lines)
+
+
+def _near_lines(values: np.ndarray, low: float, size: float) -> np.ndarray:
+    """The values that may be near any line."""
+    return values[np.abs((values - low) / size % 1 - 0.5) > 0.5 - 1.01 * _SEARCHED]
 
 
 def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:

@@ -59,24 +59,26 @@ def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     heights: dict[tuple[str, str], dict[str, float]] = {}
     on_sides = []
     for side in sides_of(box):
-        along = {_text(end): end for end in (box[side.along], box[side.along + 2])}
+        axis = side.along
+        along = {_text(end): end for end in (box[axis], box[axis + 2])}
         on_side = [_on_side(vertices, side, box) for vertices in tiles]
         for vertices, found in zip(tiles, on_side, strict=True):
             for number in found:
                 x, y, z = exact = vertices.exact[number]
                 heights.setdefault((x, y), {})[z] = float(vertices.nearest[number, 2])
-                along[exact[side.along]] = float(vertices.nearest[number, side.along])
+                along[exact[axis]] = float(vertices.nearest[number, axis])
         _separate(along)
         on_sides.append((side, along, on_side))
     for of_vertical in heights.values():
         _separate(of_vertical)
     positions = [np.full(vertices.nearest.shape, np.nan) for vertices in tiles]
     for side, along, on_side in on_sides:
+        axis = side.along
         for vertices, found, at in zip(tiles, on_side, positions, strict=True):
             for number in found:
                 exact = vertices.exact[number]
                 at[number, side.axis] = side.line
-                at[number, side.along] = along[exact[side.along]]
+                at[number, axis] = along[exact[axis]]
                 at[number, 2] = heights[exact[:2]][exact[2]]
     return positions
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..assembly import assemble
-from ..atomic import Outputs
+from ..atomic import Outputs, explained
 from ..blocks import Block
 from ..build_warning import BuildWarning
 from ..errors import BuildFailed, OutputFailed
@@ -20,11 +20,13 @@ from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
+from ..surface_heights import Triangulation
 from ..work import Work, native_module
 from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
 from .settling import BorderVertices, Box
 
-_REGION = "region"  # in the place of a surface's number
+Name = tuple[int, int]  # column and row of a tile
+REGION = "region"  # in the place of a surface's number
 
 
 @dataclass(frozen=True)
@@ -57,26 +59,20 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
 
 
 def write_parts(
-    rocks: list[tuple], clips: tuple[bool, ...], grid: TileGrid, folder_of: Callable[[int, int], Path]
-) -> set[tuple[int, int]]:
-    """Writes what each tile needs of rock masses, as the stack builder takes them: a file for each surface
-    and region that it meets, one surface after another. folder_of: of a tile. Returns the tiles (column, row)
-    that a surface meets."""
-    met = set()
-    for r, (surfaces, region, _base, _rules) in enumerate(rocks):
-        meshes = dict(enumerate(surfaces)) | ({_REGION: region} if clips[r] else {})
-        for k, mesh in meshes.items():
-            bins = MeshBins(mesh, grid)
-            for column in range(grid.columns):
-                for row in range(grid.rows):
-                    part = bins.part(column, row)
-                    if not len(part.triangles):
-                        continue
-                    if k != _REGION:
-                        met.add((column, row))
-                    arrays = {name: getattr(part, name) for name in Part.__dataclass_fields__}
-                    with Outputs() as outputs, outputs.file(folder_of(column, row) / _part(r, k)) as file:
-                        write_arrays(arrays, file)
+    mesh: Triangulation, rock: int, surface: int | str, grid: TileGrid, folder_of: Callable[[Name], Path]
+) -> list[Name]:
+    """Writes what each tile needs of a surface, or REGION, of a rock mass: a file for each tile that it
+    meets. folder_of: of a tile. Returns these tiles."""
+    bins, met = MeshBins(mesh, grid), []
+    for column in range(grid.columns):
+        for row in range(grid.rows):
+            part = bins.part(column, row)
+            if not len(part.triangles):
+                continue
+            met.append((column, row))
+            path = folder_of((column, row)) / _part(rock, surface)
+            with explained(path), path.open("wb") as file:
+                write_arrays({name: getattr(part, name) for name in Part.__dataclass_fields__}, file)
     return met
 
 
@@ -87,13 +83,13 @@ def _part(rock: int, surface: int | str) -> str:
 def _parts(frame: Frame, folder: Path) -> dict[tuple, Part]:
     parts = {}
     for r, rock in enumerate(frame.project.rocks):
-        for k in (*range(len(rock.surfaces)), *([_REGION] if frame.clips[r] else [])):
+        for k in (*range(len(rock.surfaces)), *([REGION] if frame.clips[r] else [])):
             path = folder / _part(r, k)
             if path.exists():
                 arrays = read_arrays(path)
                 parts[r, k] = Part(*(arrays[name] for name in Part.__dataclass_fields__))
             else:
-                columns = 2 if k == _REGION else 3
+                columns = 2 if k == REGION else 3
                 parts[r, k] = Part(np.empty((0, columns)), np.empty((0, 3), np.int32), np.empty(0, np.int32))
     return parts
 
@@ -110,7 +106,7 @@ def build_tile(
         shapes = [(part.vertices, part.triangles) for part in surfaces]
         region, seen = None, box_triangles(box)
         if frame.clips[r]:
-            region = (parts[r, _REGION].vertices[:, :2].copy(), parts[r, _REGION].triangles)
+            region = (parts[r, REGION].vertices[:, :2].copy(), parts[r, REGION].triangles)
             seen = clipped_region(region, box)
         given = [
             replace(surface, vertices=vertices, triangles=triangles)

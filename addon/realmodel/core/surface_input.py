@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surface of a project, read: its points or its ready mesh, from a file or from arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from .errors import InputRefused, place_text
+from .interpolation import checked_points
+from .mapped_arrays import Keep
+from .project import Rock, Surface, surface_item
+from .readers import read_mesh, read_point_file
+from .readers.text import Step, no_step
+from .surface_heights import Triangulation
+from .work import Work
+
+
+@dataclass(frozen=True)
+class ReadSurface:
+    """surface: with arrays in the place of files. shape: its triangulation where it is a ready mesh, faces:
+    the face of its file that each triangle is of, where these differ. told: sentences."""
+
+    surface: Surface
+    shape: Triangulation | None
+    faces: np.ndarray | None
+    told: list[str]
+
+    def with_arrays(self, change: Keep) -> ReadSurface:
+        """The same with other arrays in the place of these."""
+        surface, shape = self.surface, self.shape
+        faces = None if self.faces is None else change(self.faces)
+        if shape is None:
+            return replace(self, surface=replace(surface, points=change(surface.points)), faces=faces)
+        vertices, triangles = map(change, shape)
+        surface = replace(surface, vertices=vertices, triangles=triangles)
+        return replace(self, surface=surface, shape=(vertices, triangles), faces=faces)
+
+
+@dataclass(frozen=True)
+class SurfaceInput:
+    """A surface as it is given, with all that reading it takes: another process may do that. rock: the name
+    of its rock mass; boreholes: the last file of boreholes, where there is one; met: its points in them."""
+
+    rock: str
+    surface: Surface
+    boreholes: Path | None
+    met: np.ndarray | None
+    units: str
+
+    @classmethod
+    def of(cls, rock: Rock, surface: Surface, met: np.ndarray | None, units: str) -> SurfaceInput:
+        boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
+        return cls(rock.name, surface, boreholes, met, units)
+
+    def read(self, step: Step = no_step) -> ReadSurface:
+        """Raises InputRefused, naming the surface."""
+        surface = self.surface
+        file = surface.input_file or surface.shape_file
+        if file is None and surface.points is None:
+            file = self.boreholes
+        try:
+            if surface.interpolated:
+                points, told = self._points(file, step)
+                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, told)
+            vertices, triangles, faces, told = self._mesh(step)
+        except InputRefused as error:
+            raise error.within(surface_item(Rock(self.rock, []), surface)) from error
+        surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
+        return ReadSurface(surface, (vertices, triangles), faces, told)
+
+    def _points(self, file: Path | None, step: Step) -> tuple[np.ndarray, list[str]]:
+        surface = self.surface
+        points, told = surface.points, []
+        if surface.point_file is not None:
+            points, told = read_point_file(surface.point_file, self.units, step)
+        if self.met is not None:
+            own = np.empty((0, 3)) if points is None else checked_points(points)
+            points = np.concatenate([own, self.met])
+        if points is None and surface.needs_points:
+            raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
+        if points is None or (not len(points) and not surface.needs_points):
+            return np.empty((0, 3)), told
+        return checked_points(points), told
+
+    def _mesh(self, step: Step):
+        surface = self.surface
+        if surface.mesh is None:
+            return *checked_triangulation(surface.vertices, surface.triangles), None, []
+        mesh = read_mesh(surface.input_file, step)
+        vertices, told = mesh.in_model(surface.mesh_file, self.units)
+        return vertices, mesh.triangles, mesh.face_of_triangle, told
+
+
+# Reads surfaces in any order: the number of each, and what it is then. Tells the work of its progress.
+Reader = Callable[[Work, list[SurfaceInput]], Iterable[tuple[int, ReadSurface]]]
+
+
+def read_each(work: Work, surfaces: list[SurfaceInput]) -> Iterator[tuple[int, ReadSurface]]:
+    """One after another."""
+    for number, surface in enumerate(surfaces):
+        yield number, surface.read(lambda share, number=number: work.step((number + share) / len(surfaces)))
+        work.step((number + 1) / len(surfaces))
+
+
+def checked_triangulation(vertices, triangles) -> Triangulation:
+    """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
+    try:
+        vertices = np.ascontiguousarray(vertices, np.float64)
+        triangles = np.asarray(triangles)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("vertices or triangles are not an array of numbers") from error
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputRefused(f"vertices must be an array (V, 3), not {vertices.shape}")
+    if triangles.size == 0 or triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise InputRefused(f"triangles must be an array (T, 3) with T > 0, not {triangles.shape}")
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise InputRefused(f"triangles must be whole numbers, not {triangles.dtype}")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        bad = int(np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))[0])
+        raise InputRefused(
+            f"triangle {bad} names vertices {triangles[bad].tolist()}",
+            triangles=(bad,),
+            advice=f"they are numbered from 0 to {len(vertices) - 1}",
+        )
+    if not np.isfinite(vertices).all():
+        bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
+        raise InputRefused(f"vertex {bad} is {place_text(vertices[bad])}, not finite")
+    return vertices, np.ascontiguousarray(triangles, np.int32)
