@@ -26,7 +26,9 @@ from realmodel.core import (
     load_project,
     open_tiles,
 )
+from realmodel.core.local_heights import LocalHeights
 from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
+from realmodel.core.tiles.windows import point_windows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
 from realmodel.distributed.workers import Workers
@@ -259,6 +261,91 @@ def test_the_base_must_be_below(tmp_path):
     project.rocks[0].base_elevation = 5.0
     with pytest.raises(InputRefused, match="base_elevation 5 is not below"):
         build_tiles(project, tmp_path / "t", (30, 30))
+
+
+def scattered(count, seed, shift=0.0):
+    """Points in clusters, with a large void, and beyond the region."""
+    rng = np.random.default_rng(seed)
+    plan = np.concatenate([rng.normal(c, s, (count // 3, 2)) for c, s in ((20, 6), (75, 18), (60, 45))])
+    z = shift + 3 * np.sin(plan[:, 0] / 15) + 0.03 * plan[:, 1] + rng.normal(0, 0.3, len(plan))
+    return np.column_stack([plan, z])
+
+
+GIVEN = {"model": "spherical", "range": 30.0, "sill": 4.0, "nugget": 0.1}
+
+
+def from_points(count=900):
+    """Surfaces of which tiles interpolate those that they can."""
+    surfaces = [
+        Surface("kriged", points=scattered(count, 1), options={"neighbours": 12}),
+        Surface("drift", points=scattered(count, 2, 4), method="universal_kriging", rule="base"),
+        Surface("weighted", points=scattered(count, 3, 7), method="idw", rule="conformable"),
+        Surface("lattice", points=np.round(scattered(count, 4, 9)), options={"variogram": GIVEN}),
+        Surface("triangles", points=scattered(count, 5, 12), method="tin"),
+        Surface("above", points=scattered(count, 6, 12), minimum_thickness=0.5),
+    ]
+    lattice = surfaces[3]  # many points at one distance from a node, each place once
+    lattice.points = lattice.points[np.unique(lattice.points[:, :2], axis=0, return_index=True)[1]]
+    tied = surfaces[0].points[:5].copy()  # mis-ties, of which the mean counts
+    tied[:, 2] += 0.05
+    surfaces[0].points = np.concatenate([surfaces[0].points, tied])
+    return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
+
+
+@pytest.mark.parametrize("count", [9, 900])
+def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
+    """The heights of the undivided model to the last bit, from a part of the points."""
+    project, seen, real = from_points(count), [], LocalHeights.heights
+
+    def heights(self, work, points, nodes, threads):
+        seen.append((len(nodes), len(points)))
+        return real(self, work, points, nodes, threads)
+
+    monkeypatch.setattr(LocalHeights, "heights", heights)
+    tiled = build_tiles(project, tmp_path / "t", (20, 25))
+    whole = build(project)
+    assert_same_blocks(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+    assert count == 9 or any(warning.kind == "wrong_side" for warning in tiled.warnings)
+    of_tiles = [points for nodes, points in seen if nodes]
+    assert len(of_tiles) == 4 * len(tiled.tiles)
+    assert count == 9 or np.mean(of_tiles) < 0.7 * count
+    for tile in tiled.tiles:
+        model = tile.model()
+        for k in range(6):
+            known = {tuple(place): z for *place, z in whole.surface(k)[0].tolist()}
+            assert all(known[x, y] == z for x, y, z in model.surface(k)[0].tolist())
+
+
+def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):
+    """Then the mesh changes, and heights are made for the whole."""
+    project = from_points()
+    edge = np.array([[np.nextafter(100.0, 200.0), 40.0], [140.0, 50.0], [100.0, 60.0]])
+    other = Surface("other", np.column_stack([edge, [1, 2, 3.0]]), np.array([[0, 1, 2]]))
+    square = [[60.0, 40.0], [100.0, 40.0], [100.0, 60.0], [60.0, 60.0]]
+    project.rocks[0].region = square
+    project.rocks.append(Rock("beside", [other], base_elevation=-30.0))
+    tiled = build_tiles(project, tmp_path / "t", (20, 25))
+    whole = build(project)
+    assert any(warning.kind == "joined" for warning in whole.warnings)
+    assert_same_blocks(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+
+
+def test_windows_hold_the_nearest_points():
+    rng = np.random.default_rng(7)
+    for points in (
+        scattered(600, 1)[:, :2],
+        rng.uniform(0, 1, (500, 2)) * [300, 0],
+        np.mgrid[0:20, 0:30].T.reshape(-1, 2) * 4.0,
+    ):
+        boxes = [(0.0, 0.0, 30.0, 20.0), (60.0, 10.0, 61.0, 90.0), (-300.0, 500.0, -280.0, 510.0)]
+        for box, window in zip(boxes, point_windows(points, boxes, 16), strict=True):
+            assert window[0] == 0 and (np.diff(window) > 0).all()
+            for place in rng.uniform(box[:2], box[2:], (50, 2)):
+                squared = np.square(points - place).sum(axis=1)
+                near = squared <= np.sort(squared)[16]
+                assert np.isin(np.flatnonzero(near), window).all()
 
 
 def test_a_stopped_run_goes_on(monkeypatch, tmp_path):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -245,13 +246,20 @@ def interpolate_rock(
     threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
+    flat: Collection[int] = (),
 ) -> None:
     """Gives heights to each surface of a rock mass that is interpolated; for a stage only to those that it
     takes. Progress goes from `start` to `end`. keep: where surfaces are then; unless this is in memory,
-    nothing else is known of them."""
+    nothing else is known of them. flat: the numbers of those that only lie at 0, for others to give heights
+    to; these look for points on wrong sides, too."""
     if keep is not as_it_is and entry.region is not None:
         entry.region = tuple(map(keep, entry.region))
-    waiting = interpolation_order(entry.rock, stage)
+    waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
+    if flat:
+        nodes, triangles = entry.region
+        plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
+        for number in flat:
+            entry.surfaces[number] = plan
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
@@ -260,4 +268,5 @@ def interpolate_rock(
             entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
             entry.interpolations[number] = None
             del entry.told[number]
-    entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
+    if not flat:
+        entry.warnings += points_too_low(work, entry, sorted(waiting), threads)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from .exporters.surfaces import save_surfaces
 from .heights import Interpolation
 from .mapped_arrays import Keep, as_it_is
 from .method_options import check_threads
-from .project import Project, check_project
+from .project import Project, Rock, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
 from .structures.parts import Structures, structures_of
 from .structures.reading import read_structures
@@ -105,12 +106,13 @@ def build_surfaces(
     stage: int | None = None,
     keep: Keep = as_it_is,
     reader: Reader = read_each,
+    flat: Callable[[Rock], Collection[int]] = lambda _rock: (),
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
     Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
     surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
-    how surfaces are read.
+    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock).
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
@@ -120,11 +122,11 @@ def build_surfaces(
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(lambda work: _build(work, project, threads, stage, keep, reader), progress, cancel)
+    return run(lambda work: _build(work, project, threads, stage, keep, reader, flat), progress, cancel)
 
 
 def _build(
-    work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader
+    work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader, flat
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project, reader)
@@ -141,7 +143,7 @@ def _build(
     else:
         for number, entry in enumerate(inputs):
             begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
-            interpolate_rock(work, entry, begin, end, threads, stage, keep)
+            interpolate_rock(work, entry, begin, end, threads, stage, keep, flat(entry.rock))
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,28 +32,53 @@ def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> l
     one is no contradiction: there the younger one ends, or has cut.
     """
     surfaces = entry.rock.surfaces
-    beneath = {
-        number: _Beneath(len(surfaces[number].points))
+    points = {
+        number: surfaces[number].points
         for number in numbers
-        if number > 0 and surfaces[number].points is not None and len(surfaces[number].points)
+        if surfaces[number].points is not None and len(surfaces[number].points)
     }
-    for older in range(max(beneath, default=0)):
-        younger = [number for number in beneath if number > older]
-        if entry.surfaces[older] is None:
+    warnings = []
+    found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock), threads)
+    for number, (beyond, others) in found.items():
+        warnings += listed(entry.rock, number, beyond, "below", others)
+    return warnings
+
+
+def kept_off(rock: Rock) -> frozenset[int]:
+    """The surfaces that a minimum thickness keeps off the one before."""
+    return frozenset(n for n, surface in enumerate(rock.surfaces) if surface.minimum_thickness is not None)
+
+
+def below_older(
+    work: Work,
+    rock: Rock,
+    shapes: list[Triangulation | None],
+    points: dict[int, np.ndarray],
+    off: Collection[int],
+    threads: int,
+) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """Of points (N, 3) of surfaces, by their numbers: how far each lies below what its surface is kept above
+    (N,), and of which surface this is (N,). shapes: of all surfaces, None where heights are not known. off:
+    those that a minimum thickness keeps off the one before."""
+    surfaces = rock.surfaces
+    points = {number: own for number, own in points.items() if number > 0}
+    beneath = {number: _Beneath(len(own)) for number, own in points.items()}
+    for older in range(max(points, default=0)):
+        if shapes[older] is None:
             continue
-        plan = np.concatenate([surfaces[number].points[:, :2] for number in younger])
-        z = heights_at(work, entry.surfaces[older], plan, threads)
-        ends = np.cumsum([len(surfaces[number].points) for number in younger])
+        younger = [number for number in points if number > older]
+        z = heights_at(work, shapes[older], np.concatenate([points[n][:, :2] for n in younger]), threads)
+        ends = np.cumsum([len(points[number]) for number in younger])
         for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
             beneath[number].add(own, older, RULES[surfaces[older].rule])
-    warnings = []
-    for number, found in beneath.items():
+    found = {}
+    for number, below in beneath.items():
         surface = surfaces[number]
-        floor = found.firm if RULES[surface.rule].cuts else found.top
-        if surface.minimum_thickness is not None and entry.surfaces[number - 1] is not None:
-            floor.raise_to(found.last, number - 1)
-        warnings += listed(entry.rock, number, floor.z - surface.points[:, 2], "below", floor.surface)
-    return warnings
+        floor = below.firm if RULES[surface.rule].cuts else below.top
+        if number in off and shapes[number - 1] is not None:
+            floor.raise_to(below.last, number - 1)
+        found[number] = floor.z - points[number][:, 2], floor.surface
+    return found
 
 
 class _Beneath:
@@ -93,17 +119,55 @@ class _Floor:
         self.surface = np.where(where, other.surface, self.surface)
 
 
+@dataclass(frozen=True)
+class WrongPoints:
+    """The points of a surface, by their numbers, that lie on the wrong side of others, and these; the
+    farthest: its number, place, and how far."""
+
+    items: tuple[int, ...]
+    others: tuple[int, ...]
+    worst: int
+    place: tuple[float, ...]
+    by: float
+
+    @classmethod
+    def of(cls, points: np.ndarray, beyond: np.ndarray, others, numbers: np.ndarray) -> WrongPoints | None:
+        """None where all are right. beyond: how far each of the points (N, 3) is; others: beyond which
+        surface, one or (N,); numbers: of the points."""
+        wrong = np.flatnonzero(beyond > 0)
+        if not len(wrong):
+            return None
+        surfaces = np.unique(np.broadcast_to(others, beyond.shape)[wrong])
+        worst = wrong[int(beyond[wrong].argmax())]
+        return cls(
+            tuple(numbers[wrong].tolist()),
+            tuple(surfaces.tolist()),
+            int(numbers[worst]),
+            tuple(points[worst].tolist()),
+            float(beyond[worst]),
+        )
+
+    def joined(self, other: WrongPoints) -> WrongPoints:
+        """Both, of parts of a surface."""
+        worst = min((self, other), key=lambda each: (-each.by, each.worst))
+        items, others = (
+            tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")
+        )
+        return replace(worst, items=items, others=others)
+
+    def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
+        """count: of all points of the surface."""
+        names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
+        text = (
+            f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
+            f"{self.by:.4g}: point {self.worst} at {place_text(self.place)}"
+        )
+        return BuildWarning(text, "wrong_side", rock.name, rock.surfaces[number].name, tuple(self.items))
+
+
 def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
-    """What to tell of points (N,) so far beyond other surfaces; others: their numbers, one or (N,)."""
-    surface = rock.surfaces[number]
-    wrong = np.flatnonzero(beyond > 0)
-    if not len(wrong):
-        return []
-    numbers = np.unique(np.broadcast_to(others, beyond.shape)[wrong])
-    names = " and ".join(f"'{rock.surfaces[n].name}'" for n in numbers)
-    worst = wrong[int(beyond[wrong].argmax())]
-    text = (
-        f"{len(wrong)} of its {len(beyond)} points lie {side} {names}, the farthest by "
-        f"{beyond[worst]:.4g}: point {worst} at {place_text(surface.points[worst])}"
-    )
-    return [BuildWarning(text, "wrong_side", rock.name, surface.name, tuple(int(i) for i in wrong))]
+    """What to tell of the points of a surface so far (N,) beyond other surfaces; others: their numbers, one
+    or (N,)."""
+    points = rock.surfaces[number].points
+    found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
+    return [] if found is None else [found.warning(rock, number, len(points), side)]

@@ -53,6 +53,7 @@ from ..core.tiles.tile_model import (
 from ..core.tiles.tiled_model import file_digest, tiled_model
 from ..core.validation import PLACES_OF_REPORT
 from ..core.work import run
+from ..core.wrong_sides import WrongPoints
 from .tile_inputs import Prepared, divided, prepared
 from .workers import Workers, no_workers, workers_of
 
@@ -107,7 +108,7 @@ def build(
                 return _finished(folder, found.digest)
             store = _Store(folder, found.digest)
             names = store.divided(found, arrays, done_by, cancel)
-            found = replace(found, rocks=[])  # from here on the workers have them
+            found = found.let_go()
         _build_all(store, found.frame, names, done_by, told, cancel)
     catalog = _catalog(found, store, names)
     write_index(store, [f"{TILES}/{_stem(name)}.vtu" for name in names])
@@ -286,7 +287,8 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    model, sides = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
+    built = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
+    model, sides = built.model, built.borders
     numbers, edges = sides["numbers"], BorderEdges.of(model, box)
     sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
@@ -296,7 +298,13 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     with Outputs() as outputs, outputs.file(store.file("built", name)) as file:
         write_mapped(tile_arrays(model), file)
     store.write(store.file("sides", name), sides)
-    store.done("built", name, warnings=[asdict(warning) for warning in model.warnings])
+    store.done(
+        "built",
+        name,
+        warnings=[asdict(warning) for warning in model.warnings],
+        wrong=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
+        heights=[[*key, *of] for key, of in built.heights.items()],
+    )
 
 
 def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
@@ -424,7 +432,7 @@ def _catalog(found: Prepared, store: _Store, names: list[Name]) -> Catalog:
         _blocks(frame, told, parts),
         [_entry(name, record) for name, record in zip(names, told, strict=True)],
         *patches.tolist(),
-        [*warnings, *_warnings(store, names)],
+        [*warnings, *_warnings(frame, store, names)],
     )
 
 
@@ -457,16 +465,30 @@ def _entry(name: Name, record: dict) -> TileEntry:
     )
 
 
-def _warnings(store: _Store, names: list[Name]) -> list[BuildWarning]:
-    """Those of all tiles; what they say of triangles as one."""
+def _warnings(frame: Frame, store: _Store, names: list[Name]) -> list[BuildWarning]:
+    """Those of all tiles; what they say of triangles and points as one."""
     items: dict[tuple, set] = {}
+    wrong: dict[tuple[int, int], WrongPoints] = {}
+    heights: dict[tuple[int, int], list[float]] = {}
     for name in names:
-        for told in store.told("built", name)["warnings"]:
+        record = store.told("built", name)
+        for told in record["warnings"]:
             key = (told["kind"], told["rock"], told["surface"])
             if told["kind"] != "no_area":
                 key = (*key, told["text"])
             items.setdefault(key, set()).update(told["items"])
+        for r, k, own in record["wrong"]:
+            own = WrongPoints(**own)
+            wrong[r, k] = wrong[r, k].joined(own) if (r, k) in wrong else own
+        for r, k, *of in record["heights"]:
+            heights.setdefault((r, k), []).extend(of)
     found = []
+    for (r, k), of in sorted(heights.items()):
+        rock = frame.project.rocks[r]
+        for text in frame.local[r, k].runs_away(min(of), max(of)):
+            found.append(BuildWarning(text, "points", rock.name, rock.surfaces[k].name))
+    for (r, k), own in sorted(wrong.items()):
+        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], "below"))
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"

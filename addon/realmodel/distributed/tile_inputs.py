@@ -1,26 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tiles are built from: read, interpolated, and divided into what each tile needs.
 
-Files are read, and surfaces divided, by this process until the workers are up, and then by the workers: one
-surface at a time, which comes back as the names of files.
+Files are read, variograms fitted, and surfaces and points divided, by this process until the workers are up,
+and then by the workers: one surface at a time, which comes back as the names of files.
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..core import BuildWarning, build_surfaces
+from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
+from ..core.local_heights import LocalHeights, local_heights, local_surfaces
 from ..core.mapped_arrays import MappedArrays
+from ..core.project import surface_item
 from ..core.rock_input import RockInput
 from ..core.surface_input import ReadSurface, SurfaceInput
 from ..core.tiles.grid import TileGrid, tile_grid
-from ..core.tiles.tile_model import REGION, Frame, Name, without_shapes, write_parts
+from ..core.tiles.settling import Box
+from ..core.tiles.tile_model import (
+    PLAN,
+    REGION,
+    Frame,
+    Name,
+    without_shapes,
+    write_own_points,
+    write_parts,
+    write_windows,
+)
 from ..core.work import Work, native_module, run
+from ..core.wrong_sides import kept_off
 from .workers import Workers
 
 _MADE = 0.9  # of the time: surfaces have their heights
@@ -28,28 +41,45 @@ _MADE = 0.9  # of the time: surfaces have their heights
 
 @dataclass(frozen=True)
 class Prepared:
-    """frame: what tiles share. rocks: as the stack builder takes them, all of them, in files. digest: of all
-    that the result depends on."""
+    """frame: what tiles share. rocks: as the stack builder takes them, all of them, in files; those that
+    tiles interpolate lie at 0. points: of surfaces, by rock mass and number: those that tiles interpolate
+    from, and those that they look for on wrong sides. digest: of all that the result depends on."""
 
     frame: Frame
     rocks: list[tuple]
+    near: dict[tuple[int, int], np.ndarray]
+    own: dict[tuple[int, int], np.ndarray]
     warnings: list[BuildWarning]
     digest: str
+
+    def let_go(self) -> Prepared:
+        """Without what the workers have."""
+        return replace(self, rocks=[], near={}, own={})
 
 
 def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""
     reader = _Reader(arrays, workers)
-    surfaces = build_surfaces(
-        project,
-        progress=lambda share, text: progress(_MADE * share, text),
-        cancel=cancel,
-        keep=arrays.keep,
-        reader=reader,
-    )
+
+    def surfaces_with(flat: Callable[[Rock], set[int]]) -> SurfaceSet:
+        return build_surfaces(
+            project,
+            progress=lambda share, text: progress(_MADE * share, text),
+            cancel=cancel,
+            keep=arrays.keep,
+            reader=reader,
+            flat=flat,
+        )
+
+    flat = local_surfaces
+    surfaces = surfaces_with(flat)
+    joined = _joined(surfaces, cancel)
+    if joined is not None and any(flat(entry.rock) for entry in surfaces.rock_inputs):
+        flat = _no_surfaces  # borders that are joined change the meshes
+        surfaces = surfaces_with(flat)
+        joined = _joined(surfaces, cancel)
     inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
     rocks = [entry.native() for entry in inputs]
-    joined = run(lambda work: _joined(work, rocks), cancel=cancel)
     if joined is not None:
         rocks, text = joined
         warnings.append(BuildWarning(text, "joined"))
@@ -61,9 +91,73 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
     )
     meshes = [vertices for shapes, *_ in rocks for vertices, _ in shapes]
     meshes += [rocks[r][1][0] for r in np.flatnonzero(clips)]
-    grid = tile_grid(meshes, size)
-    frame = Frame(without_shapes(project, inputs), cells, grid, clips)
-    return Prepared(frame, rocks, warnings, _digest(frame, inputs, reader.digests))
+    grid = tile_grid(list({id(mesh): mesh for mesh in meshes}.values()), size)
+    local, near, own = {}, {}, {}
+    for r, entry in enumerate(inputs):
+        numbers = flat(entry.rock)
+        fitted = _fitted(entry, numbers, arrays, workers, cancel)
+        for k, (found, points, told) in sorted(fitted.items()):
+            local[r, k], near[r, k] = found, points
+            warnings += [
+                BuildWarning(text, "points", entry.rock.name, entry.rock.surfaces[k].name) for text in told
+            ]
+        if numbers:
+            own |= {
+                (r, k): surface.points
+                for k, surface in enumerate(entry.rock.surfaces)
+                if surface.interpolated and k > 0 and len(surface.points)
+            }
+    frame = Frame(
+        without_shapes(project, inputs),
+        cells,
+        grid,
+        clips,
+        local,
+        {key: len(points) for key, points in own.items()},
+        tuple(kept_off(entry.rock) for entry in inputs),
+    )
+    return Prepared(frame, rocks, near, own, warnings, _digest(frame, inputs, reader.digests))
+
+
+def _no_surfaces(_rock: Rock) -> set[int]:
+    return set()
+
+
+def _fitted(
+    entry: RockInput, numbers: set[int], arrays: MappedArrays, workers: Workers, cancel
+) -> dict[int, tuple[LocalHeights, np.ndarray, list[str]]]:
+    """Of the surfaces of a rock mass that tiles interpolate: what local_heights gives."""
+    if not numbers:
+        return {}
+    nodes = entry.region[0]
+    extent = np.array([nodes.min(axis=0), nodes.max(axis=0)])
+    tasks = []
+    for k in sorted(numbers):
+        surface = entry.rock.surfaces[k]
+        points = arrays.place(arrays.keep(surface.points))
+        stub = replace(surface, points=None)
+        tasks.append((k, entry.rock.name, stub, points, extent, *surface.method_options()))
+    found = {}
+    for (k, *_), (local, points, told) in workers.in_any_order(_fit, arrays.folder, tasks, cancel, here=True):
+        found[k] = local, arrays.opened(points), told
+    return found
+
+
+def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, list[str]]:
+    """On a worker: what a surface has once for all tiles."""
+    _, rock, surface, points, extent, method, settings = task
+    arrays = MappedArrays(folder)
+
+    def fitted(work: Work):
+        given = np.ascontiguousarray(arrays.opened(points))
+        return local_heights(work, given, extent, method, settings, threads=1)
+
+    try:
+        local, points, told = run(fitted)
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(Rock(rock, []), surface), file=file, line=line) from error
+    return local, arrays.place(points), told
 
 
 class _Reader:
@@ -109,18 +203,26 @@ def _kept(rock: tuple, arrays: MappedArrays) -> tuple:
     return [tuple(map(arrays.keep, shape)) for shape in shapes], region, *rest
 
 
-def _joined(work: Work, rocks: list[tuple]):
-    native = native_module()
-    with work.phase(0.0, 1.0, "comparing the borders"):
-        try:
-            return work.native(native.join_rock_masses, rocks)
-        except native.InputError:
-            return None  # the tile where it is tells of it in the user's names
+def _joined(surfaces: SurfaceSet, cancel):
+    """The rock masses with their borders joined and what to tell of it; None where there is nothing to join.
+    No height matters to that."""
+    native, rocks = native_module(), [entry.native() for entry in surfaces.rock_inputs]
+
+    def task(work: Work):
+        with work.phase(0.0, 1.0, "comparing the borders"):
+            try:
+                return work.native(native.join_rock_masses, rocks)
+            except native.InputError:
+                return None  # the tile where it is tells of it in the user's names
+
+    return run(task, cancel=cancel)
 
 
 def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]) -> str:
-    """Of what was read and how it is used: heights follow from that."""
-    digest = hashlib.sha256(repr((frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode())
+    """Of what was read and how it is used: heights follow from that, in one version."""
+    digest = hashlib.sha256(
+        repr((native_module().VERSION, frame.cell_kind, frame.clips, frame.grid.x.tolist())).encode()
+    )
     digest.update(repr((frame.grid.y.tolist(), frame.project)).encode())
     for entry in inputs:
         for array in entry.region or ():
@@ -134,23 +236,43 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
 
 
 def divided(
-    prepared: Prepared, arrays: MappedArrays, workers: Workers, folder_of: Callable[[Name], Path], cancel
+    found: Prepared, arrays: MappedArrays, workers: Workers, folder_of: Callable[[Name], Path], cancel
 ) -> list[Name]:
     """Writes what each tile needs into its folder. Returns the tiles that a surface meets."""
-    tasks = []
-    for r, (shapes, region, _base, _rules) in enumerate(prepared.rocks):
-        meshes = dict(enumerate(shapes)) | ({REGION: region} if prepared.frame.clips[r] else {})
+    frame, tasks = found.frame, []
+    for r, (shapes, region, _base, _rules) in enumerate(found.rocks):
+        meshes = {PLAN if (r, k) in frame.local else k: shape for k, shape in enumerate(shapes)}
+        if frame.clips[r]:
+            meshes[REGION] = region
         tasks += [(r, k, tuple(map(arrays.place, mesh))) for k, mesh in meshes.items()]
-    met = set()
-    shared = (arrays.folder, prepared.frame.grid, folder_of)
-    for (_, k, _), names in workers.in_any_order(_divide, shared, tasks, cancel, here=True):
+    shared, met, boxes = (arrays.folder, frame.grid, folder_of), set(), {}
+    for (r, k, _), there in workers.in_any_order(_divide, shared, tasks, cancel, here=True):
         if k != REGION:
-            met.update(names)
+            met.update(there)
+        if k == PLAN:
+            boxes[r] = there
+    tasks = [
+        (r, k, arrays.place(points), frame.local[r, k].needed, boxes[r])
+        for (r, k), points in found.near.items()
+    ]
+    tasks += [(r, k, arrays.place(arrays.keep(points)), 0, None) for (r, k), points in found.own.items()]
+    for _ in workers.in_any_order(_divide_points, shared, tasks, cancel, here=True):
+        pass
     return sorted(met, key=lambda name: name[::-1])
 
 
-def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> list[Name]:
+def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> dict[Name, Box]:
     folder, grid, folder_of = shared
     rock, surface, places = task
     mesh = tuple(map(MappedArrays(folder).opened, places))
     return write_parts(mesh, rock, surface, grid, folder_of)
+
+
+def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> None:
+    folder, grid, folder_of = shared
+    rock, surface, place, needed, boxes = task
+    points = MappedArrays(folder).opened(place)
+    if boxes is None:
+        write_own_points(points, rock, surface, grid, folder_of)
+    else:
+        write_windows(points, rock, surface, needed, boxes, folder_of)

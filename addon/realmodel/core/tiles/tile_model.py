@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,28 +16,37 @@ from ..blocks import Block
 from ..build_warning import BuildWarning
 from ..errors import BuildFailed, OutputFailed
 from ..exporters.npz import model_arrays, write_arrays
+from ..local_heights import LocalHeights
 from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
 from ..surface_heights import Triangulation
 from ..work import Work, native_module
+from ..wrong_sides import WrongPoints, below_older
 from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
 from .settling import BorderVertices, Box
+from .windows import point_windows
 
 Name = tuple[int, int]  # column and row of a tile
 REGION = "region"  # in the place of a surface's number
+PLAN = "plan"  # of the surfaces that tiles interpolate
 
 
 @dataclass(frozen=True)
 class Frame:
     """What all tiles of a model share. project: without shapes; cell_kind as of Model; clips: for each rock
-    mass whether its region clips its surfaces, beside the tile."""
+    mass whether its region clips its surfaces, beside the tile. local: the surfaces that tiles interpolate,
+    by rock mass and number; sought: those of which they look for points on wrong sides, each with how many
+    points it has; off: for each rock mass wrong_sides.kept_off."""
 
     project: Project
     cell_kind: str
     grid: TileGrid
     clips: tuple[bool, ...]
+    local: dict[tuple[int, int], LocalHeights] = field(default_factory=dict)
+    sought: dict[tuple[int, int], int] = field(default_factory=dict)
+    off: tuple[frozenset[int], ...] = ()
 
 
 def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
@@ -60,46 +69,132 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
 
 def write_parts(
     mesh: Triangulation, rock: int, surface: int | str, grid: TileGrid, folder_of: Callable[[Name], Path]
-) -> list[Name]:
-    """Writes what each tile needs of a surface, or REGION, of a rock mass: a file for each tile that it
-    meets. folder_of: of a tile. Returns these tiles."""
-    bins, met = MeshBins(mesh, grid), []
+) -> dict[Name, Box]:
+    """Writes what each tile needs of a surface, REGION or PLAN of a rock mass: a file for each tile that it
+    meets. folder_of: of a tile. Returns these tiles, and the box around the vertices of each."""
+    bins, met = MeshBins(mesh, grid), {}
     for column in range(grid.columns):
         for row in range(grid.rows):
             part = bins.part(column, row)
             if not len(part.triangles):
                 continue
-            met.append((column, row))
-            path = folder_of((column, row)) / _part(rock, surface)
-            with explained(path), path.open("wb") as file:
-                write_arrays({name: getattr(part, name) for name in Part.__dataclass_fields__}, file)
+            plan = part.vertices[:, :2]
+            met[column, row] = (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
+            arrays = {name: getattr(part, name) for name in Part.__dataclass_fields__}
+            _write(arrays, folder_of((column, row)) / _part(rock, surface))
     return met
+
+
+def write_windows(
+    points: np.ndarray,
+    rock: int,
+    surface: int,
+    needed: int,
+    boxes: dict[Name, Box],
+    folder_of: Callable[[Name], Path],
+) -> None:
+    """Writes the points (P, 3) that each tile interpolates a surface from. needed: LocalHeights.needed;
+    boxes: around the nodes of each tile."""
+    windows = point_windows(points[:, :2], list(boxes.values()), needed)
+    for name, numbers in zip(boxes, windows, strict=True):
+        _write({"points": points[numbers]}, folder_of(name) / _part(rock, f"{surface}-near"))
+
+
+def write_own_points(
+    points: np.ndarray, rock: int, surface: int, grid: TileGrid, folder_of: Callable[[Name], Path]
+) -> None:
+    """Writes the points (P, 3) of a surface that lie in each tile, with their numbers."""
+    column, row = (
+        np.searchsorted(lines, points[:, axis], "right") - 1 for axis, lines in enumerate((grid.x, grid.y))
+    )
+    inside = np.flatnonzero((column >= 0) & (column < grid.columns) & (row >= 0) & (row < grid.rows))
+    tile = (column * grid.rows + row)[inside]
+    order = np.argsort(tile, kind="stable")
+    tiles, first = np.unique(tile[order], return_index=True)
+    for number, own in zip(tiles.tolist(), np.split(inside[order], first[1:]), strict=True):
+        _write(
+            {"points": points[own], "numbers": own},
+            folder_of(divmod(number, grid.rows)) / _part(rock, f"{surface}-own"),
+        )
+
+
+def _write(arrays: dict[str, np.ndarray], path: Path) -> None:
+    with explained(path), path.open("wb") as file:
+        write_arrays(arrays, file)
 
 
 def _part(rock: int, surface: int | str) -> str:
     return f"{rock}-{surface}.npz"
 
 
-def _parts(frame: Frame, folder: Path) -> dict[tuple, Part]:
+def _parts(work: Work, frame: Frame, folder: Path, threads: int) -> dict[tuple, Part]:
     parts = {}
     for r, rock in enumerate(frame.project.rocks):
+        plan = None
         for k in (*range(len(rock.surfaces)), *([REGION] if frame.clips[r] else [])):
-            path = folder / _part(r, k)
-            if path.exists():
-                arrays = read_arrays(path)
-                parts[r, k] = Part(*(arrays[name] for name in Part.__dataclass_fields__))
-            else:
-                columns = 2 if k == REGION else 3
-                parts[r, k] = Part(np.empty((0, columns)), np.empty((0, 3), np.int32), np.empty(0, np.int32))
+            if (r, k) not in frame.local:
+                parts[r, k] = _read_part(folder, r, k)
+                continue
+            plan = _read_part(folder, r, PLAN) if plan is None else plan
+            parts[r, k] = _interpolated(
+                work, frame.local[r, k], plan, folder / _part(r, f"{k}-near"), threads
+            )
     return parts
 
 
-def build_tile(
-    work: Work, frame: Frame, box: Box, folder: Path, threads: int
-) -> tuple[Model, dict[str, np.ndarray]]:
-    """The model of a tile, with borders as they come, and its BorderVertices as arrays. folder: what
-    write_parts wrote."""
-    parts = _parts(frame, folder)
+def _read_part(folder: Path, rock: int, surface: int | str) -> Part:
+    path = folder / _part(rock, surface)
+    if not path.exists():
+        columns = 2 if surface == REGION else 3
+        return Part(np.empty((0, columns)), np.empty((0, 3), np.int32), np.empty(0, np.int32))
+    arrays = read_arrays(path)
+    return Part(*(arrays[name] for name in Part.__dataclass_fields__))
+
+
+def _interpolated(work: Work, local: LocalHeights, plan: Part, points: Path, threads: int) -> Part:
+    """The part of a surface of which the plan is given. points: the file of those around."""
+    if not len(plan.vertices):
+        return plan
+    vertices = plan.vertices.copy()
+    nodes = np.ascontiguousarray(vertices[:, :2])
+    vertices[:, 2] = local.heights(work, read_arrays(points)["points"], nodes, threads)
+    return replace(plan, vertices=vertices)
+
+
+def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: int) -> dict:
+    """The WrongPoints of a tile by rock mass and number of their surface."""
+    found = {}
+    for r, rock in enumerate(frame.project.rocks):
+        own = {}
+        for k in range(len(rock.surfaces)):
+            path = folder / _part(r, f"{k}-own")
+            if (r, k) in frame.sought and path.exists():
+                own[k] = read_arrays(path)
+        shapes = [parts[r, k] for k in range(len(rock.surfaces))]
+        shapes = [(part.vertices, part.triangles) if len(part.triangles) else None for part in shapes]
+        points = {k: arrays["points"] for k, arrays in own.items()}
+        below = below_older(work, rock, shapes, points, frame.off[r] if own else (), threads)
+        for k, (beyond, others) in below.items():
+            wrong = WrongPoints.of(points[k], beyond, others, own[k]["numbers"])
+            if wrong is not None:
+                found[r, k] = wrong
+    return found
+
+
+@dataclass(frozen=True)
+class BuiltTile:
+    """model: with borders as they come. borders: its BorderVertices as arrays. wrong: WrongPoints, and
+    heights: the lowest and highest, of surfaces that were interpolated, by rock mass and number."""
+
+    model: Model
+    borders: dict[str, np.ndarray]
+    wrong: dict[tuple[int, int], WrongPoints]
+    heights: dict[tuple[int, int], tuple[float, float]]
+
+
+def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> BuiltTile:
+    """folder: with the files that are written here."""
+    parts = _parts(work, frame, folder, threads)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]
@@ -130,7 +225,13 @@ def build_tile(
     timings = {"intersect": time.perf_counter() - began}
     model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
     model.warnings = _warnings(inputs, built, numbers)
-    return model, BorderVertices.arrays_of(built)
+    heights = {
+        key: (float(parts[key].vertices[:, 2].min()), float(parts[key].vertices[:, 2].max()))
+        for key in frame.local
+        if len(parts[key].vertices)
+    }
+    wrong = _wrong_points(work, frame, parts, folder, threads)
+    return BuiltTile(model, BorderVertices.arrays_of(built), wrong, heights)
 
 
 class _NumberedError(Exception):

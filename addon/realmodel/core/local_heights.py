@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces of which each height follows from the points nearest to it: parts of them are interpolated apart,
+from the points around them, and have the same heights to the last bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .errors import InputRefused
+from .heights import from_neighbours
+from .heights.interpolation import Task, run_method
+from .heights.run import elsewhere, few_points, runs_away
+from .methods import METHODS
+from .mis_ties import without_mis_ties
+from .project import Rock, Surface
+from .surface_heights import needed_surfaces
+from .work import Work, native_module
+
+
+@dataclass(frozen=True)
+class LocalHeights:
+    """What the parts of a surface have in common. needed: how many of the points nearest to a node count.
+    known: for kriging the variogram of all points. lowest, highest: of the points."""
+
+    method: str
+    settings: dict
+    needed: int
+    known: from_neighbours.Structure | None
+    lowest: float
+    highest: float
+
+    def heights(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
+        """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
+        first of them and the others in their order, with the `needed` nearest to each node."""
+        task = Task(work, points, nodes, self.settings, threads)
+        if self.known is None:
+            return run_method(self.method, task).z
+        return from_neighbours.krige(task, self.known).z
+
+    def runs_away(self, lowest: float, highest: float) -> list[str]:
+        """As run.runs_away, of the lowest and highest of all heights."""
+        points = np.array([[0, 0, self.lowest], [0, 0, self.highest]])
+        return runs_away(points, np.array([lowest, highest]), self.method)
+
+
+def local_surfaces(rock: Rock) -> set[int]:
+    """The numbers of the surfaces of a rock mass that are such, and that no other surface has to know."""
+    found = {number for number, surface in enumerate(rock.surfaces) if _is_local(surface)}
+    others = set(range(len(rock.surfaces))) - found
+    while others:
+        needed = {each for number in others for each in needed_surfaces(rock, number)}
+        others = needed & found
+        found -= others
+    return found
+
+
+def _is_local(surface: Surface) -> bool:
+    if not surface.interpolated or surface.minimum_thickness is not None or not len(surface.points):
+        return False
+    method, settings = surface.method_options()
+    return (
+        METHODS[method].is_local
+        and settings.get("neighbours", 0) != 0
+        and settings["octants"] == 0
+        and not settings["radius"]
+        and settings["extrapolate"] == "method"
+    )
+
+
+def local_heights(
+    work: Work, points: np.ndarray, extent: np.ndarray, method: str, settings: dict, threads: int
+) -> tuple[LocalHeights, np.ndarray, list[str]]:
+    """What is found once from all points of a surface; the points that its parts are interpolated from, each
+    place once; and what there is to tell. extent: (2, 2), of all nodes. Raises InputRefused."""
+    native = native_module()
+    points, mis_ties = without_mis_ties(points)
+    told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
+    task = Task(work, points, np.empty((0, 2)), settings, threads)
+    known, needed = None, settings["neighbours"]
+    try:
+        if "kriging" in method:
+            known = from_neighbours.structure(task)
+            needed = known.neighbours
+            told += known.warnings
+            known = replace(known, warnings=())
+        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]))
+        found.heights(work, points, task.nodes, threads)  # of no nodes: it checks the points
+    except native.InputError as error:
+        raise InputRefused(str(error), item="points", place=error.place) from error
+    _, first = np.unique(points[:, :2], axis=0, return_index=True)
+    return found, np.ascontiguousarray(points[np.sort(first)]), told
+
+
+def _range(z: np.ndarray) -> tuple[float, float]:
+    return float(z.min()), float(z.max())
