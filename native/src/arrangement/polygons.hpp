@@ -25,6 +25,9 @@ inline Position minus(const Position& a, const Position& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
+inline Position cross(const Position& a, const Position& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 inline double dot(const Position& a, const Position& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

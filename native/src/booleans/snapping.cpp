@@ -13,6 +13,7 @@
 
 namespace realmodel::booleans {
 
+using arrangement::cross;
 using arrangement::dot;
 using arrangement::minus;
 using Position = exact::SpacePosition;
@@ -28,10 +29,6 @@ Position along(const Position& a, const Position& b, double t) {
     for (std::size_t k = 0; k < 3; ++k)
         p[k] = a[k] + t * (b[k] - a[k]);
     return p;
-}
-
-Position cross(const Position& u, const Position& v) {
-    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
 double length(const Position& v) {

@@ -234,6 +234,7 @@ bool PartRounding::lacks_extent(std::size_t piece, const Position& middle) const
 
 /// A new node in the middle of a polygon, or beside it where there is one already.
 NodeId PartRounding::add_middle(std::size_t piece) {
+    take_all_vertices();
     const auto nodes = pieces_.polygons[piece];
     const Position first = at(nodes[0]);
     Position middle = first;
@@ -400,6 +401,7 @@ void PartRounding::set_touching_apart() {
 
 /// A new node between the ends of an edge, where no other is.
 NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
+    take_all_vertices();
     Position middle;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] = at(edge[0])[k] + (at(edge[1])[k] - at(edge[0])[k]) / 2;

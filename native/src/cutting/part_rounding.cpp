@@ -492,6 +492,15 @@ void PartRounding::set_apart() {
     }
 }
 
+/// Of set_apart() it is enough to know what is near new nodes; those that are added later may lie
+/// between two vertices that are away from them.
+void PartRounding::take_all_vertices() {
+    if (has_taken_all_) return;
+    has_taken_all_ = true;
+    for (const Position& p : vertices_)
+        taken_.insert(p);
+}
+
 /// Gives parts without thickness on an axis, and walls without extent in plan, one unit of it; of
 /// joined models a new polygon may be a wall, too.
 void PartRounding::give_extents() {

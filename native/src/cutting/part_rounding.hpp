@@ -88,6 +88,7 @@ private:
     std::vector<std::array<NodeId, 2>> touching_edges() const;
     void set_touching_apart();
     void set_apart();
+    void take_all_vertices();
     Freedom freedom_of(std::span<const NodeId> nodes) const;
     void move_aside(NodeId node);
     bool is_upright(std::size_t piece) const;
@@ -121,6 +122,7 @@ private:
     std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
     Buckets<std::int32_t> pieces_of_;       ///< the pieces around each part
     Positions taken_;                       ///< positions of nodes
+    bool has_taken_all_ = false;            ///< those of all of the model's vertices, too
 };
 
 /// Calls visit(i, memory) for all of some parts, on several threads.

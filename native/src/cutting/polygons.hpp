@@ -5,6 +5,7 @@
 
 namespace realmodel::cutting {
 
+using arrangement::cross;
 using arrangement::dot;
 using arrangement::minus;
 using arrangement::NodeId;

@@ -9,16 +9,13 @@
 
 namespace realmodel::structures {
 
+using cutting::cross;
 using cutting::dot;
 using cutting::minus;
 using cutting::Position;
 using spatial::Box;
 
 namespace {
-
-Position cross(const Position& a, const Position& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 constexpr double kTouches = 1e-9;  // of the extent of all: so near counts as met
 constexpr std::uint8_t kMeets = 1, kPasses = 2;

@@ -12,6 +12,7 @@
 
 namespace realmodel::structures {
 
+using cutting::cross;
 using cutting::dot;
 using cutting::minus;
 using cutting::NodeId;
@@ -37,10 +38,6 @@ struct Plane {
         return {dot(off, strike), dot(off, dip)};
     }
 };
-
-Position cross(const Position& a, const Position& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 bool make_unit(Position& p) {
     const double size = std::sqrt(dot(p, p));

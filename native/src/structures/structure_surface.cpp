@@ -15,6 +15,7 @@
 
 namespace realmodel::structures {
 
+using cutting::cross;
 using cutting::CutterSurface;
 using cutting::dot;
 using cutting::minus;
@@ -73,7 +74,8 @@ class Continuation {
 public:
     /// @param beyond  for each fault at which it ends, of vertices: whether they are beyond that.
     ///                Edges between such ones are continued in its plane, those that hang together
-    ///                all in one direction: at bays of the border others would come back
+    ///                all in one direction; so are edges at bays of the border, where what
+    ///                continues them would overlap, and a point could be beside either
     /// @param size  of a box around the rock and all structures
     Continuation(const CutterSurface& fault, const std::vector<std::vector<std::uint8_t>>& beyond,
                  double size)
@@ -125,42 +127,83 @@ private:
     }
 
     void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
-        const auto is_beyond = [&](NodeId v) {
-            return std::ranges::any_of(beyond, [v](const auto& own) { return own[index(v)] != 0; });
+        const auto are_beyond = [](const std::vector<std::uint8_t>& own, const BorderEdge& edge) {
+            return own[index(edge.from)] != 0 && own[index(edge.to)] != 0;
         };
+        std::vector<std::vector<std::int32_t>> leaving(fault_.vertices.size());
         for (const BorderEdge& edge : border_) {
             const Position away = away_from(edge);
             const bool is_steep = std::abs(away[2]) >= 0.5;
-            direction_.push_back(is_steep && !(is_beyond(edge.from) && is_beyond(edge.to))
-                                     ? Position{0, 0, away[2] > 0 ? 1.0 : -1.0}
-                                     : away);
+            const bool in_plane =
+                std::ranges::any_of(beyond, [&](const auto& own) { return are_beyond(own, edge); });
+            direction_.push_back(is_steep && !in_plane ? Position{0, 0, away[2] > 0 ? 1.0 : -1.0}
+                                                       : away);
+            leaving[index(edge.from)].push_back(static_cast<std::int32_t>(direction_.size()) - 1);
         }
-        for (const auto& own : beyond)
-            find_common_directions(own);
+        const std::vector<Position> own = direction_;
+        DisjointSets chains(border_.size());
+        const auto each_pair = [&](const auto& visit) {
+            for (std::int32_t i = 0; index(i) < border_.size(); ++i) {
+                for (const std::int32_t next : leaving[index(border_[index(i)].to)])
+                    visit(i, next);
+            }
+        };
+        for (const auto& is_beyond : beyond) {
+            each_pair([&](std::int32_t i, std::int32_t next) {
+                if (are_beyond(is_beyond, border_[index(i)]) &&
+                    are_beyond(is_beyond, border_[index(next)]))
+                    chains.join(i, next);
+            });
+        }
+        take_means(own, chains);
+        for (bool any = true; any;) {
+            any = false;
+            each_pair([&](std::int32_t i, std::int32_t next) {
+                if (chains.find(i) == chains.find(next) || !overlap(i, next)) return;
+                chains.join(i, next);
+                any = true;
+            });
+            if (any) take_means(own, chains);
+        }
     }
 
-    /// Gives edges that hang together beyond a fault their mean direction, unless they go round.
-    void find_common_directions(const std::vector<std::uint8_t>& is_beyond) {
+    /// Whether what continues two edges overlaps, as at a bay of the border: seen at right angles
+    /// to the fault, directions turn the way that the border does not.
+    bool overlap(std::int32_t i, std::int32_t next) const {
+        constexpr double kTurns = 0.25;  // a little overlap, nearly in one plane, parts nothing
+        const BorderEdge &one = border_[index(i)], &other = border_[index(next)];
+        const Position normal = unit(sum(normal_of(one), normal_of(other)));
+        return dot(normal, cross(direction_[index(i)], direction_[index(next)])) < -kTurns;
+    }
+    Position normal_of(const BorderEdge& edge) const {
+        return unit(
+            cross(minus(at(edge.to), at(edge.from)), minus(at(edge.corner), at(edge.from))));
+    }
+
+    /// Gives the edges of each chain the mean of their own directions, unless they go round.
+    void take_means(const std::vector<Position>& own, DisjointSets& chains) {
         constexpr double kRound = 0.25;  // of all directions: their sum, at least
-        std::vector<std::size_t> some;
-        DisjointSets chains(fault_.vertices.size());
+        struct Sum {
+            Position way{0, 0, 0};
+            double whole = 0;
+            std::size_t edges = 0;
+        };
+        std::vector<Sum> sums(border_.size());
+        const auto sum_of = [&](std::size_t i) -> Sum& {
+            return sums[index(chains.find(static_cast<std::int32_t>(i)))];
+        };
         for (std::size_t i = 0; i < border_.size(); ++i) {
-            const auto& [from, to, corner] = border_[i];
-            if (is_beyond[index(from)] == 0 || is_beyond[index(to)] == 0) continue;
-            some.push_back(i);
-            chains.join(from, to);
-        }
-        std::map<std::int32_t, std::pair<Position, double>> sums;
-        for (const std::size_t i : some) {
             const Position along = minus(at(border_[i].to), at(border_[i].from));
             const double length = std::sqrt(dot(along, along));
-            auto& [way, whole] = sums[chains.find(border_[i].from)];
-            way = beyond(way, away_from(border_[i]), length);
-            whole += length;
+            Sum& all = sum_of(i);
+            all.way = beyond(all.way, own[i], length);
+            all.whole += length;
+            ++all.edges;
         }
-        for (const std::size_t i : some) {
-            const auto& [way, whole] = sums[chains.find(border_[i].from)];
-            if (std::sqrt(dot(way, way)) >= kRound * whole) direction_[i] = unit(way);
+        for (std::size_t i = 0; i < border_.size(); ++i) {
+            const Sum& all = sum_of(i);
+            if (all.edges > 1 && std::sqrt(dot(all.way, all.way)) >= kRound * all.whole)
+                direction_[i] = unit(all.way);
         }
     }
 
