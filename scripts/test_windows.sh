@@ -8,7 +8,7 @@
 #     --zip FILE  this zip, instead of one made by scripts/package.sh
 #     native      the C++ tests
 #     digests     what the native part makes of a fixed set of stacks, meshes and interpolations: the same bytes as on Linux
-#     zip         what is in the zip, and what Blender 4.5 and 5.0 say of it
+#     zip         what is in the zip, and whether Blender 4.5 and 5.0 accept and install it
 #     files       tests/windows with Python 3.11 and NumPy 1: the samples' models as on Linux, paths, line ends, files
 #                 open elsewhere, Ctrl-C
 #     3.13        the same with Python 3.13 and NumPy 2 (PyPI has no Python 3.14 for Windows)
@@ -129,11 +129,16 @@ digests() {
 }
 
 zip() {
-    local version
+    local version extensions
     for version in 4.5 5.0; do
         blender "$version" || return 1
-        windows_run "$windows/blender-$version/python.exe" \
-            "$windows/blender-$version/Lib/site-packages/bpy/$version/scripts/addons_core/bl_pkg/cli/blender_ext.py" validate "$zip" || return 1
+        extensions=$windows/blender-$version/Lib/site-packages/bpy/$version/scripts/addons_core/bl_pkg/cli/blender_ext.py
+        windows_run "$windows/blender-$version/python.exe" "$extensions" validate "$zip" || return 1
+        rm -rf "$windows/installed"
+        mkdir "$windows/installed"
+        windows_run "$windows/blender-$version/python.exe" "$extensions" install-files --local-dir "$windows/installed" \
+            --blender-version "$version.0" --python-version 3.11.0 "$zip" || return 1
+        diff -r -x __pycache__ "$windows/tree/addon/realmodel" "$windows/installed/realmodel" || return 1
     done
     "$root/scripts/python_environment.sh" "$root/build/venv" "$root/scripts/requirements/test.txt" /usr/bin/python3 || return 1
     "$root/build/venv/bin/python" -m pytest -q "$root/tests/package/test_windows_zip.py" --windows-zip "$zip"
