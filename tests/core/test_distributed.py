@@ -186,10 +186,12 @@ def test_without_dask(monkeypatch, tmp_path):
         run(tmp_path, None)
 
 
-def test_clusters_of_one_machine_stand_beside_each_other():
+def test_clusters_of_one_machine_stand_beside_each_other(monkeypatch):
     """No port is asked for: a second one would warn of the first one's."""
     from realmodel.distributed.workers import workers_of
 
+    # Dask leaves it in this process, too, after any cluster that is not ours
+    monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
     with workers_of(None, 1) as one, workers_of(None, 1) as other:
         addresses = {workers.client.scheduler.address for workers in (one, other)}
         assert len(addresses) == 2
