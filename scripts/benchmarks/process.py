@@ -40,10 +40,11 @@ def resident() -> int:
 
 def peak_resident(process: int | str = "self") -> int:
     """Bytes that a process had in memory at most. (ru_maxrss would count its parent's at the fork too.)"""
-    for line in Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines():
+    status = Path(f"/proc/{process}/status")
+    for line in status.read_text(encoding="ascii").splitlines():
         if line.startswith("VmHWM:"):
             return 1024 * int(line.split()[1])
-    raise OSError("no VmHWM in /proc/self/status")
+    raise OSError(f"no VmHWM in {status}")
 
 
 def run_apart(command: list, seconds: float, memory: int) -> tuple[str, float, int]:

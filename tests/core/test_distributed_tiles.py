@@ -127,7 +127,7 @@ def test_a_scheduler_that_goes_away(tmp_path):
 
 
 def test_files_are_read_by_workers(client, tmp_path):
-    """And what is wrong with them is told as by this process."""
+    """A worker refuses a bad file with the same message as a build without workers."""
     from realmodel.core import InputRefused
     from realmodel.distributed import build as build_tiles
 

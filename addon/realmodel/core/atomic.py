@@ -186,6 +186,7 @@ def _require_writable(target: str | Path, folder: Path) -> None:
 
 @contextmanager
 def explained(target: str | Path) -> Iterator[None]:
+    """Raises OutputFailed, which names the target, in the place of OSError."""
     try:
         yield
     except OSError as error:
