@@ -85,8 +85,9 @@ class SurfaceInput:
         if points is None or (not len(points) and not surface.needs_points):
             return np.empty((0, 3)), told
         checked = checked_points(points)
+        # what is checked may be another array with the same values
         is_kept = surface.point_file is not None or self.met is not None
-        return points if is_kept else checked, told  # what is checked may be another array with the same values
+        return points if is_kept else checked, told
 
     def _mesh(self, step: Step):
         surface = self.surface
