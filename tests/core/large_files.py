@@ -144,3 +144,83 @@ def write_points(name, rows, columns, folder):
     path = folder / name
     FORMATS[name](z, path)
     return path, points(z, name in FROM_SOUTH)
+
+
+def lattice(rows, columns):
+    """Vertices (V, 3) and triangles (T, 3) over a grid of points; heights have two decimals, and few are
+    below zero."""
+    row, column = np.mgrid[0:rows, 0:columns]
+    z = ((row * 7919 + column * 104729) % 40009) / 4 - 50
+    vertices = np.column_stack([EAST + column.ravel() * STEP, SOUTH + row.ravel() * STEP, z.ravel()])
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    a, b, c, d = corner, corner + 1, corner + columns + 1, corner + columns
+    both = np.stack([np.column_stack([a, b, c]), np.column_stack([a, c, d])], axis=1)
+    return vertices, both.reshape(-1, 3).astype(np.int32)
+
+
+def _off(vertices, triangles, file):
+    file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
+    np.savetxt(file, vertices, fmt="%.2f")
+    np.savetxt(file, triangles, fmt="3 %d %d %d")
+
+
+def _obj(vertices, triangles, file):
+    np.savetxt(file, vertices, fmt="v %.2f %.2f %.2f")
+    np.savetxt(file, triangles + 1, fmt="f %d %d %d")
+
+
+def _tsurf(vertices, triangles, file):
+    file.write("GOCAD TSurf 1\nHEADER {\nname: top\n}\nTFACE\n")
+    numbered = np.column_stack([np.arange(1, len(vertices) + 1), vertices])
+    np.savetxt(file, numbered, fmt="VRTX %d %.2f %.2f %.2f")
+    np.savetxt(file, triangles + 1, fmt="TRGL %d %d %d")
+    file.write("END\n")
+
+
+def _stl_text(vertices, triangles, file):
+    file.write("solid top\n")
+    vertex = "vertex %.2f %.2f %.2f\n"
+    facet = f"facet normal 0 0 1\nouter loop\n{3 * vertex}endloop\nendfacet"
+    np.savetxt(file, vertices[triangles].reshape(-1, 9), fmt=facet)
+    file.write("endsolid top\n")
+
+
+def _ply_text(vertices, triangles, file):
+    file.write(_ply_head("ascii", vertices, triangles))
+    np.savetxt(file, vertices, fmt="%.2f")
+    np.savetxt(file, triangles, fmt="3 %d %d %d")
+
+
+def _ply_head(kind, vertices, triangles):
+    axes = "".join(f"property double {axis}\n" for axis in "xyz")
+    faces = f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n"
+    return f"ply\nformat {kind} 1.0\nelement vertex {len(vertices)}\n{axes}{faces}end_header\n"
+
+
+def _ply_binary(vertices, triangles, path):
+    table = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
+    table["count"], table["corners"] = 3, triangles
+    head = _ply_head("binary_little_endian", vertices, triangles).encode()
+    path.write_bytes(head + vertices.astype("<f8").tobytes() + table.tobytes())
+
+
+def _stl_binary(vertices, triangles, path):
+    facet = np.zeros(len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    facet["corners"] = vertices[triangles]
+    path.write_bytes(b"made".ljust(80) + struct.pack("<I", len(triangles)) + facet.tobytes())
+
+
+TEXT_MESHES = {"m.off": _off, "m.obj": _obj, "m.ts": _tsurf, "text.stl": _stl_text, "text.ply": _ply_text}
+BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary}
+MESHES = {**TEXT_MESHES, **BINARY_MESHES}
+
+
+def write_mesh(name, rows, columns, folder):
+    """A file of a mesh in the format of MESHES; the file, its vertices and triangles."""
+    mesh, path = lattice(rows, columns), folder / name
+    if name in BINARY_MESHES:
+        BINARY_MESHES[name](*mesh, path)
+    else:
+        with path.open("w") as file:
+            TEXT_MESHES[name](*mesh, file)
+    return path, *mesh

@@ -28,9 +28,41 @@ def as_it_is(array: np.ndarray) -> np.ndarray:
     return array
 
 
+class Rows:
+    """An array that comes piece by piece. empty: without rows, with the type and the columns of all."""
+
+    def __init__(self, empty: np.ndarray):
+        self._empty = empty
+        self._pieces: list[np.ndarray] = []
+
+    def add(self, piece: np.ndarray) -> None:
+        if len(piece):
+            self._pieces.append(np.asarray(piece, self._empty.dtype))
+
+    def array(self) -> np.ndarray:
+        """All pieces, one after another."""
+        pieces = self._pieces or [self._empty]
+        return np.ascontiguousarray(pieces[0]) if len(pieces) == 1 else np.concatenate(pieces)
+
+    def taken(self) -> np.ndarray:
+        """All pieces, in memory and nowhere else."""
+        found = self.array()
+        self._pieces = []
+        return found
+
+
+MakeRows = Callable[[np.ndarray], Rows]
+
+
 def in_memory(pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
     """Gathers pieces for callers that keep arrays in memory."""
-    return np.concatenate([empty, *pieces])
+    return _gathered(Rows(empty), pieces)
+
+
+def _gathered(rows: Rows, pieces: Iterable[np.ndarray]) -> np.ndarray:
+    for piece in pieces:
+        rows.add(piece)
+    return rows.array()
 
 
 def in_pieces(array: np.ndarray) -> Iterator[np.ndarray]:
@@ -69,22 +101,13 @@ class MappedArrays:
             np.save(file, array)
             return self.opened(file)
 
+    def rows(self, empty: np.ndarray) -> Rows:
+        """Rows in a file, read-only in the end; the piece that comes is in memory."""
+        return _MappedRows(empty, self._new_file(), self.opened)
+
     def gather(self, pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
-        """Gathers pieces in a file, read-only; one of them at a time is in memory."""
-        file, rows = self._new_file(), 0
-        with _told_of(file):
-            out = file.open("wb")
-        with out:
-            out.seek(_HEADER)
-            for piece in pieces:
-                rows += len(piece)
-                with _told_of(file):
-                    out.write(np.ascontiguousarray(piece, empty.dtype))
-            with _told_of(file):
-                out.seek(0)
-                out.write(_header(empty.dtype, (rows, *empty.shape[1:])))
-                out.flush()
-        return self.opened(file) if rows else empty
+        """Gathers pieces in a file, read-only."""
+        return _gathered(self.rows(empty), pieces)
 
     def _new_file(self) -> Path:
         return self.folder / f"{secrets.token_hex(8)}.npy"
@@ -101,6 +124,40 @@ class MappedArrays:
         array = np.load(place, mmap_mode="r")
         self._files[id(array)] = array, place
         return array
+
+
+class _MappedRows(Rows):
+    """In a file."""
+
+    def __init__(self, empty: np.ndarray, file: Path, opened: Callable[[Path], np.ndarray]):
+        super().__init__(empty)
+        self._file, self._opened, self._count = file, opened, 0
+        self._write(_header(empty.dtype, (0, *empty.shape[1:])), "wb")
+
+    def add(self, piece: np.ndarray) -> None:
+        if len(piece):
+            self._count += len(piece)
+            self._write(np.ascontiguousarray(piece, self._empty.dtype), "ab")
+
+    def array(self) -> np.ndarray:
+        self._write(_header(self._empty.dtype, (self._count, *self._empty.shape[1:])), "r+b")
+        if self._count:
+            return self._opened(self._file)
+        with _told_of(self._file):
+            self._file.unlink()
+        return self._empty
+
+    def taken(self) -> np.ndarray:
+        with _told_of(self._file), self._file.open("rb") as opened:
+            opened.seek(_HEADER)
+            content = opened.read()
+        with _told_of(self._file):
+            self._file.unlink()
+        return np.frombuffer(content, self._empty.dtype).reshape(self._count, *self._empty.shape[1:])
+
+    def _write(self, content, mode: str) -> None:
+        with _told_of(self._file), self._file.open(mode) as out:
+            out.write(content)
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from ..errors import InputRefused
 from ..mapped_arrays import Gather, in_memory
 from .grid_text import grid_heights, header_numbers, require_count
 from .raster import Raster, without_values
-from .text import BYTES_AT_ONCE, FileBytes, Step, no_step, text_content
+from .text import FileBytes, Step, no_step, text_content
 
 _MAGIC = -996
 _BEGINNING = re.compile(rb"\s*-996(?:\s+[-+.\dEe]+){3}\s*\n")
@@ -95,19 +95,14 @@ def _binary(file: Path):
 
 def _records(file: Path, raw: FileBytes, at: int, rows: int, columns: int) -> Iterator[np.ndarray]:
     """The heights, in records of any length from a byte on."""
-    have, window, begin = 0, b"", at  # of what is read from `begin` on
+    have = 0
     while have < rows * columns:
-        if at + 4 > begin + len(window):
-            window, begin = raw[at : at + BYTES_AT_ONCE], at
-        size = int.from_bytes(window[at - begin : at - begin + 4], "big")
+        size = int.from_bytes(raw[at : at + 4], "big")
         is_whole = 0 < size <= len(raw) - at - 8 and not size % 4
-        if is_whole and at + size + 8 > begin + len(window):
-            window, begin = raw[at : at + max(size + 8, BYTES_AT_ONCE)], at
-        first = at - begin
-        if not is_whole or window[first + 4 + size : first + 8 + size] != window[first : first + 4]:
+        if not is_whole or raw[at + 4 + size : at + 8 + size] != raw[at : at + 4]:
             raise InputRefused(f"a record of the grid is damaged (byte {at})", file=file)
         with np.errstate(invalid="ignore"):  # NaN of any kind is no height
-            yield np.frombuffer(window, ">f4", size // 4, first + 4).astype(np.float64)
+            yield np.frombuffer(raw[at + 4 : at + 4 + size], ">f4").astype(np.float64)
         have += size // 4
         at += size + 8
     if have != rows * columns:

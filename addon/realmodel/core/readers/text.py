@@ -34,6 +34,7 @@ class FileBytes:
 
     def __init__(self, file: Path):
         self._file = file
+        self._block, self._begin = b"", 0  # what was read last, and where it stands
         with _read_of(file):
             self._size = file.stat().st_size
 
@@ -44,14 +45,22 @@ class FileBytes:
         begin, end, _ = part.indices(self._size)
         if end <= begin:
             return b""
+        if begin < self._begin or end > self._begin + len(self._block):
+            if end - begin > BYTES_AT_ONCE:
+                return self._read(begin, end)
+            self._block = self._read(begin, min(begin + BYTES_AT_ONCE, self._size))
+            self._begin = begin
+        return self._block[begin - self._begin : end - self._begin]
+
+    def _read(self, begin: int, end: int) -> bytes:
+        found = bytearray()
         with _read_of(self._file), self._file.open("rb", buffering=0) as opened:
             opened.seek(begin)
-            found = opened.read(end - begin)
             while len(found) < end - begin and (more := opened.read(end - begin - len(found))):
                 found += more
         if len(found) < end - begin:
             raise InputRefused("it became shorter while it was read", file=self._file)
-        return found
+        return bytes(found)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
         """Where a text of one byte stands next; -1 where it does not."""
@@ -108,6 +117,25 @@ def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
         begin = end
 
 
+def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
+    """Lines of text as read_text has them, few at once: the number of the first, from 1, these, and which
+    share of the file is done then. Raises InputRefused."""
+    content = content_of(file)
+    require_text(file, content[:4096])
+    encoding, number = encoding_of(content), 1
+    begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
+    for at, piece in pieces_of(content, begin):
+        lines = _with_plain_ends(piece.decode(encoding)).split("\n")
+        if piece.endswith((b"\n", b"\r")) and at + len(piece) < len(content):
+            lines.pop()
+        yield number, lines, (at + len(piece)) / len(content)
+        number += len(lines)
+
+
+def _with_plain_ends(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
 def encoding_of(content: Content) -> str:
     """utf-8, or latin-1 where it cannot be that."""
     decoder = codecs.getincrementaldecoder("utf-8")()
@@ -157,7 +185,7 @@ def read_text(file: Path) -> str:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return _with_plain_ends(text)
 
 
 def column_numbers(

@@ -152,6 +152,8 @@ def _grouped(
     column: np.ndarray, row: np.ndarray, grid: TileGrid
 ) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
     """Which of tiles (N,) are the same one, in ascending order."""
+    if not len(column):
+        return
     number = column * grid.rows + row
     if grid.columns * grid.rows < 1 << 15:
         number = number.astype(np.int16)  # quicker to sort
