@@ -27,7 +27,8 @@ from realmodel.core import (
     open_tiles,
 )
 from realmodel.core.local_heights import LocalHeights
-from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
+from realmodel.core.tiles import grid as tile_grids
+from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
 from realmodel.core.tiles.windows import point_windows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
@@ -543,14 +544,18 @@ def test_lines_keep_off_vertices():
         assert np.abs(mesh[:, axis][:, None] - lines).min() > 0.1
 
 
-def test_each_triangle_is_in_the_tiles_that_it_meets():
+@pytest.mark.parametrize("at_once", [7, 1000])
+def test_each_triangle_is_in_the_tiles_that_it_meets(monkeypatch, at_once):
+    monkeypatch.setattr(tile_grids, "_TRIANGLES_AT_ONCE", at_once)
     mesh = hilly(10, 0.0, 1)
     grid = tile_grid([mesh[0]], (35, 30))
-    bins = MeshBins(mesh, grid)
+    listed = {}
+    for name, numbers in triangles_by_tile(mesh, grid):
+        listed.setdefault(name, []).extend(numbers.tolist())
     corners = mesh[0][mesh[1]][:, :, :2]
     for column, row in grid:
         low_x, low_y, high_x, high_y = grid.box(column, row)
-        part = bins.part(column, row)
+        part = part_of(mesh, np.array(listed[column, row]))
         away = (
             (corners[:, :, 0].max(1) < low_x)
             | (corners[:, :, 0].min(1) > high_x)
