@@ -116,22 +116,23 @@ class Part:
 
 def triangles_by_tile(mesh: Triangulation, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
     """Piece by piece the numbers, ascending, of the triangles whose boxes meet a tile."""
-    vertices, triangles = mesh
+    vertices, triangles = map(np.asarray, mesh)  # a memmap would be slower
     for begin in range(0, len(triangles), _TRIANGLES_AT_ONCE):
         corners = triangles[begin : begin + _TRIANGLES_AT_ONCE]
         first, count = [], []
         for axis, lines in enumerate((grid.x, grid.y)):
-            at = [vertices[:, axis][corner] for corner in corners.T]
+            a, b, c = (vertices[:, axis][corner] for corner in corners.T)
+            ends = (np.minimum(np.minimum(a, b), c), "left"), (np.maximum(np.maximum(a, b), c), "right")
             low, high = (
-                (np.searchsorted(lines, ends, side) - 1).clip(0, len(lines) - 2)
-                for ends, side in ((np.minimum.reduce(at), "left"), (np.maximum.reduce(at), "right"))
+                (np.searchsorted(lines, end, side) - 1).clip(0, len(lines) - 2) for end, side in ends
             )
             first.append(low)
             count.append(high - low + 1)
         tiles = count[0] * count[1]
-        own = np.repeat(np.arange(len(corners)), tiles)
-        column, row = first[0][own], first[1][own]
-        if len(own) > len(corners):
+        own, (column, row) = np.arange(len(corners)), first
+        if int(tiles.sum()) > len(corners):
+            own = np.repeat(own, tiles)
+            column, row = column[own], row[own]
             nth = np.arange(len(own)) - np.repeat(np.cumsum(tiles) - tiles, tiles)
             column, row = column + nth // count[1][own], row + nth % count[1][own]
         for tile, which in _grouped(column, row, grid):
@@ -158,8 +159,9 @@ def _grouped(
     if grid.columns * grid.rows < 1 << 15:
         number = number.astype(np.int16)  # quicker to sort
     order = np.argsort(number, kind="stable")
-    there, begins = np.unique(number[order], return_index=True)
-    for tile, which in zip(there.tolist(), np.split(order, begins[1:]), strict=True):
+    number = number[order]
+    begins = np.flatnonzero(np.diff(number, prepend=-1))
+    for tile, which in zip(number[begins].tolist(), np.split(order, begins[1:]), strict=True):
         yield divmod(tile, grid.rows), which
 
 
