@@ -30,6 +30,7 @@ from realmodel.core.local_heights import LocalHeights
 from realmodel.core.tiles import grid as tile_grids
 from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
 from realmodel.core.tiles.windows import PointWindows
+from realmodel.core.work import native_module
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
 from realmodel.distributed.workers import Workers
@@ -438,6 +439,21 @@ def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):
     assert any(warning.kind == "joined" for warning in whole.warnings)
     assert_same_blocks(tiled, whole)
     assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+
+
+def test_borders_of_one_mesh_are_not_compared(monkeypatch, tmp_path):
+    """Nodes of a region's mesh may lie as near each other as they do: nothing is joined in the undivided
+    model, either."""
+    monkeypatch.setattr(native_module(), "join_rock_masses", None)
+    project = from_points()
+    near = np.nextafter(40.0, 50.0)
+    project.rocks[0].constraints = [
+        np.array([[20.0, 40.0], [50.0, near]]),
+        np.array([[60.0, 40.0], [80.0, 40.0]]),
+    ]
+    tiled, whole = build_tiles(project, tmp_path / "t", (40, 45)), build(project)
+    assert_same_blocks(tiled, whole)
+    assert_same_heights(tiled, whole)
 
 
 def test_windows_hold_the_nearest_points():

@@ -205,7 +205,9 @@ def _kept(rock: tuple, arrays: MappedArrays) -> tuple:
 
 def _joined(surfaces: SurfaceSet, cancel):
     """The rock masses with their borders joined and what to tell of it; None where there is nothing to join.
-    No height matters to that."""
+    No height matters to that. Nor is anything joined of surfaces on one mesh that was made for them."""
+    if _have_one_mesh(surfaces.rock_inputs):
+        return None
     native, rocks = native_module(), [entry.native() for entry in surfaces.rock_inputs]
 
     def task(work: Work):
@@ -216,6 +218,16 @@ def _joined(surfaces: SurfaceSet, cancel):
                 return None  # the tile where it is tells of it in the user's names
 
     return run(task, cancel=cancel)
+
+
+def _have_one_mesh(inputs: list[RockInput]) -> bool:
+    """Whether all surfaces are interpolated on the whole mesh of one region."""
+    if len(inputs) > 1 or inputs[0].region is None:
+        return False
+    rock, nodes = inputs[0].rock, len(inputs[0].region[0])
+    return all(surface.interpolated for surface in rock.surfaces) and all(
+        len(vertices) == nodes for vertices, _ in inputs[0].surfaces
+    )
 
 
 def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]) -> str:
