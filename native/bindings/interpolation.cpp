@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, nearest_distance, line_sums.
+// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, mean_spacing, nearest_distance,
+// line_sums.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -110,16 +111,23 @@ Array<double> idw_left_out(const Array<double>& points, double power, int neighb
 }
 
 Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
-                     int neighbours, int octants, double radius, int threads, Progress* control) {
+                     int neighbours, int octants, double radius, double spacing, int threads,
+                     Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::thin_plate(from, to, {smoothing, neighbours, threads, octants, radius},
-                                      control);
+        z = interpolation::thin_plate(
+            from, to, {smoothing, neighbours, threads, octants, radius, spacing}, control);
     }
     return to_array(std::move(z));
+}
+
+double mean_spacing(const Array<double>& points) {
+    const auto from = rows<3>(points, "points");
+    const py::gil_scoped_release unlocked;
+    return interpolation::mean_spacing(from);
 }
 
 Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes, int threads,
@@ -234,16 +242,22 @@ Raises InputError as krige does; Cancelled.)");
                arg("control") = py::none(),
                R"(idw at each of the points, from all the others. Returns z (P,).)");
     module.def("spline", &spline, arg("points"), arg("nodes"), arg("smoothing") = 0.0,
-               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
-               arg("control") = py::none(),
+               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0,
+               arg("spacing") = 0.0, arg("threads") = 0, arg("control") = py::none(),
                R"(Thin plate splines through the nearest points of each node.
 
 points      (P, 3) float64: x, y, z
 nodes       (N, 2) float64: x, y
 smoothing   added to the diagonal where distances count in the points' mean spacing; 0: points hold
 neighbours, octants, radius  as krige
+spacing     the unit of distances, mean_spacing of all points where these are a part; 0: of these
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
+    module.def(
+        "mean_spacing", &mean_spacing, arg("points"),
+        R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.
+
+Raises InputError as krige does for points.)");
     module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
                arg("threads") = 0, arg("control") = py::none(),
                R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.

@@ -27,7 +27,8 @@ from realmodel.core import (
     open_tiles,
 )
 from realmodel.core.local_heights import LocalHeights
-from realmodel.core.tiles.grid import MeshBins, checked_size, clipped_region, tile_grid
+from realmodel.core.tiles import grid as tile_grids
+from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
 from realmodel.core.tiles.windows import point_windows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
@@ -281,6 +282,12 @@ def from_points(count=900):
         Surface("drift", points=scattered(count, 2, 4), method="universal_kriging", rule="base"),
         Surface("weighted", points=scattered(count, 3, 7), method="idw", rule="conformable"),
         Surface("lattice", points=np.round(scattered(count, 4, 9)), options={"variogram": GIVEN}),
+        Surface(
+            "splines",
+            points=scattered(count, 7, 10.5),
+            method="spline",
+            options={"neighbours": 10, "smoothing": 0.1},
+        ),
         Surface("triangles", points=scattered(count, 5, 12), method="tin"),
         Surface("above", points=scattered(count, 6, 12), minimum_thickness=0.5),
     ]
@@ -308,13 +315,51 @@ def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
     assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
     assert count == 9 or any(warning.kind == "wrong_side" for warning in tiled.warnings)
     of_tiles = [points for nodes, points in seen if nodes]
-    assert len(of_tiles) == 4 * len(tiled.tiles)
+    assert len(of_tiles) == 5 * len(tiled.tiles)
     assert count == 9 or np.mean(of_tiles) < 0.7 * count
+    assert_same_heights(tiled, whole)
+
+
+def assert_same_heights(tiled, whole):
+    """To the last bit."""
     for tile in tiled.tiles:
         model = tile.model()
-        for k in range(6):
+        for k in range(len(whole.surface_names)):
             known = {tuple(place): z for *place, z in whole.surface(k)[0].tolist()}
             assert all(known[x, y] == z for x, y, z in model.surface(k)[0].tolist())
+
+
+def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):
+    """By all points; tiles interpolate by what was chosen, where they can."""
+    smooth = scattered(300, 1, 5)
+    smooth[:, 2] = 5 + 2 * np.sin(smooth[:, 0] / 30) * np.cos(smooth[:, 1] / 40)
+    flat = np.array([[10.0, 10.0, 30.0], [80.0, 70.0, 31.0]])
+    surfaces = [
+        Surface("rough", points=scattered(300, 2), method="auto"),
+        Surface("smooth", points=smooth, method="auto"),
+        Surface("ends", points=scattered(300, 3, 14), method="auto", options={"extrapolate": "nearest"}),
+        Surface("two", points=flat, method="auto"),
+    ]
+    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
+    whole = build(project)
+    chosen = [each.method for each in whole.interpolations]
+    assert {"kriging", "universal_kriging"}.intersection(chosen[:1]) and chosen[3] == "plane"
+    assert chosen[1] in ("spline", "kriging", "universal_kriging")
+    found = []
+    real = tile_folder.prepared
+
+    def prepared(*arguments):
+        made = real(*arguments)
+        found.extend((k, local.method) for (_, k), local in made.frame.local.items())
+        return made
+
+    monkeypatch.setattr(tile_folder, "prepared", prepared)
+    tiled = build_tiles(project, tmp_path / "t", (30, 25))
+    assert found == [(0, chosen[0]), (1, chosen[1])]
+    assert_same_blocks(tiled, whole)
+    assert_same_heights(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+    assert [surface.method for surface in project.rocks[0].surfaces] == ["auto"] * 4
 
 
 def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):
@@ -543,14 +588,18 @@ def test_lines_keep_off_vertices():
         assert np.abs(mesh[:, axis][:, None] - lines).min() > 0.1
 
 
-def test_each_triangle_is_in_the_tiles_that_it_meets():
+@pytest.mark.parametrize("at_once", [7, 1000])
+def test_each_triangle_is_in_the_tiles_that_it_meets(monkeypatch, at_once):
+    monkeypatch.setattr(tile_grids, "_TRIANGLES_AT_ONCE", at_once)
     mesh = hilly(10, 0.0, 1)
     grid = tile_grid([mesh[0]], (35, 30))
-    bins = MeshBins(mesh, grid)
+    listed = {}
+    for name, numbers in triangles_by_tile(mesh, grid):
+        listed.setdefault(name, []).extend(numbers.tolist())
     corners = mesh[0][mesh[1]][:, :, :2]
     for column, row in grid:
         low_x, low_y, high_x, high_y = grid.box(column, row)
-        part = bins.part(column, row)
+        part = part_of(mesh, np.array(listed[column, row]))
         away = (
             (corners[:, :, 0].max(1) < low_x)
             | (corners[:, :, 0].min(1) > high_x)

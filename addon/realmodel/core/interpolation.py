@@ -7,6 +7,7 @@ import numpy as np
 
 from .errors import InputRefused, UsageError, place_text
 from .heights import Interpolation, heights
+from .mapped_arrays import ROWS_AT_ONCE, in_pieces
 from .method_options import check_threads
 from .methods import METHODS, check_method, checked_options
 from .work import Cancel, Progress, Work, run
@@ -80,8 +81,8 @@ def checked_points(points, item: str = "points") -> np.ndarray:
     points = np.ascontiguousarray(_array(points, 3, item))
     if not len(points):
         raise InputRefused("there are no points", item=item)
-    if not np.isfinite(points).all():
-        bad = _first_bad(points)
+    bad = _first_bad(points)
+    if bad is not None:
         raise InputRefused(f"point {bad} is {place_text(points[bad])}, not finite", item=item)
     return points
 
@@ -89,8 +90,9 @@ def checked_points(points, item: str = "points") -> np.ndarray:
 def checked_nodes(nodes) -> np.ndarray:
     """(N, 2) float64 nodes, all finite. Raises InputRefused."""
     nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
-    if not np.isfinite(nodes).all():
-        raise InputRefused(f"node {_first_bad(nodes)} is not finite", item="nodes")
+    bad = _first_bad(nodes)
+    if bad is not None:
+        raise InputRefused(f"node {bad} is not finite", item="nodes")
     return nodes
 
 
@@ -104,5 +106,10 @@ def _array(values, columns: int, item: str) -> np.ndarray:
     return array
 
 
-def _first_bad(array: np.ndarray) -> int:
-    return int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
+def _first_bad(array: np.ndarray) -> int | None:
+    """The first row that is not finite."""
+    for number, piece in enumerate(in_pieces(array)):
+        finite = np.isfinite(piece).all(axis=1)
+        if not finite.all():
+            return number * ROWS_AT_ONCE + int(np.flatnonzero(~finite)[0])
+    return None

@@ -22,7 +22,8 @@ from .work import Work, native_module
 @dataclass(frozen=True)
 class LocalHeights:
     """What the parts of a surface have in common. needed: how many of the points nearest to a node count.
-    known: for kriging the variogram of all points. lowest, highest: of the points."""
+    known: for kriging the variogram of all points; spacing: for splines their mean spacing. lowest, highest:
+    of the points."""
 
     method: str
     settings: dict
@@ -30,14 +31,17 @@ class LocalHeights:
     known: from_neighbours.Structure | None
     lowest: float
     highest: float
+    spacing: float = 0.0
 
     def heights(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
         """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
         first of them and the others in their order, with the `needed` nearest to each node."""
         task = Task(work, points, nodes, self.settings, threads)
-        if self.known is None:
-            return run_method(self.method, task).z
-        return from_neighbours.krige(task, self.known).z
+        if self.known is not None:
+            return from_neighbours.krige(task, self.known).z
+        if self.method == "spline":
+            return from_neighbours.thin_plate(task, self.spacing).z
+        return run_method(self.method, task).z
 
     def runs_away(self, lowest: float, highest: float) -> list[str]:
         """As run.runs_away, of the lowest and highest of all heights."""
@@ -78,14 +82,16 @@ def local_heights(
     points, mis_ties = without_mis_ties(points)
     told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
     task = Task(work, points, np.empty((0, 2)), settings, threads)
-    known, needed = None, settings["neighbours"]
+    known, needed, spacing = None, settings["neighbours"], 0.0
     try:
         if "kriging" in method:
             known = from_neighbours.structure(task)
             needed = known.neighbours
             told += known.warnings
             known = replace(known, warnings=())
-        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]))
+        elif method == "spline":
+            spacing = native.mean_spacing(points)
+        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]), spacing)
         found.heights(work, points, task.nodes, threads)  # of no nodes: it checks the points
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays in files, of which the system keeps in memory what is used."""
+"""Arrays in files, of which the system keeps in memory what is used; and arrays that come piece by piece."""
 
 from __future__ import annotations
 
 import json
 import secrets
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,11 +16,59 @@ import numpy as np
 from .errors import BuildFailed, OutputFailed
 
 Keep = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
+# One array of pieces, one after another; the second is empty, and has the type and the columns of all.
+Gather = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
+
+ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
+_HEADER = 128  # bytes before an array in a file of NumPy
 
 
 def as_it_is(array: np.ndarray) -> np.ndarray:
     """For callers that keep arrays in memory."""
     return array
+
+
+class Rows:
+    """An array that comes piece by piece. empty: without rows, with the type and the columns of all."""
+
+    def __init__(self, empty: np.ndarray):
+        self._empty = empty
+        self._pieces: list[np.ndarray] = []
+
+    def add(self, piece: np.ndarray) -> None:
+        if len(piece):
+            self._pieces.append(np.asarray(piece, self._empty.dtype))
+
+    def array(self) -> np.ndarray:
+        """All pieces, one after another."""
+        pieces = self._pieces or [self._empty]
+        return np.ascontiguousarray(pieces[0]) if len(pieces) == 1 else np.concatenate(pieces)
+
+    def taken(self) -> np.ndarray:
+        """All pieces, in memory and nowhere else."""
+        found = self.array()
+        self._pieces = []
+        return found
+
+
+MakeRows = Callable[[np.ndarray], Rows]
+
+
+def in_memory(pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
+    """Gathers pieces for callers that keep arrays in memory."""
+    return _gathered(Rows(empty), pieces)
+
+
+def _gathered(rows: Rows, pieces: Iterable[np.ndarray]) -> np.ndarray:
+    for piece in pieces:
+        rows.add(piece)
+    return rows.array()
+
+
+def in_pieces(array: np.ndarray) -> Iterator[np.ndarray]:
+    """Rows of an array one after another, few at once."""
+    for first in range(0, len(array), ROWS_AT_ONCE):
+        yield array[first : first + ROWS_AT_ONCE]
 
 
 class MappedArrays:
@@ -47,13 +96,21 @@ class MappedArrays:
         """The array in a file, read-only; itself where it is in one, or empty."""
         if id(array) in self._files or not array.size:
             return array
-        file = self.folder / f"{secrets.token_hex(8)}.npy"
-        try:
+        file = self._new_file()
+        with _told_of(file):
             np.save(file, array)
             return self.opened(file)
-        except OSError as error:
-            text = f"{file}: {error.strerror or error}; make room, or choose another folder"
-            raise OutputFailed(text) from error
+
+    def rows(self, empty: np.ndarray) -> Rows:
+        """Rows in a file, read-only in the end; the piece that comes is in memory."""
+        return _MappedRows(empty, self._new_file(), self.opened)
+
+    def gather(self, pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
+        """Gathers pieces in a file, read-only."""
+        return _gathered(self.rows(empty), pieces)
+
+    def _new_file(self) -> Path:
+        return self.folder / f"{secrets.token_hex(8)}.npy"
 
     def place(self, array: np.ndarray) -> Path | np.ndarray:
         """What tells another process of an array: its file, or itself where it is empty."""
@@ -67,6 +124,57 @@ class MappedArrays:
         array = np.load(place, mmap_mode="r")
         self._files[id(array)] = array, place
         return array
+
+
+class _MappedRows(Rows):
+    """In a file."""
+
+    def __init__(self, empty: np.ndarray, file: Path, opened: Callable[[Path], np.ndarray]):
+        super().__init__(empty)
+        self._file, self._opened, self._count = file, opened, 0
+        self._write(_header(empty.dtype, (0, *empty.shape[1:])), "wb")
+
+    def add(self, piece: np.ndarray) -> None:
+        if len(piece):
+            self._count += len(piece)
+            self._write(np.ascontiguousarray(piece, self._empty.dtype), "ab")
+
+    def array(self) -> np.ndarray:
+        self._write(_header(self._empty.dtype, (self._count, *self._empty.shape[1:])), "r+b")
+        if self._count:
+            return self._opened(self._file)
+        with _told_of(self._file):
+            self._file.unlink()
+        return self._empty
+
+    def taken(self) -> np.ndarray:
+        with _told_of(self._file), self._file.open("rb") as opened:
+            opened.seek(_HEADER)
+            content = opened.read()
+        with _told_of(self._file):
+            self._file.unlink()
+        return np.frombuffer(content, self._empty.dtype).reshape(self._count, *self._empty.shape[1:])
+
+    def _write(self, content, mode: str) -> None:
+        with _told_of(self._file), self._file.open(mode) as out:
+            out.write(content)
+
+
+@contextmanager
+def _told_of(file: Path) -> Iterator[None]:
+    """Tells in one line what keeps an array from being written."""
+    try:
+        yield
+    except OSError as error:
+        text = f"{file}: {error.strerror or error}; make room, or choose another folder"
+        raise OutputFailed(text) from error
+
+
+def _header(dtype: np.dtype, shape: tuple[int, ...]) -> bytes:
+    """What stands before an array in a file of NumPy, format 1.0, in _HEADER bytes."""
+    begin = np.lib.format.magic(1, 0) + (_HEADER - 10).to_bytes(2, "little")
+    text = repr({"descr": dtype.str, "fortran_order": False, "shape": shape})
+    return begin + text.ljust(_HEADER - len(begin) - 1).encode() + b"\n"
 
 
 _ALIGNED = 64  # bytes: where an array may begin

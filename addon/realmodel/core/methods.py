@@ -261,6 +261,7 @@ METHODS: dict[str, Method] = {
             ),
             **_EXTRAPOLATE,
         },
+        is_local=True,
         tamed_by='use smoothing, or extrapolate = "nearest"',
     ),
     "dsi": Method(

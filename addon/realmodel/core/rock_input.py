@@ -22,7 +22,13 @@ from .project import Project, Rock, rock_item
 from .readers import Picks, read_boreholes
 from .readers.text import no_step
 from .structures.rock_structure import RockStructure
-from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
+from .surface_heights import (
+    Triangulation,
+    give_heights,
+    interpolation_order,
+    named_surfaces,
+    settle_method,
+)
 from .surface_input import Reader, SurfaceInput, read_each
 from .work import Work, run
 from .wrong_sides import points_too_low
@@ -236,6 +242,15 @@ def _density_points(rock: Rock) -> np.ndarray:
         np.asarray(s.points, float)[:, :2] for s in rock.surfaces if s.interpolated and s.points is not None
     ]
     return np.concatenate(given) if given else np.empty((0, 2))
+
+
+def settle_methods(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
+    """Gives surfaces with the method "auto" the one that it chooses. Progress goes from `start` to `end`."""
+    waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
+    for at, number in enumerate(waiting):
+        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
+        with work.phase(begin, finish, f"choosing the method of {entry.rock.surfaces[number].name}"):
+            settle_method(work, entry, number, threads)
 
 
 def interpolate_rock(

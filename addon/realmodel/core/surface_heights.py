@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
-from .heights import Interpolation, heights
+from .heights import Interpolation, chosen, heights
 from .methods import SURFACE_OPTIONS
 from .project import Rock, surface_item
 from .work import Work, native_module
@@ -107,6 +109,20 @@ def _older_points_above(
         return []
     z = heights_at(work, shape, points[:, :2], threads)
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
+
+
+def settle_method(work: Work, entry, number: int, threads: int) -> None:
+    """Gives a surface of a RockInput with the method "auto" the one that it would choose."""
+    rock, surface = entry.rock, entry.rock.surfaces[number]
+    method, settings = surface.method_options()
+    if method != "auto":
+        return
+    try:
+        method, options = chosen(work, surface.points, settings, threads)
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .errors import InputRefused, place_text
 from .interpolation import checked_points
-from .mapped_arrays import Keep
+from .mapped_arrays import Gather, Keep, MappedArrays, in_memory, in_pieces
 from .project import Rock, Surface, surface_item
 from .readers import read_mesh, read_point_file
 from .readers.text import Step, no_step
@@ -56,42 +56,50 @@ class SurfaceInput:
         boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
         return cls(rock.name, surface, boreholes, met, units)
 
-    def read(self, step: Step = no_step) -> ReadSurface:
-        """Raises InputRefused, naming the surface."""
+    def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:
+        """arrays: where those that come from files are kept; None: in memory. Raises InputRefused, naming the
+        surface."""
         surface = self.surface
         file = surface.input_file or surface.shape_file
         if file is None and surface.points is None:
             file = self.boreholes
         try:
             if surface.interpolated:
-                points, told = self._points(file, step)
+                points, told = self._points(file, step, in_memory if arrays is None else arrays.gather)
                 return ReadSurface(replace(surface, points=points, shape_file=file), None, None, told)
-            vertices, triangles, faces, told = self._mesh(step)
+            vertices, triangles, faces, told = self._mesh(step, arrays)
         except InputRefused as error:
             raise error.within(surface_item(Rock(self.rock, []), surface)) from error
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
         return ReadSurface(surface, (vertices, triangles), faces, told)
 
-    def _points(self, file: Path | None, step: Step) -> tuple[np.ndarray, list[str]]:
+    def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
         points, told = surface.points, []
         if surface.point_file is not None:
-            points, told = read_point_file(surface.point_file, self.units, step)
+            points, told = read_point_file(surface.point_file, self.units, step, gather)
         if self.met is not None:
             own = np.empty((0, 3)) if points is None else checked_points(points)
-            points = np.concatenate([own, self.met])
+            points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
         if points is None and surface.needs_points:
             raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
         if points is None or (not len(points) and not surface.needs_points):
             return np.empty((0, 3)), told
-        return checked_points(points), told
+        checked = checked_points(points)
+        # what is checked may be another array with the same values
+        is_kept = surface.point_file is not None or self.met is not None
+        return points if is_kept else checked, told
 
-    def _mesh(self, step: Step):
+    def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface
         if surface.mesh is None:
             return *checked_triangulation(surface.vertices, surface.triangles), None, []
-        mesh = read_mesh(surface.input_file, step)
-        vertices, told = mesh.in_model(surface.mesh_file, self.units)
+        if arrays is None:
+            mesh = read_mesh(surface.input_file, step)
+            vertices, told = mesh.in_model(surface.mesh_file, self.units)
+        else:
+            mesh = read_mesh(surface.input_file, step, arrays.rows)
+            vertices, told = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, told
 
 

@@ -17,7 +17,7 @@ from .heights import Interpolation
 from .mapped_arrays import Keep, as_it_is
 from .method_options import check_threads
 from .project import Project, Rock, check_project
-from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks, settle_methods
 from .structures.parts import Structures, structures_of
 from .structures.reading import read_structures
 from .structures.setup import make_structures
@@ -25,6 +25,7 @@ from .surface_input import Reader, read_each
 from .work import Cancel, Progress, Work, native_module, run
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
+_CHOSEN = 0.3  # of what is left
 
 
 @dataclass(eq=False)
@@ -106,13 +107,14 @@ def build_surfaces(
     stage: int | None = None,
     keep: Keep = as_it_is,
     reader: Reader = read_each,
-    flat: Callable[[Rock], Collection[int]] = lambda _rock: (),
+    flat: Callable[[Rock], Collection[int]] | None = None,
 ) -> SurfaceSet:
     """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
     Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
     surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
-    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock).
+    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock), when
+    the method "auto" has made its choice; None: all are.
     Raises InputRefused, UsageError, Cancelled.
     """
     threads = check_threads(threads)
@@ -143,7 +145,11 @@ def _build(
     else:
         for number, entry in enumerate(inputs):
             begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
-            interpolate_rock(work, entry, begin, end, threads, stage, keep, flat(entry.rock))
+            numbers = ()
+            if flat is not None:
+                settle_methods(work, entry, begin, begin + _CHOSEN * (end - begin), threads)
+                numbers = flat(entry.rock)
+            interpolate_rock(work, entry, begin, end, threads, stage, keep, numbers)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

@@ -173,7 +173,7 @@ class _Reader:
             if surface.surface.input_file is not None:
                 in_files.append((number, surface))
                 continue
-            found = surface.read()
+            found = surface.read(arrays=self._arrays)
             self.digests[number] = _digest_of(found)
             yield number, found
         tasks = self._workers.in_any_order(_read, self._arrays.folder, in_files, work.check, here=True)
@@ -186,7 +186,7 @@ class _Reader:
 def _read(folder: Path, task: tuple[int, SurfaceInput]) -> tuple[ReadSurface, bytes]:
     """On a worker: a surface with the places of its arrays instead of them."""
     arrays = MappedArrays(folder)
-    found = task[1].read()
+    found = task[1].read(arrays=arrays)
     return found.with_arrays(arrays.place), _digest_of(found)
 
 

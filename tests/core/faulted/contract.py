@@ -185,8 +185,11 @@ class Contract:
                 *(v for sheets in structure.sheets for v, _ in sheets),
                 *(b.vertices for b in self.case.bodies),
             ]
-            top = max(float(each[:, 2].max()) for each in shapes)  # there is air above it
-            state[taken & decided & ~known & (points[:, 2] <= top)] = NOWHERE
+            heights = np.concatenate([each[:, 2] for each in shapes])
+            # there is air above the highest of them, and without a base nothing below the lowest
+            is_under = points[:, 2] <= heights.max()
+            is_over = (rock.base_elevation is not None) | (points[:, 2] >= heights.min())
+            state[taken & decided & ~known & is_under & is_over] = NOWHERE
         return state, decided
 
     def _history(self, r, points, sheets, insides):

@@ -40,7 +40,8 @@ def report(worker, case, failures, folder, name, steps):
 def hunt(seconds, seed, every, folder, most, steps):
     """Judges cases, each `every`-th seed, until the time is over or enough is found; how many failed."""
     worker = Worker(failures_of)
-    stop = time.monotonic() + seconds
+    begun = time.monotonic()
+    stop = begun + seconds
     failed, judged = collections.Counter(), 0
     number = seed
     while time.monotonic() < stop and sum(failed.values()) < most:
@@ -52,6 +53,9 @@ def hunt(seconds, seed, every, folder, most, steps):
             print(f"seed {number}: {failures[0][:250]}", flush=True)
             report(worker, case, failures, folder, number, steps)
         number += every
+        if judged % 500 == 0:
+            minutes = [spent / 60 for spent in (time.monotonic() - begun, worker.processor_time())]
+            print(f"{judged} cases in {minutes[0]:.1f} minutes, {minutes[1]:.1f} of a processor", flush=True)
     worker.close()
     print(f"{judged} cases from seed {seed}, {sum(failed.values())} failed {dict(failed)}")
     return sum(failed.values())

@@ -320,6 +320,13 @@ class Judgement:
         rocks = range(len(self.case.rocks))
         return block == AIR or any(self.contract.acts(fault, block, rock) for rock in rocks)
 
+    def _is_vertical(self, face):
+        """Whether the area of a face in plan is only what rounding makes of a line."""
+        normal = self.faces.normal[face]
+        plan = self.faces.corners[self.faces.face == face][:, :, :2].reshape(-1, 2)
+        rounded = self.rounding * np.linalg.norm(np.ptp(plan, axis=0))
+        return abs(normal[2]) <= max(1e-6 * np.linalg.norm(normal), rounded)
+
     def _surfaces(self, face, at, rows):
         """Faces lie on the surfaces that they name, and faults are there only where they act."""
         failures = []
@@ -335,8 +342,7 @@ class Judgement:
             name, p = int(model.face_surface[f]), at[n][None]
             cells = model.face_cells[f]
             blocks = [int(self.block[c]) if c >= 0 else AIR for c in cells]
-            normal = self.faces.normal[f]
-            vertical = abs(normal[2]) <= 1e-6 * np.linalg.norm(normal)
+            vertical = self._is_vertical(f)
             said = f"face {f} at {p[0].tolist()} between {blocks} is named {name}"
             if name == -2:
                 bases = [rock.base_elevation for rock in self.case.rocks]

@@ -11,6 +11,7 @@ import collections
 import multiprocessing
 import os
 import random
+import threading
 import time
 from pathlib import Path
 
@@ -34,7 +35,13 @@ def acceptable(stack):
     return stack.base_elevation is None or stack.base_elevation < lowest
 
 
+def _end_with_parent():
+    multiprocessing.parent_process().join()
+    os._exit(1)
+
+
 def _work(pipe, judge):
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     while True:
         stack = pipe.recv()
         if stack is None:
@@ -86,6 +93,11 @@ class Worker:
             if _processor_time(self.process.pid) - begun > PATIENCE or time.monotonic() > latest:
                 return False
         return True
+
+    def processor_time(self):
+        """Seconds of this process and of all that judged."""
+        own = sum(os.times()[:4])
+        return own if self.process is None else own + _processor_time(self.process.pid)
 
     def close(self):
         if self.process is not None and self.process.is_alive():

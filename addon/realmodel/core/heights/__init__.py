@@ -2,6 +2,6 @@
 """What each method does with points, nodes and its options: `heights` runs the one that is asked for."""
 
 from .interpolation import Interpolation
-from .run import heights, left_out_heights
+from .run import chosen, heights, left_out_heights
 
-__all__ = ["Interpolation", "heights", "left_out_heights"]
+__all__ = ["Interpolation", "chosen", "heights", "left_out_heights"]

@@ -104,7 +104,8 @@ def inverse_distance(task: Task) -> Result:
     return Result(z, warnings=_beyond_radius(task))
 
 
-def thin_plate(task: Task) -> Result:
+def thin_plate(task: Task, spacing: float = 0.0) -> Result:
+    """spacing: the mean one of all points where the task has a part of them; 0: it has all."""
     arguments = {**_neighbourhood(task.settings), "smoothing": task.settings["smoothing"]}
-    z = task.run(native_module().spline, task.points, task.nodes, **arguments)
+    z = task.run(native_module().spline, task.points, task.nodes, **arguments, spacing=spacing)
     return Result(z, warnings=_beyond_radius(task))

@@ -57,6 +57,23 @@ def heights(
     )
 
 
+def chosen(work: Work, points, settings: dict, threads: int) -> tuple[str, dict]:
+    """The method that "auto" with these settings takes for points, and its options: they give the same
+    heights. Raises InputRefused."""
+    native = native_module()
+    if not len(points):
+        raise InputRefused("there are no points", item="points")
+    points, _ = without_mis_ties(points)
+    try:
+        trial, _ = automatic.choose(Task(work, points, np.empty((0, 2)), settings, threads))
+    except native.InputError as error:
+        raise InputRefused(str(error), item="points", place=error.place) from error
+    method, options = trial.candidate.method, trial.candidate.options
+    if "extrapolate" in METHODS[method].options:
+        options = {**options, "extrapolate": settings["extrapolate"]}
+    return method, options
+
+
 def few_points(points: np.ndarray, method: str) -> list[str]:
     """What to tell where points are too few for a surface that was to have a shape of its own."""
     if not METHODS[method].has_shape:

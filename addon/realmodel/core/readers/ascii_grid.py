@@ -8,11 +8,14 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import InputRefused
-from .grid_text import grid_heights, read_grid_text
+from ..mapped_arrays import Gather, in_memory
+from .grid_text import grid_heights
 from .raster import Raster, without_values
 from .table_layout import is_number
-from .text import Step, no_step
+from .text import BOM, Content, Step, no_step, text_content
 
 _KEYS = (
     "ncols",
@@ -35,14 +38,17 @@ def is_ascii_grid(head: bytes) -> bool:
     return bool(_BEGINNING.match(head.removeprefix(b"\xef\xbb\xbf")))
 
 
-def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+def read_ascii_grid(
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+) -> Raster:
     """A grid; heights stand at the centers of its cells. nodata: further numbers that mean no height.
 
     Raises InputRefused naming file and line.
     """
     file = Path(file)
-    raw = read_grid_text(file)
-    decimal = "," if b"," in raw[:_LONGEST_HEADER] and b"." not in raw[:_LONGEST_HEADER] else "."
+    raw = text_content(file)
+    head = raw[:_LONGEST_HEADER]
+    decimal = "," if b"," in head and b"." not in head else "."
     header, lines, body, body_line = _header(file, raw, decimal)
     columns, rows = (_count(file, header, lines, key) for key in ("ncols", "nrows"))
     size = header.get("cellsize")
@@ -53,16 +59,16 @@ def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step =
     west = _lower_left(file, header, "x", dx)
     south = _lower_left(file, header, "y", dy)
     shape = f"{columns} columns and {rows} rows"
-    z = grid_heights(file, raw, body, body_line, rows * columns, shape, step, decimal)
+    heights = grid_heights(file, raw, body, body_line, rows * columns, shape, step, decimal)
     none = [header["nodata_value"]] if "nodata_value" in header else []
-    z = without_values(z.reshape(rows, columns), [*none, *nodata])
-    return Raster(z, (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))
+    z = gather((without_values(piece, [*none, *nodata]) for piece in heights), np.empty(0))
+    return Raster(z.reshape(rows, columns), (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))
 
 
-def _header(file: Path, raw: bytes, decimal: str) -> tuple[dict, dict, int, int]:
+def _header(file: Path, raw: Content, decimal: str) -> tuple[dict, dict, int, int]:
     """The keys' numbers and lines, the byte where the heights begin, and the line of that."""
     header, lines = {}, {}
-    at, number = 3 if raw.startswith(b"\xef\xbb\xbf") else 0, 0
+    at, number = len(BOM) if raw[: len(BOM)] == BOM else 0, 0
     while at < len(raw):
         number += 1
         end = raw.find(b"\n", at)

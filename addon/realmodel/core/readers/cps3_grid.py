@@ -8,10 +8,13 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import InputRefused
-from .grid_text import grid_heights, header_numbers, read_grid_text, require_count, require_spacing
+from ..mapped_arrays import Gather, in_memory
+from .grid_text import grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, without_values
-from .text import Step, no_step
+from .text import Step, no_step, text_content
 
 _BEGINNING = re.compile(rb"(?:\s*!.*\n)*\s*FS(?:ASCI|ATTR|LIMI|NROW|XINC)\s")
 _NO_HEIGHT = 1e30
@@ -22,10 +25,12 @@ def is_cps3_grid(head: bytes) -> bool:
     return bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
 
 
-def read_cps3_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+def read_cps3_grid(
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+) -> Raster:
     """A grid. Raises InputRefused naming the line."""
     file = Path(file)
-    raw = read_grid_text(file)
+    raw = text_content(file)
     keys: dict[str, tuple[int, str]] = {}
     at, number = 0, 0
     while at < len(raw):
@@ -57,6 +62,6 @@ def read_cps3_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = 
         if len(words) > 4:
             (none,) = header_numbers(file, words[4], keys["FSASCI"][0], 1, "the number for no height")
     shape = f"{columns} columns and {rows} rows"
-    z = grid_heights(file, raw, at, number + 1, rows * columns, shape, step)
-    z = without_values(z.reshape(columns, rows).T.copy(), [none, *nodata])
-    return Raster(z, (west, north), (dx, 0.0), (0.0, -dy))
+    heights = grid_heights(file, raw, at, number + 1, rows * columns, shape, step)
+    z = gather((without_values(piece, [none, *nodata]) for piece in heights), np.empty(0))
+    return Raster(z.reshape(columns, rows).T, (west, north), (dx, 0.0), (0.0, -dy))

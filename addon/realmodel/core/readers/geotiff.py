@@ -10,13 +10,14 @@ from __future__ import annotations
 import logging
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
+from ..mapped_arrays import ROWS_AT_ONCE, Gather, in_memory, in_pieces
 from ..work import native_module
 from .raster import Raster, without_values
 from .text import Step, no_step
@@ -46,7 +47,9 @@ def world_file(file: Path) -> Path | None:
     return next((path for path in beside if path.is_file()), None)
 
 
-def read_geotiff(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+def read_geotiff(
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
     uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file
     says so at their corners. nodata: further numbers that mean no height.
@@ -58,16 +61,22 @@ def read_geotiff(file: str | Path, nodata: Sequence[float] = (), step: Step = no
     try:
         with _no_logging(), tifffile.TiffFile(file) as tiff:
             page = tiff.pages[0]
-            z, stored = _heights(file, tifffile, tiff, page, step)
+            _check(file, tiff, page, gather is in_memory)
             tags = {tag.code: tag.value for tag in page.tags}
+            none = [*_no_value(file, tags), *nodata]
+
+            def heights() -> Iterator[np.ndarray]:
+                for band in _bands(file, tifffile, tiff, page, step):
+                    for z in in_pieces(band.ravel()):
+                        yield _scaled(without_values(z, none, page.dtype), tags.get(_GDAL_METADATA))
+
+            z = gather(heights(), np.empty(0)).reshape(page.imagelength, page.imagewidth)
     except OSError as error:
         what = error.strerror or str(error)
         raise InputRefused(f"cannot be read: {what}", file=file, advice="check the path") from error
     except (tifffile.TiffFileError, ValueError, KeyError, IndexError, TypeError, zlib.error) as error:
         raise InputRefused(f"a damaged TIFF: {error}", file=file) from error
     keys = _geo_keys(tags.get(_GEO_KEYS, ()))
-    z = without_values(z, [*_no_value(file, tags), *nodata], stored)
-    z = _scaled(z, tags.get(_GDAL_METADATA))
     origin, across, down = _place(file, tags, keys)
     return Raster(z, origin, across, down, _warnings(keys))
 
@@ -83,8 +92,8 @@ def _no_logging():
         logger.disabled = before
 
 
-def _heights(file: Path, tifffile, tiff, page, step: Step) -> tuple[np.ndarray, np.dtype]:
-    """(rows, columns) float64, and the type of the stored numbers."""
+def _check(file: Path, tiff, page, is_kept_in_memory: bool) -> None:
+    """Raises InputRefused for an image that is no raster of heights, or that cannot be read."""
 
     def refuse(what: str, advice: str | None = None) -> InputRefused:
         return InputRefused(what, file=file, advice=advice)
@@ -102,46 +111,82 @@ def _heights(file: Path, tifffile, tiff, page, step: Step) -> tuple[np.ndarray, 
     if page.predictor not in (1, 2, 3):
         raise refuse(f"its predictor {page.predictor} is not known")
     rows, columns = page.imagelength, page.imagewidth
-    stored = page.dtype.newbyteorder(tiff.byteorder)
-    high, wide = (
-        (page.tilelength, page.tilewidth) if page.is_tiled else (min(page.rowsperstrip, rows), columns)
-    )
+    high, wide = _part_shape(page)
     if not (0 < high <= 1 << 20 and 0 < wide <= 1 << 20 and rows and columns):
         raise refuse("a damaged TIFF: strips or tiles without size")
-    a_row = -(-columns // wide)
-    places = list(zip(page.dataoffsets, page.databytecounts, strict=True))
-    if len(places) < a_row * -(-rows // high):
+    sizes = list(page.databytecounts)
+    if min(len(sizes), len(page.dataoffsets)) < -(-columns // wide) * -(-rows // high):
         raise refuse("a damaged TIFF: strips or tiles are missing")
-    sizes = [size for _, size in places]
     there_are = min(sum(sizes), tiff.filehandle.size)
-    is_too_much = rows * columns * stored.itemsize > _MOST_COMPRESSED * there_are
+    is_too_much = rows * columns * page.dtype.itemsize > _MOST_COMPRESSED * there_are
     if is_too_much and (all(sizes) or min(high, rows) * min(wide, columns) > _MOST_WITHOUT_BYTES):
         raise refuse(f"a damaged TIFF: {columns} x {rows} pixels cannot come of so few bytes")
     room = native_module().available_memory()
-    if _BYTES_PER_PIXEL * rows * columns > room:
+    if is_kept_in_memory and _BYTES_PER_PIXEL * rows * columns > room:
         raise refuse(
             f"its {columns} x {rows} pixels do not fit the {room / 1e9:.2g} GB of memory that are free"
         )
-    z = np.full((rows, columns), np.nan)
-    for number, (offset, size) in enumerate(places):
-        top, left = high * (number // a_row), wide * (number % a_row)
-        if top >= rows:
-            break
+
+
+def _part_shape(page) -> tuple[int, int]:
+    """Rows and columns of a tile, or of a strip."""
+    if page.is_tiled:
+        return page.tilelength, page.tilewidth
+    return min(page.rowsperstrip, page.imagelength), page.imagewidth
+
+
+def _bands(file: Path, tifffile, tiff, page, step: Step) -> Iterator[np.ndarray]:
+    """Rows of heights (rows, columns) float64, one row of tiles, or a part of a strip, after another."""
+    rows, columns = page.imagelength, page.imagewidth
+    stored = page.dtype.newbyteorder(tiff.byteorder)
+    high, wide = _part_shape(page)
+    places = list(zip(page.dataoffsets, page.databytecounts, strict=True))
+    if page.compression == _NONE and not page.is_tiled:
+        high, places = _divided(file, places, high, rows, wide * stored.itemsize)
+    a_row = -(-columns // wide)
+    for top in range(0, rows, high):
         there = min(high, rows - top)
-        if size:  # a part without bytes is all nodata
+        z = np.full((there, columns), np.nan)
+        first = top // high * a_row
+        for number, (offset, size) in enumerate(places[first : first + a_row]):
+            left = wide * number
+            if not size:  # a part without bytes is all nodata
+                continue
             expected = (high if page.is_tiled else there) * wide * stored.itemsize
             tiff.filehandle.seek(offset)
-            data = _decompressed(
-                tifffile, page.compression, tiff.filehandle.read(min(size, there_are)), expected
-            )
+            data = tiff.filehandle.read(min(size, tiff.filehandle.size))
+            data = _decompressed(tifffile, page.compression, data, expected)
             if len(data) < there * wide * stored.itemsize:
-                raise refuse("a damaged TIFF: a strip or tile is cut off")
+                raise _cut_off(file)
             data = data[: len(data) // (wide * stored.itemsize) * wide * stored.itemsize]
             part = _unpredicted(page.predictor, data, stored, wide)
             with np.errstate(invalid="ignore"):  # NaN of any kind is no height
-                z[top : top + there, left : left + wide] = part[:there, : columns - left]
-        step((number + 1) / len(places))
-    return z, page.dtype
+                z[:, left : left + wide] = part[:there, : columns - left]
+        yield z
+        step((top + there) / rows)
+
+
+def _divided(
+    file: Path, places: list[tuple[int, int]], high: int, rows: int, row: int
+) -> tuple[int, list[tuple[int, int]]]:
+    """Strips of so many rows that are not compressed as lower ones, and how high these are. row: bytes."""
+    lower = max(1, ROWS_AT_ONCE * 8 // row)
+    if lower >= high:
+        return high, places
+    while high % lower:
+        lower -= 1
+    found = []
+    for top, (offset, size) in zip(range(0, rows, high), places, strict=False):
+        there = min(high, rows - top)
+        if 0 < size < there * row:
+            raise _cut_off(file)
+        for begin in range(0, there, lower):
+            found.append((offset + begin * row, size and min(lower, there - begin) * row))
+    return lower, found
+
+
+def _cut_off(file: Path) -> InputRefused:
+    return InputRefused("a damaged TIFF: a strip or tile is cut off", file=file)
 
 
 def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:

@@ -4,40 +4,33 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
 from ..work import native_module
-from .points import BYTES_AT_ONCE
-from .text import Step, read_bytes, require_text
+from .text import BYTES_AT_ONCE, Content, Step
 
-_WHOLE = re.compile(r"\d{1,9}")
-
-
-def read_grid_text(file: Path) -> bytes:
-    """A text file with lines that end in \\n. Raises InputRefused."""
-    raw = read_bytes(file)
-    require_text(file, raw)
-    return raw if b"\n" in raw else raw.replace(b"\r", b"\n")
+_LONGEST = 1 << 10  # bytes of a number, mostly
+_BLANK = re.compile(rb"\s")
 
 
 def grid_heights(
-    file: Path, raw: bytes, body: int, line: int, count: int, shape: str, step: Step, decimal: str = "."
-) -> np.ndarray:
-    """The numbers from byte `body`, which stands on this line, to the end: (count,) float64.
+    file: Path, raw: Content, body: int, line: int, count: int, shape: str, step: Step, decimal: str = "."
+) -> Iterator[np.ndarray]:
+    """The numbers from byte `body`, which stands on this line, to the end: piece by piece (N,) float64,
+    `count` in all.
 
     shape: what says that there are so many. Raises InputRefused naming the line."""
     native = native_module()
     one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
-    found, at = [], body
+    found, at = 0, body
     while at < len(raw):
-        blank = re.compile(rb"\s").search(raw, min(at + BYTES_AT_ONCE, len(raw)))
-        end = len(raw) if blank is None else blank.end()
-        piece = raw[at:end].translate(one_a_line)
+        piece = _to_blank(raw, at).translate(one_a_line)
         try:
-            found.append(native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0])
+            numbers = native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
             begin, stop = error.items[2:4]
             number = line + raw.count(b"\n", body, at + begin)
@@ -45,16 +38,30 @@ def grid_heights(
             advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
             what = f"not a height: '{entry:.40}'"
             raise InputRefused(what, file=file, line=number, advice=advice) from error
-        at = end
+        at += len(piece)
+        found += len(numbers)
+        yield numbers
         step(at / len(raw))
-    z = np.concatenate(found) if found else np.empty(0)
-    if len(z) != count:
+    if found != count:
         raise InputRefused(
-            f"{shape} need {count} heights; there are {len(z)}",
+            f"{shape} need {count} heights; there are {found}",
             file=file,
             advice="the file is cut off or its header is wrong",
         )
-    return z
+
+
+def _to_blank(raw: Content, begin: int) -> bytes:
+    """What stands from a byte on, to the end of a number."""
+    piece = raw[begin : begin + BYTES_AT_ONCE]
+    at = begin + len(piece)
+    while at < len(raw):
+        more = raw[at : at + _LONGEST]
+        blank = _BLANK.search(more)
+        piece += more if blank is None else more[: blank.end()]
+        if blank is not None:
+            break
+        at += len(more)
+    return piece
 
 
 def header_numbers(file: Path, text: str, line: int, count: int, what: str) -> list[float]:

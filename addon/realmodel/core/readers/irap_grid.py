@@ -7,16 +7,17 @@ from __future__ import annotations
 import math
 import re
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..elementary import cos, sin
 from ..errors import InputRefused
-from .grid_text import grid_heights, header_numbers, read_grid_text, require_count
+from ..mapped_arrays import Gather, in_memory
+from .grid_text import grid_heights, header_numbers, require_count
 from .raster import Raster, without_values
-from .text import Step, no_step, read_bytes
+from .text import FileBytes, Step, no_step, text_content
 
 _MAGIC = -996
 _BEGINNING = re.compile(rb"\s*-996(?:\s+[-+.\dEe]+){3}\s*\n")
@@ -31,23 +32,30 @@ def is_irap_grid(head: bytes) -> bool:
     return head[:8] == struct.pack(">2i", 32, _MAGIC) or bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
 
 
-def read_irap_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+def read_irap_grid(
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+) -> Raster:
     """A grid. Raises InputRefused naming the line or the byte."""
     file = Path(file)
     with file.open("rb") as opened:
         is_binary = opened.read(4) == struct.pack(">i", 32)
-    z, (west, south), (dx, dy), angle = _binary(file) if is_binary else _text(file, step)
+    heights, shape, (west, south), (dx, dy), angle = _binary(file) if is_binary else _text(file, step)
     if not (np.isfinite([west, south, dx, dy, angle]).all() and dx > 0 and dy > 0):
         raise InputRefused("the header has no place for the grid, or no steps above 0", file=file)
-    z[z >= _NO_HEIGHT] = np.nan
+
+    def known() -> Iterator[np.ndarray]:
+        for z in heights:
+            z[z >= _NO_HEIGHT] = np.nan
+            yield without_values(z, list(nodata))
+
+    z = gather(known(), np.empty(0))
     across, up = cos(math.radians(angle)), sin(math.radians(angle))
     step(1.0)
-    z = without_values(z, list(nodata))
-    return Raster(z, (west, south), (dx * across, dx * up), (-dy * up, dy * across))
+    return Raster(z.reshape(shape), (west, south), (dx * across, dx * up), (-dy * up, dy * across))
 
 
 def _text(file: Path, step: Step):
-    raw = read_grid_text(file)
+    raw = text_content(file)
     # the header is 19 numbers on lines of any length
     at, numbers, line = 0, [], 0
     while len(numbers) < 19:
@@ -61,17 +69,18 @@ def _text(file: Path, step: Step):
     rows, dx, dy, west, _, south = *numbers[1:4], *numbers[4:7]
     columns, angle = numbers[8], numbers[9]
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
-    z = grid_heights(file, raw, at, line + 1, rows * columns, f"{columns} columns and {rows} rows", step)
-    return z.reshape(rows, columns), (west, south), (dx, dy), angle
+    said = f"{columns} columns and {rows} rows"
+    heights = grid_heights(file, raw, at, line + 1, rows * columns, said, step)
+    return heights, (rows, columns), (west, south), (dx, dy), angle
 
 
 def _binary(file: Path):
-    raw = read_bytes(file)
+    raw = FileBytes(file)
     begin = _HEAD.size + _SECOND.size + _THIRD
     if len(raw) < begin:
         raise InputRefused(f"the header is cut off at byte {len(raw)}", file=file)
-    _, magic, rows, west, _, south, _, dx, dy, _ = _HEAD.unpack_from(raw)
-    _, columns, angle, _, _, _ = _SECOND.unpack_from(raw, _HEAD.size)
+    _, magic, rows, west, _, south, _, dx, dy, _ = _HEAD.unpack(raw[: _HEAD.size])
+    _, columns, angle, _, _, _ = _SECOND.unpack(raw[_HEAD.size : begin - _THIRD])
     if magic != _MAGIC:
         raise InputRefused("not an IRAP grid (byte 4)", file=file)
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
@@ -81,22 +90,21 @@ def _binary(file: Path):
             f"{columns} columns and {rows} rows need {begin + 4 * count} bytes and more; there are {len(raw)}"
         )
         raise InputRefused(what, file=file, advice="the file is cut off or its header is wrong")
-    found, at, have = [], begin, 0  # records of any length
-    while have < count:
+    return _records(file, raw, begin, rows, columns), (rows, columns), (west, south), (dx, dy), angle
+
+
+def _records(file: Path, raw: FileBytes, at: int, rows: int, columns: int) -> Iterator[np.ndarray]:
+    """The heights, in records of any length from a byte on."""
+    have = 0
+    while have < rows * columns:
         size = int.from_bytes(raw[at : at + 4], "big")
-        if (
-            not 0 < size <= len(raw) - at - 8
-            or size % 4
-            or raw[at + 4 + size : at + 8 + size] != raw[at : at + 4]
-        ):
+        is_whole = 0 < size <= len(raw) - at - 8 and not size % 4
+        if not is_whole or raw[at + 4 + size : at + 8 + size] != raw[at : at + 4]:
             raise InputRefused(f"a record of the grid is damaged (byte {at})", file=file)
-        found.append(np.frombuffer(raw, ">f4", size // 4, at + 4))
+        with np.errstate(invalid="ignore"):  # NaN of any kind is no height
+            yield np.frombuffer(raw[at + 4 : at + 4 + size], ">f4").astype(np.float64)
         have += size // 4
         at += size + 8
-    with np.errstate(invalid="ignore"):  # NaN of any kind is no height
-        z = np.concatenate(found).astype(np.float64)
-    if len(z) != count:
-        raise InputRefused(
-            f"{columns} columns and {rows} rows need {count} heights; there are {len(z)}", file=file
-        )
-    return z.reshape(rows, columns), (west, south), (dx, dy), angle
+    if have != rows * columns:
+        what = f"{columns} columns and {rows} rows need {rows * columns} heights; there are {have}"
+        raise InputRefused(what, file=file)

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputRefused
+from ..mapped_arrays import MakeRows, Rows
 from .dxf_mesh import begins_as_dxf, read_dxf
 from .gmsh_mesh import begins_as_msh, read_msh
 from .landxml import begins_as_landxml, read_landxml
 from .off import begins_as_off, read_off
-from .surface_meshes import begins_as_obj, begins_as_stl, read_obj, read_ply, read_stl, read_tsurf
+from .ply_mesh import begins_as_ply, read_ply
+from .stl_mesh import begins_as_stl, read_stl
+from .surface_meshes import begins_as_obj, read_obj, read_tsurf
 from .text import Step, no_step
 from .triangle_mesh import TriangleMesh
 from .vtk_mesh import begins_as_vtk_xml, read_vtk_xml
@@ -25,26 +28,31 @@ _HEAD = 4096
 @dataclass(frozen=True)
 class MeshFormat:
     """begins(head, size): whether a file of so many bytes that begins with these is of this format.
-    read(file, step) raises InputRefused naming file and line."""
+    read(file, step, rows) raises InputRefused naming file and line; rows: where it is kept."""
 
     name: str
     endings: tuple[str, ...]
     begins: Callable[[bytes, int], bool]
-    read: Callable[[Path, Step], TriangleMesh]
+    read: Callable[[Path, Step, MakeRows], TriangleMesh]
 
 
 def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
     return lambda head, _size: begins(head)
 
 
+def _at_once(read: Callable[[Path, Step], TriangleMesh]) -> Callable[[Path, Step, MakeRows], TriangleMesh]:
+    """Of formats that are read as a whole."""
+    return lambda file, step, _rows: read(file, step)
+
+
 MESH_FORMATS = (
     MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off),
-    MeshFormat("PLY", (".ply",), _by_head(lambda head: head.startswith((b"ply\n", b"ply\r"))), read_ply),
+    MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply),
     MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
-    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), read_vtk_xml),
-    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
-    MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), read_landxml),
-    MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), read_dxf),
+    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), _at_once(read_vtk_xml)),
+    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), _at_once(read_msh)),
+    MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), _at_once(read_landxml)),
+    MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), _at_once(read_dxf)),
     MeshFormat("STL", (".stl",), begins_as_stl, read_stl),
     MeshFormat("OBJ", (".obj",), begins_as_obj, read_obj),
 )
@@ -57,14 +65,15 @@ def is_mesh_file(file: str | Path) -> bool:
     return bool(_formats_of(Path(file)))
 
 
-def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
-    """Reads a mesh in any format that is known. Raises InputRefused naming file and line."""
+def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+    """Reads a mesh in any format that is known. rows: where it is kept, by the formats that are read piece by
+    piece. Raises InputRefused naming file and line."""
     file = Path(file)
     found = _formats_of(file)
     if not found:
         names = ", ".join(known.name for known in MESH_FORMATS)
         raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
-    return found[0].read(file, step)
+    return found[0].read(file, step, rows)
 
 
 def _formats_of(file: Path) -> list[MeshFormat]:

@@ -5,13 +5,14 @@ are one registry (docs/dev/extending.md)."""
 from __future__ import annotations
 
 import tokenize
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
+from ..mapped_arrays import Gather, in_memory, in_pieces
 from ..point_file import PointFile
 from ..units import MODEL_UNIT, factor
 from .ascii_grid import is_ascii_grid, read_ascii_grid
@@ -31,8 +32,9 @@ _HEAD = 4096  # comments may stand before what a grid begins with
 
 @dataclass(frozen=True)
 class RasterFormat:
-    """begins(head): whether a file that begins with these bytes is of this format. read(file, nodata, step)
-    raises InputRefused; nodata: further numbers that mean no height."""
+    """begins(head): whether a file that begins with these bytes is of this format. read(file, nodata, step,
+    gather) raises InputRefused; nodata: further numbers that mean no height; gather: where heights are
+    kept."""
 
     endings: tuple[str, ...]
     begins: Callable[[bytes], bool]
@@ -71,29 +73,31 @@ _OFTEN_NO_VALUE = (
 
 
 def read_point_file(
-    given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step
+    given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step, gather: Gather = in_memory
 ) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) float64 points in the model's unit, and what to tell about them, sentences.
+    """(P, 3) float64 points in the model's unit, and what to tell about them, sentences. gather: where they
+    are kept; files other than of shapes are read piece by piece.
 
     Raises InputRefused naming the file, and the line where it has some.
     """
     file = Path(given.file)
     head = head_of(file)
+    kept = _InModel(given, model_unit, gather)
     raster = next((known for known in RASTER_FORMATS if known.begins(head)), None)
     if raster is not None:
-        points, warnings = _raster_points(given, file, raster, step)
+        points, warnings = _raster_points(given, file, raster, step, gather, kept)
     elif head.startswith(_NUMPY):
         chosen = ["where"] if given.where else []
         _refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
-        points, warnings = _array_points(file), []
+        points, warnings = _array_points(file, kept), []
     elif is_map_layer(file, head):
         _refuse_keys(file, "has shapes", given.only_for_tables)
-        points, warnings = read_map_points(given, step)
+        found, warnings = read_map_points(given, step)
+        points = kept(in_pieces(found), np.empty((0, 3)))
     else:
         _refuse_keys(file, "is a table", given.only_for_shapes)
-        rows = read_point_rows(
-            file, given.columns, given.where, given.separator, given.decimal, given.nodata_values, step
-        )
+        reading = given.columns, given.where, given.separator, given.decimal, given.nodata_values
+        rows = read_point_rows(file, *reading, step, kept)
         points, warnings = rows.points, []
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
@@ -103,23 +107,44 @@ def read_point_file(
             )
         if rows.missing:
             warnings.append(f"{file}: {rows.missing} points have no value and are left out")
-    warnings += [f"{file}: {text}" for text in _like_no_value(points[:, 2])]
-    return in_model(points, given, model_unit), warnings
+    warnings += [f"{file}: {text}" for text in kept.heights.like_no_value()]
+    return points, warnings
 
 
-def _array_points(file: Path) -> np.ndarray:
+class _InModel:
+    """Gathers points of a file in the model's unit. heights: those of the file, looked at on the way."""
+
+    def __init__(self, given: PointFile, model_unit: str, gather: Gather):
+        self._given, self._unit, self._gather = given, model_unit, gather
+        self.heights = _Heights()
+
+    def __call__(self, pieces: Iterable[np.ndarray], empty: np.ndarray) -> np.ndarray:
+        self.heights = _Heights()
+        return self._gather(map(self._converted, pieces), empty)
+
+    def _converted(self, points: np.ndarray) -> np.ndarray:
+        self.heights.add(points[:, 2])
+        return in_model(points, self._given, self._unit)
+
+
+def _array_points(file: Path, gather: Gather) -> np.ndarray:
     """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
     try:
         found = np.load(file, mmap_mode="r", allow_pickle=False)
         if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iuf":
             what = f"an array of shape {found.shape} of {found.dtype} is not one of points (x, y, z in a row)"
             raise InputRefused(what, file=file)
-        points = np.array(found, np.float64)
     except _DAMAGED_ARRAY as error:
         raise InputRefused(f"a damaged array: {error}", file=file) from error
-    if not np.isfinite(points[:, :2]).all():
-        raise InputRefused("a place in plan is not finite", file=file)
-    points = points[np.isfinite(points[:, 2])]
+
+    def known() -> Iterator[np.ndarray]:
+        for piece in in_pieces(found):
+            points = np.array(piece, np.float64)
+            if not np.isfinite(points[:, :2]).all():
+                raise InputRefused("a place in plan is not finite", file=file)
+            yield points[np.isfinite(points[:, 2])]
+
+    points = gather(known(), np.empty((0, 3)))
     if not len(points):
         raise InputRefused("no point of the array has a height", file=file)
     return points
@@ -136,25 +161,38 @@ def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarra
     return points
 
 
-def _like_no_value(z: np.ndarray) -> list[str]:
-    """Heights that programs write for none, where no other height is near: told, not left out, as they may be
-    meant."""
-    said = []
-    for value in _OFTEN_NO_VALUE:
-        count = int((z == value).sum())
-        if not count or count == len(z):
-            continue
-        others = z[(z != value) & ~np.isin(z, _OFTEN_NO_VALUE)]
-        if not len(others):
-            continue
-        low, high = float(others.min()), float(others.max())
-        if min(abs(value - low), abs(value - high)) > max(high - low, 0.5 * abs(value)):
-            number = "1 point has" if count == 1 else f"{count} points have"
-            said.append(
-                f"{number} the height {value:g}, far from all others, which often means no data: if so, set "
-                f"nodata = {value:g}"
-            )
-    return said
+class _Heights:
+    """What there is among heights that come piece by piece: numbers that programs write for none."""
+
+    def __init__(self):
+        self._count = 0
+        self._of_value = dict.fromkeys(_OFTEN_NO_VALUE, 0)
+        self._low, self._high = np.inf, -np.inf  # of the others
+
+    def add(self, z: np.ndarray) -> None:
+        self._count += len(z)
+        often = np.isin(z, _OFTEN_NO_VALUE)
+        if often.any():
+            for value in _OFTEN_NO_VALUE:
+                self._of_value[value] += int((z == value).sum())
+            z = z[~often]
+        if len(z):
+            self._low, self._high = min(self._low, float(z.min())), max(self._high, float(z.max()))
+
+    def like_no_value(self) -> list[str]:
+        """Such heights where no other height is near: told, not left out, as they may be meant."""
+        said = []
+        for value, count in self._of_value.items():
+            if not count or count == self._count or self._low > self._high:
+                continue
+            near = min(abs(value - self._low), abs(value - self._high))
+            if near > max(self._high - self._low, 0.5 * abs(value)):
+                number = "1 point has" if count == 1 else f"{count} points have"
+                said.append(
+                    f"{number} the height {value:g}, far from all others, which often means no data: if so, "
+                    f"set nodata = {value:g}"
+                )
+        return said
 
 
 def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
@@ -180,11 +218,11 @@ def head_of(file: Path) -> bytes:
 
 
 def _raster_points(
-    given: PointFile, file: Path, known: RasterFormat, step: Step
+    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: Gather, kept: Gather
 ) -> tuple[np.ndarray, list[str]]:
     chosen = ["where"] if given.where else []
     _refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
-    raster = known.read(file, nodata, step)
+    raster = known.read(file, nodata, step, gather)
     warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]
-    return raster.points(file), warnings
+    return raster.points(file, kept), warnings

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused, number_list
+from ..mapped_arrays import Gather, in_memory
 from ..point_file import list_of
 from ..work import native_module
 from .table_layout import (
@@ -24,10 +26,9 @@ from .table_layout import (
     plain_name,
     table_layout,
 )
-from .text import Step, no_step, read_bytes, require_text
+from .text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
 
 TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
-BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 _MOST_THREADS = 8
 _AXES = {
     "x": (
@@ -71,8 +72,9 @@ def read_point_rows(
     decimal: str | None = None,
     nodata: Sequence = (),
     step: Step = no_step,
+    gather: Gather = in_memory,
 ) -> PointRows:
-    """The points of a table of text, as PointFile describes it.
+    """The points of a table of text, as PointFile describes it, read piece by piece.
 
     Where nothing is said: values stand apart by semicolons, tabs, commas, bars or blanks, told from the first
     line of numbers. Lines without numbers before it are headers; columns named x, y and z, or easting,
@@ -87,7 +89,7 @@ def read_point_rows(
     filters = [
         (table.column(name), _values(list_of(value), table.encoding)) for name, value in (where or {}).items()
     ]
-    rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step)
+    rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step, gather)
     if len(rows.points):
         guessed = () if columns is not None else _guessed_names(table)
         return replace(rows, taken_for_xyz=guessed)
@@ -102,7 +104,7 @@ class Table:
     """A table of text that was opened: what it holds, and how it is written."""
 
     file: Path
-    raw: bytes
+    raw: Content
     encoding: str
     layout: TableLayout
 
@@ -120,17 +122,9 @@ def open_table(
     columns: int = 3,
 ) -> Table:
     """A table that has columns of these names, and of those that `where` names."""
-    raw = read_bytes(file)
-    require_text(file, raw)
-    if b"\r" in raw and b"\n" not in raw:
-        raw = raw.replace(b"\r", b"\n")
-    start = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
-    encoding = "utf-8"
-    if not raw.isascii():
-        try:
-            raw.decode("utf-8")
-        except UnicodeDecodeError:
-            encoding = "latin-1"
+    raw = text_content(file)
+    start = len(BOM) if raw[: len(BOM)] == BOM else 0
+    encoding = encoding_of(raw)
     wanted = [name for name in (*names, *where) if isinstance(name, str)]
     layout = table_layout(
         file,
@@ -193,6 +187,7 @@ def read_rows(
     decimal: str | None = None,
     nodata: Sequence = (),
     step: Step = no_step,
+    gather: Gather = in_memory,
 ) -> PointRows:
     """The numbers (N, len(columns)) of the rows of a table; `names` call the columns in messages."""
     native = native_module()
@@ -204,7 +199,7 @@ def read_rows(
             mark = ","
     while True:
         try:
-            return _pieces(native, table, columns, filters, mark, missing, step)
+            return _pieces(native, table, columns, filters, mark, missing, step, gather)
         except native.InputError as error:
             undecided = decimal is None and mark == "." and table.layout.separator != ","
             if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
@@ -213,36 +208,47 @@ def read_rows(
             raise _refused(table, columns, names, mark, error) from error
 
 
-def _pieces(native, table, columns, filters, decimal, missing, step) -> PointRows:
+def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> PointRows:
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
     beginning of the file."""
-    raw = table.raw
-    bounds = [table.layout.body]
-    while bounds[-1] < len(raw):
-        end = raw.find(b"\n", min(bounds[-1] + BYTES_AT_ONCE, len(raw)))
-        bounds.append(len(raw) if end < 0 else end + 1)
+    begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
-    def read(begin: int, end: int):
+    def read(piece: bytes):
         separator = table.layout.separator
-        return native.read_numbers(raw, begin, end, separator, decimal, columns, filters, missing, 1)
+        return native.read_numbers(piece, 0, len(piece), separator, decimal, columns, filters, missing, 1)
 
-    line, found, counts = table.layout.body_line, [], np.zeros(2, np.int64)
-    pool = ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_THREADS), "realmodel reading")
-    try:
-        for end, piece in zip(bounds[1:], pool.map(read, bounds[:-1], bounds[1:]), strict=True):
-            values, lines, filtered, without = piece
-            found.append(values)
+    def numbers() -> Iterator[np.ndarray]:
+        nonlocal begin, line, counts
+        for end, found in _in_order(pool, read, pieces_of(table.raw, begin), 2 * threads):
+            values, lines, filtered, without = found.result()
             counts += filtered, without
-            line += lines
-            step(end / len(raw))
+            begin, line = end, line + lines
+            yield values
+            step(end / len(table.raw))
+
+    threads = min(os.cpu_count() or 1, _MOST_THREADS)
+    pool = ThreadPoolExecutor(threads, "realmodel reading")
+    try:
+        points = gather(numbers(), np.empty((0, len(columns))))
     except native.InputError as error:
-        begin = bounds[len(found)]
         error.items = [error.items[0] + line, *error.items[1:2], *(byte + begin for byte in error.items[2:])]
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-    points = np.concatenate(found) if found else np.empty((0, len(columns)))
     return PointRows(points, missing=int(counts[1]), filtered=int(counts[0]))
+
+
+def _in_order(
+    pool: Executor, function: Callable, pieces: Iterable[tuple[int, bytes]], most: int
+) -> Iterator[tuple[int, Future]]:
+    """Where each piece ends, and what function gives of it; so many are under way."""
+    waiting: deque[tuple[int, Future]] = deque()
+    for begin, piece in pieces:
+        waiting.append((begin + len(piece), pool.submit(function, piece)))
+        if len(waiting) > most:
+            yield waiting.popleft()
+    while waiting:
+        yield waiting.popleft()
 
 
 def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:

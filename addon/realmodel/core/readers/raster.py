@@ -3,20 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
+from ..mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
 
 
 @dataclass(frozen=True)
 class Raster:
     """Heights z (rows, columns) float64, NaN where there are none, the first row that of the file.
 
-    The height of row r and column c lies at origin + c * across + r * down in plan. warnings: sentences.
+    z may be in a file. The height of row r and column c lies at origin + c * across + r * down in plan.
+    warnings: sentences.
     """
 
     z: np.ndarray
@@ -25,19 +27,30 @@ class Raster:
     down: tuple[float, float]
     warnings: list[str] = field(default_factory=list)
 
-    def points(self, file: Path) -> np.ndarray:
+    def points(self, file: Path, gather: Gather = in_memory) -> np.ndarray:
         """(P, 3) float64, row after row, those without a height left out.
 
         Raises InputRefused where none is left.
         """
-        rows, columns = np.nonzero(np.isfinite(self.z))
-        if not len(rows):
+        points = gather(self._pieces(), np.empty((0, 3)))
+        if not len(points):
             raise InputRefused("no cell of the raster has a height", file=file)
-        points = np.empty((len(rows), 3))
-        for axis in (0, 1):
-            points[:, axis] = self.origin[axis] + columns * self.across[axis] + rows * self.down[axis]
-        points[:, 2] = self.z[rows, columns]
         return points
+
+    def _pieces(self) -> Iterator[np.ndarray]:
+        height, width = self.z.shape
+        wide = min(width, ROWS_AT_ONCE)
+        high = ROWS_AT_ONCE // wide if wide == width else 1
+        for top in range(0, height, high):
+            for left in range(0, width, wide):
+                z = self.z[top : top + high, left : left + wide]
+                rows, columns = np.nonzero(np.isfinite(z))
+                points = np.empty((len(rows), 3))
+                points[:, 2] = z[rows, columns]
+                rows, columns = rows + top, columns + left
+                for axis in (0, 1):
+                    points[:, axis] = self.origin[axis] + columns * self.across[axis] + rows * self.down[axis]
+                yield points
 
 
 def without_values(

@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
-from .grid_text import grid_heights, header_numbers, read_grid_text, require_count, require_spacing
+from ..mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+from .grid_text import grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, without_values
-from .text import Step, no_step, read_bytes
+from .text import FileBytes, Step, no_step, text_content
 
 _BLANK = 1.70141e38  # this, and more, is no height
 _HEAD_6 = struct.Struct("<4s2h6d")
@@ -24,20 +25,29 @@ def is_surfer_grid(head: bytes) -> bool:
     return head[:4] in (b"DSAA", b"DSBB", b"DSRB")
 
 
-def read_surfer_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+def read_surfer_grid(
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+) -> Raster:
     """A grid; its rows go from south to north. Raises InputRefused naming the line or the byte."""
     file = Path(file)
     with file.open("rb") as opened:
         kind = opened.read(4)
     read = {b"DSAA": _text, b"DSBB": _binary_6, b"DSRB": _binary_7}[kind]
-    z, (west, south), (dx, dy) = read(file, step)
-    z[z >= _BLANK] = np.nan
+    heights, shape, none, (west, south), (dx, dy) = read(file, step)
+
+    def known() -> Iterator[np.ndarray]:
+        for z in heights:
+            z = without_values(z, none)
+            z[z >= _BLANK] = np.nan
+            yield without_values(z, list(nodata))
+
+    z = gather(known(), np.empty(0)).reshape(shape)
     step(1.0)
-    return Raster(without_values(z, list(nodata)), (west, south), (dx, 0.0), (0.0, dy))
+    return Raster(z, (west, south), (dx, 0.0), (0.0, dy))
 
 
 def _text(file: Path, step: Step):
-    raw = read_grid_text(file)
+    raw = text_content(file)
     lines, at = [], raw.find(b"\n") + 1
     for _ in range(4):
         end = raw.find(b"\n", at)
@@ -52,24 +62,24 @@ def _text(file: Path, step: Step):
     x = header_numbers(file, lines[1], 3, 2, "the lowest and highest x")
     y = header_numbers(file, lines[2], 4, 2, "the lowest and highest y")
     dx, dy = require_spacing(file, *x, columns, "x", 3), require_spacing(file, *y, rows, "y", 4)
-    z = grid_heights(file, raw, at, 6, rows * columns, f"{columns} columns and {rows} rows", step)
-    return z.reshape(rows, columns), (x[0], y[0]), (dx, dy)
+    heights = grid_heights(file, raw, at, 6, rows * columns, f"{columns} columns and {rows} rows", step)
+    return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
 
 def _binary_6(file: Path, _step: Step):
-    raw = read_bytes(file)
+    raw = FileBytes(file)
     if len(raw) < _HEAD_6.size:
         raise InputRefused(f"the header is cut off at byte {len(raw)}", file=file)
-    _, columns, rows, *ends, _, _ = _HEAD_6.unpack_from(raw)
+    _, columns, rows, *ends, _, _ = _HEAD_6.unpack(raw[: _HEAD_6.size])
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
     _finite(file, ends, 8)
     spacing = require_spacing(file, *ends[:2], columns, "x"), require_spacing(file, *ends[2:], rows, "y")
-    z = _values(file, raw, _HEAD_6.size, "<f4", columns, rows)
-    return z, (ends[0], ends[2]), spacing
+    heights = _values(file, raw, _HEAD_6.size, "<f4", columns, rows)
+    return heights, (rows, columns), [], (ends[0], ends[2]), spacing
 
 
 def _binary_7(file: Path, _step: Step):
-    raw = read_bytes(file)
+    raw = FileBytes(file)
     sections, at = {}, 0
     while at + 8 <= len(raw):
         size = int.from_bytes(raw[at + 4 : at + 8], "little")
@@ -77,10 +87,11 @@ def _binary_7(file: Path, _step: Step):
         at += 8 + size
     if b"GRID" not in sections or sections[b"GRID"][0] + _GRID_7.size > len(raw):
         raise InputRefused(f"it has no section GRID, or is cut off in it at byte {len(raw)}", file=file)
-    rows, columns, *numbers = _GRID_7.unpack_from(raw, sections[b"GRID"][0])
+    at = sections[b"GRID"][0]
+    rows, columns, *numbers = _GRID_7.unpack(raw[at : at + _GRID_7.size])
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
     west, south, dx, dy, _, _, rotation, blank = numbers
-    _finite(file, (west, south, dx, dy), sections[b"GRID"][0])
+    _finite(file, (west, south, dx, dy), at)
     if rotation:
         raise InputRefused(
             "a rotated grid is not supported", file=file, advice="resample it without rotation"
@@ -89,8 +100,8 @@ def _binary_7(file: Path, _step: Step):
         raise InputRefused("its cells have no size", file=file)
     if b"DATA" not in sections:
         raise InputRefused("it has no section DATA", file=file, advice="the file is cut off")
-    z = _values(file, raw, sections[b"DATA"][0], "<f8", columns, rows)
-    return without_values(z, [blank]), (west, south), (dx, dy)
+    heights = _values(file, raw, sections[b"DATA"][0], "<f8", columns, rows)
+    return heights, (rows, columns), [blank], (west, south), (dx, dy)
 
 
 def _finite(file: Path, numbers: Sequence[float], byte: int) -> None:
@@ -98,10 +109,13 @@ def _finite(file: Path, numbers: Sequence[float], byte: int) -> None:
         raise InputRefused(f"a coordinate of the grid is not finite (byte {byte})", file=file)
 
 
-def _values(file: Path, raw: bytes, at: int, kind: str, columns: int, rows: int) -> np.ndarray:
-    needed = at + columns * rows * np.dtype(kind).itemsize
-    if len(raw) < needed:
-        what = f"{columns} columns and {rows} rows need {needed} bytes; there are {len(raw)}"
+def _values(file: Path, raw: FileBytes, at: int, kind: str, columns: int, rows: int) -> Iterator[np.ndarray]:
+    size = np.dtype(kind).itemsize
+    end = at + columns * rows * size
+    if len(raw) < end:
+        what = f"{columns} columns and {rows} rows need {end} bytes; there are {len(raw)}"
         raise InputRefused(what, file=file, advice="the file is cut off or its header is wrong")
-    with np.errstate(invalid="ignore"):  # NaN of any kind is no height
-        return np.frombuffer(raw, kind, columns * rows, at).astype(np.float64).reshape(rows, columns)
+    for begin in range(at, end, ROWS_AT_ONCE * size):
+        piece = raw[begin : min(begin + ROWS_AT_ONCE * size, end)]
+        with np.errstate(invalid="ignore"):  # NaN of any kind is no height
+            yield np.frombuffer(piece, kind).astype(np.float64)

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import codecs
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,10 @@ from ..errors import InputRefused
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 LINES_AT_ONCE = 20_000
+BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
+
+BOM = codecs.BOM_UTF8
+_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 Step = Callable[[float], None]
 
@@ -23,13 +28,133 @@ def no_step(_fraction: float) -> None:
     """For callers that want no progress."""
 
 
-def read_bytes(file: Path) -> bytes:
-    """What a file holds; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+class FileBytes:
+    """What a file holds, as far as readers take it for bytes: read where it is asked for, and not kept.
+    Raises InputRefused."""
+
+    def __init__(self, file: Path):
+        self._file = file
+        self._block, self._begin = b"", 0  # what was read last, and where it stands
+        with _read_of(file):
+            self._size = file.stat().st_size
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, part: slice) -> bytes:
+        begin, end, _ = part.indices(self._size)
+        if end <= begin:
+            return b""
+        if begin < self._begin or end > self._begin + len(self._block):
+            if end - begin > BYTES_AT_ONCE:
+                return self._read(begin, end)
+            self._block = self._read(begin, min(begin + BYTES_AT_ONCE, self._size))
+            self._begin = begin
+        return self._block[begin - self._begin : end - self._begin]
+
+    def _read(self, begin: int, end: int) -> bytes:
+        found = bytearray()
+        with _read_of(self._file), self._file.open("rb", buffering=0) as opened:
+            opened.seek(begin)
+            while len(found) < end - begin and (more := opened.read(end - begin - len(found))):
+                found += more
+        if len(found) < end - begin:
+            raise InputRefused("it became shorter while it was read", file=self._file)
+        return bytes(found)
+
+    def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
+        """Where a text of one byte stands next; -1 where it does not."""
+        end = self._size if end is None else min(end, self._size)
+        size = _BYTES_TO_FIND
+        while begin < end:
+            found = self[begin : min(begin + size, end)].find(text)
+            if found >= 0:
+                return begin + found
+            begin, size = begin + size, BYTES_AT_ONCE
+        return -1
+
+    def count(self, text: bytes, begin: int, end: int) -> int:
+        """How often a text of one byte stands between two places."""
+        places = range(begin, end, BYTES_AT_ONCE)
+        return sum(self[at : min(at + BYTES_AT_ONCE, end)].count(text) for at in places)
+
+
+Content = bytes | FileBytes
+_BYTES_TO_FIND = 1 << 12  # mostly the end of a line
+
+
+@contextmanager
+def _read_of(file: Path) -> Iterator[None]:
     try:
-        raw = Path(file).read_bytes()
+        yield
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
-    if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+
+
+def content_of(file: Path) -> Content:
+    """What a file holds, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises InputRefused."""
+    content = FileBytes(Path(file))
+    return read_bytes(file) if content[:2] in _UTF_16 else content
+
+
+def text_content(file: Path) -> Content:
+    """content_of a text file with lines that end in \\n; read at once where they do not. Raises
+    InputRefused."""
+    content = content_of(file)
+    require_text(file, content[:4096])
+    if content.find(b"\n") >= 0 or content.find(b"\r") < 0:
+        return content
+    return content[:].replace(b"\r", b"\n")
+
+
+def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
+    """Whole lines one after another, few at once: where they begin, and what they are."""
+    while begin < len(content):
+        last = min(begin + BYTES_AT_ONCE, len(content))
+        end = content.find(b"\n", last - 1)
+        end = len(content) if end < 0 else end + 1
+        yield begin, content[begin:end]
+        begin = end
+
+
+def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
+    """Lines of text as read_text has them, few at once: the number of the first, from 1, these, and which
+    share of the file is done then. Raises InputRefused."""
+    content = content_of(file)
+    require_text(file, content[:4096])
+    encoding, number = encoding_of(content), 1
+    begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
+    for at, piece in pieces_of(content, begin):
+        lines = _with_plain_ends(piece.decode(encoding)).split("\n")
+        if piece.endswith((b"\n", b"\r")) and at + len(piece) < len(content):
+            lines.pop()
+        yield number, lines, (at + len(piece)) / len(content)
+        number += len(lines)
+
+
+def _with_plain_ends(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def encoding_of(content: Content) -> str:
+    """utf-8, or latin-1 where it cannot be that."""
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        for at in range(0, len(content), BYTES_AT_ONCE):
+            piece = content[at : at + BYTES_AT_ONCE]
+            if not piece.isascii() or decoder.getstate()[0]:
+                decoder.decode(piece)
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"
+
+
+def read_bytes(file: Path) -> bytes:
+    """What a file holds; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+    with _read_of(file):
+        raw = Path(file).read_bytes()
+    if raw[:2] in _UTF_16:
         try:
             return raw.decode("utf-16").encode()
         except UnicodeDecodeError as error:
@@ -60,7 +185,7 @@ def read_text(file: Path) -> str:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return _with_plain_ends(text)
 
 
 def column_numbers(

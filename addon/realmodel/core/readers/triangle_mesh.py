@@ -11,8 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
+from ..mapped_arrays import ROWS_AT_ONCE, Gather, MakeRows, Rows, in_memory, in_pieces
 from ..point_file import MeshFile
 from ..polygon_mesh import fanned
+
+_MOST_VERTICES = np.iinfo(np.int32).max
 
 
 @dataclass(frozen=True)
@@ -31,10 +34,11 @@ class TriangleMesh:
     said_unit: str | None = None
     warnings: tuple[str, ...] = ()
 
-    def in_model(self, given: MeshFile, model_unit: str) -> tuple[np.ndarray, list[str]]:
+    def in_model(
+        self, given: MeshFile, model_unit: str, gather: Gather = in_memory
+    ) -> tuple[np.ndarray, list[str]]:
         """The vertices in the model's unit, z upward, and what to tell. given: what the user says of the
-        file;
-        without a unit of the user's the one of the file counts."""
+        file; without a unit of the user's the one of the file counts. gather: where they are kept."""
         told = [f"{given.file}: {text}" for text in self.warnings]
         if given.units is None and self.unit not in (None, model_unit):
             given = replace(given, units=self.unit)
@@ -45,30 +49,93 @@ class TriangleMesh:
         plan_scale, height_scale = given.scale(model_unit)
         if (plan_scale, height_scale) == (1.0, 1.0):
             return self.vertices, told
-        return self.vertices * (plan_scale, plan_scale, height_scale), told
+        scale = np.array([plan_scale, plan_scale, height_scale])
+        return gather((piece * scale for piece in in_pieces(self.vertices)), np.empty((0, 3))), told
+
+
+class MeshRows:
+    """A mesh that comes piece by piece, in any order. rows: where it is kept. Raises InputRefused."""
+
+    def __init__(self, file: Path, rows: MakeRows = Rows):
+        self._file, self._rows = file, rows
+        self._vertices = rows(np.empty((0, 3)))
+        self._triangles = rows(np.empty((0, 3), np.int32))
+        self._owners: Rows | None = None  # of triangles, where there are larger faces
+        self._lines: Rows | None = None
+        self.vertices, self.faces = 0, 0  # how many there are
+        self._triangle_count = 0
+        self._lowest, self._highest = 0, -1  # corners
+
+    def add_vertices(self, vertices) -> None:
+        with np.errstate(invalid="ignore"):  # NaN of any kind is refused
+            vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+        bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+        if len(bad):
+            raise InputRefused(f"vertex {self.vertices + bad[0] + 1} is not finite", file=self._file)
+        self._vertices.add(vertices)
+        self.vertices += len(vertices)
+
+    def add_faces(self, faces: Sequence, lines: Sequence[int] | None = None) -> None:
+        """faces: their corners, from 0, (F, K) or a list of any lengths; these may come later than they.
+        lines: where each face stands in the file."""
+        if not len(faces):
+            return
+        if isinstance(faces, np.ndarray):
+            sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
+        else:
+            sizes = np.array([len(face) for face in faces])
+            given = np.array(list(itertools.chain.from_iterable(faces)))
+        for face in np.flatnonzero(sizes < 3)[:1]:
+            line = None if lines is None else lines[face]
+            raise InputRefused("a face of 2 corners", file=self._file, line=line)
+        with np.errstate(invalid="ignore"):
+            is_number = (given >= 0) & (given <= _MOST_VERTICES)
+            corners = np.where(is_number, given, -1).astype(np.int32)
+            corners[corners != given] = -1
+        triangles, owner = fanned(np.append(0, np.cumsum(sizes)), corners)
+        self._lowest = min(self._lowest, int(corners.min()))
+        self._highest = max(self._highest, int(corners.max()))
+        if self._owners is None and (sizes > 3).any():
+            self._owners = self._rows(np.empty(0, np.int64))
+            for begin in range(0, self._triangle_count, ROWS_AT_ONCE):
+                self._owners.add(np.arange(begin, min(begin + ROWS_AT_ONCE, self._triangle_count)))
+        if self._owners is not None:
+            self._owners.add(owner + self.faces)
+        if lines is not None:
+            self._lines = self._lines or self._rows(np.empty(0, np.int64))
+            self._lines.add(np.asarray(lines))
+        self._triangles.add(triangles)
+        self._triangle_count += len(triangles)
+        self.faces += len(sizes)
+
+    def mesh(self) -> TriangleMesh:
+        if not self.faces:
+            advice = "if it holds points, read it as points"
+            raise InputRefused("the mesh has no faces", file=self._file, advice=advice)
+        triangles = self._triangles.array()
+        owners = None if self._owners is None else self._owners.array()
+        if self._lowest < 0 or self._highest >= self.vertices:
+            bad = self._first_bad(triangles)
+            face = bad if owners is None else int(owners[bad])
+            line = None if self._lines is None else int(self._lines.array()[face])
+            raise InputRefused(f"face {face + 1} has a corner that is no vertex", file=self._file, line=line)
+        return TriangleMesh(self._vertices.array(), triangles, owners)
+
+    def _first_bad(self, triangles: np.ndarray) -> int:
+        begin = 0
+        for piece in in_pieces(triangles):
+            bad = np.flatnonzero(((piece < 0) | (piece >= self.vertices)).any(axis=1))
+            if len(bad):
+                return begin + int(bad[0])
+            begin += len(piece)
+        raise AssertionError("there is none")
 
 
 def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
-    """The mesh of vertices (V, 3) and the corners of each face, from 0: (F, K), or a list of any lengths.
-    lines: where each face stands in the file. Raises InputRefused."""
-    with np.errstate(invalid="ignore"):  # NaN of any kind is refused below
-        vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
-    if not len(faces):
-        raise InputRefused("the mesh has no faces", file=file, advice="if it holds points, read it as points")
-    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
-    if len(bad):
-        raise InputRefused(f"vertex {bad[0] + 1} is not finite", file=file)
-    if isinstance(faces, np.ndarray):
-        sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
-    else:
-        sizes = np.array([len(face) for face in faces])
-        given = np.array(list(itertools.chain.from_iterable(faces)))
-    exists = (given >= 0) & (given < len(vertices))
-    corners = np.where(exists, given, 0).astype(np.int64)
-    wrong = ~exists | (corners != given)
-    face_of_corner = np.repeat(np.arange(len(sizes)), sizes)
-    for face in (*np.flatnonzero(sizes < 3)[:1], *face_of_corner[wrong][:1]):
-        what = f"face {face + 1} has a corner that is no vertex" if sizes[face] > 2 else "a face of 2 corners"
-        raise InputRefused(what, file=file, line=None if lines is None else lines[face])
-    triangles, owner = fanned(np.append(0, np.cumsum(sizes)), corners)
-    return TriangleMesh(vertices, triangles.astype(np.int32), None if (sizes == 3).all() else owner)
+    """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
+    InputRefused."""
+    found = MeshRows(file)
+    if len(faces):  # else this is what is wrong
+        found.add_vertices(vertices)
+    found.add_faces(faces, lines)
+    return found.mesh()

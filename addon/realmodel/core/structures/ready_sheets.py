@@ -10,7 +10,7 @@ from ..heights import heights
 from ..methods import CONTINUATION
 from ..work import Work
 from .between_sheets import common_lines
-from .families import Family
+from .families import Family, around_tips, families
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
@@ -91,7 +91,7 @@ class ReadyMesh:
             if not len(trace.points) and not self.tiling.is_mesh:
                 over[number] = self._over_others(own, family.dying[number])
         met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
-        if not met:
+        if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
         met = family.with_ends(met, self.entry.structure.faults)
@@ -113,6 +113,11 @@ class ReadyMesh:
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    def _is_drawn_together(self) -> bool:
+        """Whether sheets of several families are, so that they need one plan."""
+        structure = self.entry.structure
+        return bool(around_tips(structure, self.number, families(structure, self.number)))
 
     def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
         """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
@@ -145,12 +150,9 @@ class ReadyMesh:
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
-        vertices, triangles = next(iter(sheets.values()))
-        plans = [sheet[0][:, :2] for sheet in sheets.values()]
-        if len({id(sheet) for sheet in sheets.values()}) == 1 or not all(
-            np.array_equal(plan, plans[0]) for plan in plans
-        ):
+        if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets
+        vertices, triangles = next(iter(sheets.values()))
         heights = {sides: sheet[0][:, 2] for sides, sheet in sheets.items()}
         plan = np.ascontiguousarray(vertices[:, :2])
         return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)

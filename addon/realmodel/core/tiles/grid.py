@@ -10,12 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import UsageError
+from ..mapped_arrays import in_pieces
 from ..surface_heights import Triangulation
 
 _SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
 _IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions
 _BEYOND = 1 / 64  # of the model's extent: how far the outermost tiles reach beyond it
 _MOST_TILES = 100_000
+_TRIANGLES_AT_ONCE = 1 << 17
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,10 @@ def tile_grid(meshes: Sequence[np.ndarray], tile_size: tuple[float, float]) -> T
 
 def _near_lines(values: np.ndarray, low: float, size: float) -> np.ndarray:
     """The values that may be near any line."""
-    return values[np.abs((values - low) / size % 1 - 0.5) > 0.5 - 1.01 * _SEARCHED]
+    pieces = [np.empty(0)]
+    for piece in in_pieces(values):
+        pieces.append(piece[np.abs((piece - low) / size % 1 - 0.5) > 0.5 - 1.01 * _SEARCHED])
+    return np.concatenate(pieces)
 
 
 def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
@@ -109,41 +114,60 @@ class Part:
     numbers: np.ndarray
 
 
-class MeshBins:
-    """The triangles of a mesh by the tiles that their boxes meet."""
-
-    def __init__(self, mesh: Triangulation, grid: TileGrid):
-        self._mesh = mesh
-        self._grid = grid
-        vertices, triangles = mesh
-        self._first, self._last = [], []
+def triangles_by_tile(mesh: Triangulation, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
+    """Piece by piece the numbers, ascending, of the triangles whose boxes meet a tile."""
+    vertices, triangles = mesh
+    for begin in range(0, len(triangles), _TRIANGLES_AT_ONCE):
+        corners = triangles[begin : begin + _TRIANGLES_AT_ONCE]
+        first, count = [], []
         for axis, lines in enumerate((grid.x, grid.y)):
-            # of each vertex the first and the last tile that it is in: only on a line they differ
-            at = np.ascontiguousarray(vertices[:, axis])
+            at = [vertices[:, axis][corner] for corner in corners.T]
             low, high = (
-                (np.searchsorted(lines, at, side) - 1).clip(0, len(lines) - 2).astype(np.int32)
-                for side in ("left", "right")
+                (np.searchsorted(lines, ends, side) - 1).clip(0, len(lines) - 2)
+                for ends, side in ((np.minimum.reduce(at), "left"), (np.maximum.reduce(at), "right"))
             )
-            corners = triangles.T
-            self._first.append(np.minimum.reduce([low[corner] for corner in corners]))
-            self._last.append(np.maximum.reduce([high[corner] for corner in corners]))
-        self._column = -1
-        self._of_column = np.empty(0, np.int64)
+            first.append(low)
+            count.append(high - low + 1)
+        tiles = count[0] * count[1]
+        own = np.repeat(np.arange(len(corners)), tiles)
+        column, row = first[0][own], first[1][own]
+        if len(own) > len(corners):
+            nth = np.arange(len(own)) - np.repeat(np.cumsum(tiles) - tiles, tiles)
+            column, row = column + nth // count[1][own], row + nth % count[1][own]
+        for tile, which in _grouped(column, row, grid):
+            yield tile, (own[which] + begin).astype(np.int32)
 
-    def part(self, column: int, row: int) -> Part:
-        """The triangles whose boxes meet a tile; quickest one column after another."""
-        if column != self._column:
-            self._column = column
-            self._of_column = np.flatnonzero((self._first[0] <= column) & (self._last[0] >= column))
-        own = self._of_column
-        numbers = own[(self._first[1][own] <= row) & (self._last[1][own] >= row)]
-        vertices, triangles = self._mesh
-        used, corners = np.unique(triangles[numbers], return_inverse=True)
-        return Part(
-            np.ascontiguousarray(vertices[used]),
-            corners.reshape(-1, 3).astype(np.int32),
-            numbers.astype(np.int32),
-        )
+
+def points_by_tile(points: np.ndarray, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
+    """The numbers, ascending, of the points (P, 3) in each tile; those on lines are in the next one."""
+    column, row = (
+        np.searchsorted(lines, points[:, axis], "right") - 1 for axis, lines in enumerate((grid.x, grid.y))
+    )
+    inside = np.flatnonzero((column >= 0) & (column < grid.columns) & (row >= 0) & (row < grid.rows))
+    for tile, which in _grouped(column[inside], row[inside], grid):
+        yield tile, inside[which]
+
+
+def _grouped(
+    column: np.ndarray, row: np.ndarray, grid: TileGrid
+) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
+    """Which of tiles (N,) are the same one, in ascending order."""
+    if not len(column):
+        return
+    number = column * grid.rows + row
+    if grid.columns * grid.rows < 1 << 15:
+        number = number.astype(np.int16)  # quicker to sort
+    order = np.argsort(number, kind="stable")
+    there, begins = np.unique(number[order], return_index=True)
+    for tile, which in zip(there.tolist(), np.split(order, begins[1:]), strict=True):
+        yield divmod(tile, grid.rows), which
+
+
+def part_of(mesh: Triangulation, numbers: np.ndarray) -> Part:
+    """Some triangles of a mesh, (T,) int32."""
+    vertices, triangles = mesh
+    used, corners = np.unique(triangles[numbers], return_inverse=True)
+    return Part(np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers)
 
 
 def clipped_region(region: Triangulation, box: tuple[float, float, float, float]) -> Triangulation:

@@ -17,6 +17,7 @@ from ..build_warning import BuildWarning
 from ..errors import BuildFailed, OutputFailed
 from ..exporters.npz import model_arrays, write_arrays
 from ..local_heights import LocalHeights
+from ..mapped_arrays import in_pieces
 from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
@@ -24,8 +25,17 @@ from ..stack_refusals import refused_stack
 from ..surface_heights import Triangulation
 from ..work import Work, native_module
 from ..wrong_sides import WrongPoints, below_older
-from .grid import MeshBins, Part, TileGrid, box_triangles, clipped_region
+from .grid import (
+    Part,
+    TileGrid,
+    box_triangles,
+    clipped_region,
+    part_of,
+    points_by_tile,
+    triangles_by_tile,
+)
 from .settling import BorderVertices, Box
+from .tile_lists import TileLists
 from .windows import point_windows
 
 Name = tuple[int, int]  # column and row of a tile
@@ -71,17 +81,19 @@ def write_parts(
     mesh: Triangulation, rock: int, surface: int | str, grid: TileGrid, folder_of: Callable[[Name], Path]
 ) -> dict[Name, Box]:
     """Writes what each tile needs of a surface, REGION or PLAN of a rock mass: a file for each tile that it
-    meets. folder_of: of a tile. Returns these tiles, and the box around the vertices of each."""
-    bins, met = MeshBins(mesh, grid), {}
-    for column in range(grid.columns):
-        for row in range(grid.rows):
-            part = bins.part(column, row)
-            if not len(part.triangles):
-                continue
+    meets. folder_of: of a tile. Returns these tiles, and the box around the vertices of each.
+
+    One tile, or a piece of the surface, is in memory at a time: the numbers of triangles are files first."""
+    met = {}
+    with TileLists(folder_of, _part(rock, surface), np.empty(0, np.int32)) as listed:
+        for name, numbers in triangles_by_tile(mesh, grid):
+            listed.add(name, numbers)
+        for name in listed.tiles:
+            part = part_of(mesh, listed.of(name))
             plan = part.vertices[:, :2]
-            met[column, row] = (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
-            arrays = {name: getattr(part, name) for name in Part.__dataclass_fields__}
-            _write(arrays, folder_of((column, row)) / _part(rock, surface))
+            met[name] = (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
+            arrays = {key: getattr(part, key) for key in Part.__dataclass_fields__}
+            _write(arrays, folder_of(name) / _part(rock, surface))
     return met
 
 
@@ -104,18 +116,19 @@ def write_own_points(
     points: np.ndarray, rock: int, surface: int, grid: TileGrid, folder_of: Callable[[Name], Path]
 ) -> None:
     """Writes the points (P, 3) of a surface that lie in each tile, with their numbers."""
-    column, row = (
-        np.searchsorted(lines, points[:, axis], "right") - 1 for axis, lines in enumerate((grid.x, grid.y))
-    )
-    inside = np.flatnonzero((column >= 0) & (column < grid.columns) & (row >= 0) & (row < grid.rows))
-    tile = (column * grid.rows + row)[inside]
-    order = np.argsort(tile, kind="stable")
-    tiles, first = np.unique(tile[order], return_index=True)
-    for number, own in zip(tiles.tolist(), np.split(inside[order], first[1:]), strict=True):
-        _write(
-            {"points": points[own], "numbers": own},
-            folder_of(divmod(number, grid.rows)) / _part(rock, f"{surface}-own"),
-        )
+    begin, part = 0, _part(rock, f"{surface}-own")
+    row_of = np.dtype([("points", np.float64, 3), ("numbers", np.int64)])
+    with TileLists(folder_of, part, np.empty(0, row_of)) as own:
+        for piece in in_pieces(points):
+            rows = np.empty(len(piece), row_of)
+            rows["points"], rows["numbers"] = piece, np.arange(begin, begin + len(piece))
+            for name, numbers in points_by_tile(piece, grid):
+                own.add(name, rows[numbers])
+            begin += len(piece)
+        for name in own.tiles:
+            rows = own.of(name)
+            arrays = {key: np.ascontiguousarray(rows[key]) for key in row_of.names}
+            _write(arrays, folder_of(name) / part)
 
 
 def _write(arrays: dict[str, np.ndarray], path: Path) -> None:

@@ -19,7 +19,14 @@ struct ThinPlateOptions {
     int threads = 0;     ///< 0: as many as there are
     int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
     double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
+    /// The unit of distances; 0: the points' mean spacing. A part of the points gives heights of
+    /// the whole with that of the whole.
+    double spacing = 0;
 };
+
+/// The side of a square as large as each point's share of the box of all; 1 where this is none.
+/// @throws InputError as thin_plate for points
+double mean_spacing(std::span<const std::array<double, 3>> points);
 
 /// Thin plate splines (Duchon 1977; Wahba 1990, "Spline models for observational data",
 /// section 2.4): sum w_i r_i^2 log r_i + a + b x + c y, the surface that bends least through the

@@ -26,8 +26,7 @@ double squared_distance(const Position& a, const Position& b) {
     return dx * dx + dy * dy;
 }
 
-/// The side of a square as large as each point's share of their box.
-double mean_spacing(std::span<const Position> positions) {
+double mean_spacing_of(std::span<const Position> positions) {
     const spatial::PlanBox box = spatial::box_around(positions);
     const double width = box.width(), height = box.height();
     const auto count = static_cast<double>(positions.size());
@@ -95,10 +94,16 @@ void check_options(const ThinPlateOptions& options) {
     if (!(options.smoothing >= 0) || !std::isfinite(options.smoothing)) {
         throw InputError("option", "the smoothing is negative or infinite; 0 makes points hold");
     }
+    if (!(options.spacing >= 0) || !std::isfinite(options.spacing))
+        throw InputError("option", "the spacing is negative or infinite");
     check_neighborhood({options.neighbors, options.octants, options.radius});
 }
 
 }  // namespace
+
+double mean_spacing(std::span<const std::array<double, 3>> points) {
+    return mean_spacing_of(prepare_points(points).local);
+}
 
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                std::span<const std::array<double, 2>> nodes,
@@ -108,7 +113,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
     const DataPoints data = prepare_points(points);
     const spatial::NearestPoints tree(data.local);
     const Neighborhood neighborhood{options.neighbors, options.octants, options.radius};
-    const double spacing = mean_spacing(data.local);
+    const double spacing = options.spacing > 0 ? options.spacing : mean_spacing_of(data.local);
     const std::size_t points_used = static_cast<std::size_t>(options.neighbors);
     const bool all = neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
     Spline whole(spacing, options.smoothing);

@@ -4,6 +4,7 @@
 #include <CGAL/function_objects.h>
 #include <CGAL/natural_neighbor_coordinates_2.h>
 
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -55,7 +56,8 @@ std::vector<double> on_triangulation(std::span<const std::array<double, 3>> poin
     return z;
 }
 
-/// Sibson's coordinates, checked: their weighted mean must give the node back.
+/// Sibson's coordinates, checked: their weighted mean must give the node back. As near to an edge
+/// of the hull as rounding, an area may be infinite.
 double natural(const DataPoints& data, const PointTriangulation& triangulation,
                const Position& node, Face face) {
     using Weight = std::pair<Delaunay::Vertex_handle, double>;
@@ -76,7 +78,7 @@ double natural(const DataPoints& data, const PointTriangulation& triangulation,
         z += weight * (data.values[point] - base);
         reach += weight * elementary::hypot(dx, dy);
     }
-    if (!(sum > 0) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
+    if (!(sum > 0) || !std::isfinite(sum) || !(elementary::hypot(x, y) <= kAreasAgree * reach)) {
         return triangulation.linear(node, face);
     }
     return base + z / sum;

@@ -45,6 +45,24 @@ TEST(ThinPlate, FourPointsByHand) {
     EXPECT_NEAR(smooth[1], -0.25, 1e-9);
 }
 
+TEST(ThinPlate, APartOfThePointsGivesTheHeightsOfAll) {
+    // The nodes lie in the lower left corner, their neighbors in the part about it.
+    const Points all = hills(2000, 100, {4e5, 5e6});
+    Points part{all[0]};
+    for (std::size_t i = 1; i < all.size(); ++i)
+        if (all[i][0] < 4e5 + 60 && all[i][1] < 5e6 + 60) part.push_back(all[i]);
+    ASSERT_LT(part.size(), all.size() / 2);
+    const Nodes nodes = scattered_nodes(200, 20, {4e5, 5e6});
+    ThinPlateOptions options{0.2, 12, 2, 0, 0};
+    const std::vector<double> z = thin_plate(all, nodes, options);
+    EXPECT_NE(thin_plate(part, nodes, options), z);
+    options.spacing = mean_spacing(all);
+    EXPECT_EQ(thin_plate(part, nodes, options), z);
+    EXPECT_EQ(thin_plate(all, nodes, options), z);
+    options.spacing = -1;
+    EXPECT_THROW(thin_plate(part, nodes, options), InputError);
+}
+
 TEST(ThinPlate, SameBytesForAnyNumberOfThreadsAndRefusals) {
     const Points points = hills(300, 100);
     const Nodes nodes = scattered_nodes(1000, 120);

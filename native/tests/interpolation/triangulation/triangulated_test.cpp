@@ -24,6 +24,14 @@ TEST(Triangulated, ByHand) {
     EXPECT_NEAR(natural_neighbors(corners, Nodes{{1, 1}}, 1)[0], 3, 1e-14);
 }
 
+/// The node is inside the hull by rounding alone: the center of a circle through it is nowhere.
+TEST(Triangulated, IsFiniteNextToTheHull) {
+    const Points points{{0.8, 0.6, 0.0},  {0.8, 1.0, 0.1},  {1.0, 0.6, 0.0},  {1.0, 0.8, 0.0},
+                        {0.0, 0.0, -0.1}, {0.0, 0.2, -0.1}, {0.2, 0.0, -0.1}, {0.2, 0.2, -0.1},
+                        {0.4, 0.0, -0.1}, {0.6, 0.2, -0.1}, {1.0, 0.0, -0.1}, {1.0, 0.2, 0.0}};
+    EXPECT_NEAR(natural_neighbors(points, Nodes{{0.4, 0.6}}, 1)[0], 0, 1e-14);
+}
+
 TEST(Triangulated, SameBytesForAnyNumberOfThreads) {
     Points points = hills(800, 100, {4e5, 5e6});
     for (int i = 0; i < 400; ++i)  // a lattice: ties everywhere

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of heights of any size in each format that is read piece by piece, and what is in them."""
+
+import struct
+
+import numpy as np
+from test_rasters import tifffile
+
+STEP = 10.0  # from one height to the next
+NONE = -99999.0  # no height
+EAST, SOUTH = 500.0, 1000.0  # of the first column, of the last row
+
+
+def heights(rows, columns):
+    """(rows, columns) numbers of two decimals, from north to south, with some that mean no height."""
+    row, column = np.mgrid[0:rows, 0:columns]
+    z = ((row * 7919 + column * 104729) % 40009) / 4 - 5000  # exact in 32 bits, too
+    z[(row * 31 + column * 17) % 113 == 0] = NONE
+    return z
+
+
+def points(z, from_south=False):
+    """(P, 3) what is to be read of heights, as their rows stand in the file."""
+    rows, columns = np.nonzero(z != NONE)
+    y = SOUTH + (len(z) - 1 - rows) * STEP
+    found = np.column_stack([EAST + columns * STEP, y, z[rows, columns]])
+    return found[np.lexsort((found[:, 0], found[:, 1]))] if from_south else found
+
+
+def _text(head, z, path):
+    with path.open("w") as file:
+        file.write(head)
+        np.savetxt(file, z, fmt="%.2f")
+
+
+def _ascii_grid(z, path):
+    rows, columns = z.shape
+    head = f"ncols {columns}\nnrows {rows}\nxllcenter {EAST}\nyllcenter {SOUTH}\n"
+    _text(f"{head}cellsize {STEP}\nNODATA_value {NONE}\n", z, path)
+
+
+def _ends(z):
+    rows, columns = z.shape
+    return EAST, EAST + (columns - 1) * STEP, SOUTH, SOUTH + (rows - 1) * STEP
+
+
+def _zmap(z, path):
+    rows, columns = z.shape
+    ends = ", ".join(map(str, _ends(z)))
+    head = f"!\n@made GRID, GRID, 1\n20, {NONE}, , 2, 1\n{rows}, {columns}, {ends}\n0, 0, 0\n@\n"
+    _text(head.replace("@made GRID,", "@made,"), z.T.reshape(-1, 1), path)
+
+
+def _cps3(z, path):
+    rows, columns = z.shape
+    ends = " ".join(map(str, _ends(z)))
+    head = f"FSASCI 0 1 COMPUTED 0 {NONE}\nFSLIMI {ends} -5000 5000\nFSNROW {rows} {columns}\n"
+    _text(f"{head}FSXINC {STEP} {STEP}\n", z.T.reshape(-1, 1), path)
+
+
+def _blank(z, value):
+    return np.where(z == NONE, value, z)[::-1]
+
+
+def _irap_text(z, path):
+    rows, columns = z.shape
+    west, east, south, north = _ends(z)
+    head = f"-996 {rows} {STEP} {STEP}\n{west} {east} {south} {north}\n{columns} 0 {west} {south}\n"
+    _text(f"{head}0 0 0 0 0 0 0\n", _blank(z, 9999900.0), path)
+
+
+def _irap_binary(z, path):
+    rows, columns = z.shape
+    west, east, south, north = _ends(z)
+    with path.open("wb") as file:
+        file.write(struct.pack(">3i6fi", 32, -996, rows, west, east, south, north, STEP, STEP, 32))
+        file.write(struct.pack(">2i3fi", 16, columns, 0, west, south, 16))
+        file.write(struct.pack(">9i", 28, 0, 0, 0, 0, 0, 0, 0, 28))
+        for row in _blank(z, 9999900.0).astype(">f4"):
+            size = struct.pack(">i", row.nbytes)
+            file.write(size + row.tobytes() + size)
+
+
+def _surfer_text(z, path):
+    rows, columns = z.shape
+    west, east, south, north = _ends(z)
+    head = f"DSAA\n{columns} {rows}\n{west} {east}\n{south} {north}\n-5000 5000\n"
+    with path.open("w") as file:
+        file.write(head)
+        np.savetxt(file, _blank(z, 1.70141e38), fmt="%.6g")
+
+
+def _surfer_6(z, path):
+    rows, columns = z.shape
+    head = struct.pack("<4s2h6d", b"DSBB", columns, rows, *_ends(z), -5000, 5000)
+    path.write_bytes(head + _blank(z, 1.70141e38).astype("<f4").tobytes())
+
+
+def _surfer_7(z, path):
+    rows, columns = z.shape
+    grid = struct.pack("<2i8d", rows, columns, EAST, SOUTH, STEP, STEP, -5000, 5000, 0, 1.70141e38)
+    values = _blank(z, 1.70141e38).astype("<f8").tobytes()
+    sections = ((b"DSRB", struct.pack("<i", 1)), (b"GRID", grid), (b"DATA", values))
+    path.write_bytes(b"".join(name + struct.pack("<i", len(part)) + part for name, part in sections))
+
+
+def _tiff(**options):
+    def write(z, path):
+        place = (33922, 12, 6, (0, 0, 0, EAST - STEP / 2, SOUTH + (len(z) - 0.5) * STEP, 0), True)
+        tags = [(33550, 12, 3, (STEP, STEP, 0), True), place, (42113, 2, 0, str(NONE), True)]
+        given = {"photometric": "minisblack", "extratags": tags, "metadata": None, **options}
+        tifffile.imwrite(path, z.astype("f4"), **given)
+
+    return write
+
+
+def _table(z, path):
+    np.savetxt(path, points(z), fmt="%.2f", delimiter=";", header="X;Y;Z", comments="")
+
+
+RASTERS = {
+    "g.asc": _ascii_grid,
+    "g.zmap": _zmap,
+    "g.cps3": _cps3,
+    "text.irap": _irap_text,
+    "binary.irap": _irap_binary,
+    "text.grd": _surfer_text,
+    "6.grd": _surfer_6,
+    "7.grd": _surfer_7,
+}
+TIFFS = {
+    "strips.tif": _tiff(rowsperstrip=16),
+    "strip.tif": _tiff(rowsperstrip=1 << 20),
+    "tiles.tif": _tiff(tile=(64, 64), compression="zlib"),
+}
+TABLES = {"p.csv": _table, "p.npy": lambda z, path: np.save(path, points(z))}
+FROM_SOUTH = ("text.irap", "binary.irap", "text.grd", "6.grd", "7.grd")
+FORMATS = {**RASTERS, **(TIFFS if tifffile is not None else {}), **TABLES}
+
+
+def write_points(name, rows, columns, folder):
+    """A file of heights in the format of FORMATS; the file, and the points in it."""
+    z = heights(rows, columns)
+    path = folder / name
+    FORMATS[name](z, path)
+    return path, points(z, name in FROM_SOUTH)
+
+
+def lattice(rows, columns):
+    """Vertices (V, 3) and triangles (T, 3) over a grid of points; heights have two decimals, and few are
+    below zero."""
+    row, column = np.mgrid[0:rows, 0:columns]
+    z = ((row * 7919 + column * 104729) % 40009) / 4 - 50
+    vertices = np.column_stack([EAST + column.ravel() * STEP, SOUTH + row.ravel() * STEP, z.ravel()])
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    a, b, c, d = corner, corner + 1, corner + columns + 1, corner + columns
+    both = np.stack([np.column_stack([a, b, c]), np.column_stack([a, c, d])], axis=1)
+    return vertices, both.reshape(-1, 3).astype(np.int32)
+
+
+def _off(vertices, triangles, file):
+    file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
+    np.savetxt(file, vertices, fmt="%.2f")
+    np.savetxt(file, triangles, fmt="3 %d %d %d")
+
+
+def _obj(vertices, triangles, file):
+    np.savetxt(file, vertices, fmt="v %.2f %.2f %.2f")
+    np.savetxt(file, triangles + 1, fmt="f %d %d %d")
+
+
+def _tsurf(vertices, triangles, file):
+    file.write("GOCAD TSurf 1\nHEADER {\nname: top\n}\nTFACE\n")
+    numbered = np.column_stack([np.arange(1, len(vertices) + 1), vertices])
+    np.savetxt(file, numbered, fmt="VRTX %d %.2f %.2f %.2f")
+    np.savetxt(file, triangles + 1, fmt="TRGL %d %d %d")
+    file.write("END\n")
+
+
+def _stl_text(vertices, triangles, file):
+    file.write("solid top\n")
+    vertex = "vertex %.2f %.2f %.2f\n"
+    facet = f"facet normal 0 0 1\nouter loop\n{3 * vertex}endloop\nendfacet"
+    np.savetxt(file, vertices[triangles].reshape(-1, 9), fmt=facet)
+    file.write("endsolid top\n")
+
+
+def _ply_text(vertices, triangles, file):
+    file.write(_ply_head("ascii", vertices, triangles))
+    np.savetxt(file, vertices, fmt="%.2f")
+    np.savetxt(file, triangles, fmt="3 %d %d %d")
+
+
+def _ply_head(kind, vertices, triangles):
+    axes = "".join(f"property double {axis}\n" for axis in "xyz")
+    faces = f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n"
+    return f"ply\nformat {kind} 1.0\nelement vertex {len(vertices)}\n{axes}{faces}end_header\n"
+
+
+def _ply_binary(vertices, triangles, path):
+    table = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
+    table["count"], table["corners"] = 3, triangles
+    head = _ply_head("binary_little_endian", vertices, triangles).encode()
+    path.write_bytes(head + vertices.astype("<f8").tobytes() + table.tobytes())
+
+
+def _stl_binary(vertices, triangles, path):
+    facet = np.zeros(len(triangles), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    facet["corners"] = vertices[triangles]
+    path.write_bytes(b"made".ljust(80) + struct.pack("<I", len(triangles)) + facet.tobytes())
+
+
+TEXT_MESHES = {"m.off": _off, "m.obj": _obj, "m.ts": _tsurf, "text.stl": _stl_text, "text.ply": _ply_text}
+BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary}
+MESHES = {**TEXT_MESHES, **BINARY_MESHES}
+
+
+def write_mesh(name, rows, columns, folder):
+    """A file of a mesh in the format of MESHES; the file, its vertices and triangles."""
+    mesh, path = lattice(rows, columns), folder / name
+    if name in BINARY_MESHES:
+        BINARY_MESHES[name](*mesh, path)
+    else:
+        with path.open("w") as file:
+            TEXT_MESHES[name](*mesh, file)
+    return path, *mesh

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files read piece by piece: the same values wherever they are kept, in memory that does not grow."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from large_files import FORMATS, MESHES, write_mesh, write_points
+from realmodel.core import InputRefused, MeshFile, PointFile
+from realmodel.core.mapped_arrays import MappedArrays
+from realmodel.core.readers import read_mesh, read_point_file
+from realmodel.core.readers.text import FileBytes, encoding_of, pieces_of, text_content
+
+COMMON = f"""
+import json, resource, sys, tracemalloc
+from pathlib import Path
+sys.path[:0] = {[str(ROOT / "addon"), str(Path(__file__).parent)]}
+from large_files import *
+from realmodel.core import PointFile, Surface
+from realmodel.core.mapped_arrays import MappedArrays
+from realmodel.core.readers import points as tables, read_point_file
+from realmodel.distributed.tile_inputs import _read
+from realmodel.core.surface_input import SurfaceInput
+tables._MOST_THREADS = 1  # each has a piece of its own
+folder = Path(sys.argv[1])
+"""
+
+
+def in_a_process(script, *arguments):
+    """What a script of its own prints, as JSON."""
+    done = subprocess.run(
+        [sys.executable, "-c", COMMON + script, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_points_are_the_same_in_a_file(tmp_path, name):
+    """Larger than a piece; and each height, and only these, at its place."""
+    file, expected = write_points(name, 390, 410, tmp_path)
+    points, told = read_point_file(PointFile(file, units={"z": "ft"}, z_axis="down"))
+    assert np.array_equal(points[:, :2], expected[:, :2])
+    assert np.array_equal(points[:, 2], expected[:, 2] * 0.3048 * -1.0)
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        given = PointFile(file, units={"z": "ft"}, z_axis="down")
+        kept, told_of_kept = read_point_file(given, gather=arrays.gather)
+        assert isinstance(kept, np.memmap) and kept.tobytes() == points.tobytes()
+        assert told_of_kept == told
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_a_mesh_is_the_same_in_a_file(tmp_path, name):
+    file, vertices, triangles = write_mesh(name, 300, 310, tmp_path)
+    mesh = read_mesh(file)
+    if name.endswith(".stl"):  # vertices in the order of their coordinates
+        assert np.array_equal(np.unique(vertices, axis=0), mesh.vertices)
+        assert np.array_equal(mesh.vertices[mesh.triangles], vertices[triangles])
+    else:
+        assert np.array_equal(mesh.vertices, vertices) and np.array_equal(mesh.triangles, triangles)
+    assert mesh.face_of_triangle is None
+    given = MeshFile(file, units="ft", z_axis="down")
+    in_model, _ = mesh.in_model(given, "m")
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        kept = read_mesh(file, rows=arrays.rows)
+        for one, other in ((kept.vertices, mesh.vertices), (kept.triangles, mesh.triangles)):
+            assert isinstance(one, np.memmap) and one.dtype == other.dtype
+            assert one.tobytes() == other.tobytes()
+        assert kept.in_model(given, "m", arrays.gather)[0].tobytes() == in_model.tobytes()
+
+
+def test_larger_faces_late_in_a_mesh(tmp_path):
+    """The triangles know their faces from the first larger one on, and before."""
+    vertices = "".join(f"v {n % 7} {n % 11} 0\n" for n in range(60_000))
+    faces = "f 1 2 3\n" * 70_000 + "f 1 2 3 4\n" + "f 4 5 6\n" * 30_000
+    file = tmp_path / "m.obj"
+    file.write_text(vertices + faces)
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        for mesh in (read_mesh(file), read_mesh(file, rows=arrays.rows)):
+            assert len(mesh.triangles) == 100_002 and len(mesh.vertices) == 60_000
+            assert np.array_equal(mesh.face_of_triangle, np.insert(np.arange(100_001), 70_001, 70_000))
+        file.write_text(vertices + faces + "f 4 5 60001\n" + faces)
+        with pytest.raises(InputRefused, match=r"m\.obj:160002: face 100002 has a corner that is no vertex"):
+            read_mesh(file, rows=arrays.rows)
+
+
+def test_numbers_of_vertices_that_jump(write):
+    """Gaps, numbers that come late, and numbers that come again in another surface."""
+    head = "GOCAD TSurf 1\nTFACE\n"
+    first = "".join(f"VRTX {number} {k} {k % 2} 0\n" for k, number in enumerate([3, 4, 5, 9, 10, 2]))
+    other = "ATOM 1 10\nVRTX 4 7 7 7\nTRGL 3 4 5\nTRGL 9 2 1\nEND\n"
+    again = head + "VRTX 1 9 9 9\nVRTX 2 8 9 9\nVRTX 3 9 8 9\nTRGL 1 2 3\nEND\n"
+    mesh = read_mesh(write("m.ts", head + first + other + again))
+    assert mesh.triangles.tolist() == [[0, 6, 2], [3, 5, 4], [7, 8, 9]]
+    for missing in (1, 6, 8, 11):
+        text = head + first + f"TRGL 3 4 {missing}\nEND\n"
+        with pytest.raises(InputRefused, match=rf"m\.ts:9: 'TRGL 3 4 {missing}' cannot be read"):
+            read_mesh(write("m.ts", text))
+
+
+MEMORY = """
+def peak(name, scale):
+    if name in MESHES:
+        surface = Surface("S", mesh=write_mesh(name, 90 * scale, 90 * scale, folder)[0])
+    else:
+        surface = Surface("S", points=PointFile(write_points(name, 200 * scale, 200 * scale, folder)[0]))
+    with MappedArrays(folder / "arrays") as arrays:
+        surface = SurfaceInput("rock", surface, None, None, "m")
+        tracemalloc.start()
+        _read(arrays.folder, (0, surface))
+        found = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    return found
+print(json.dumps({name: [peak(name, 2), peak(name, 4)] for name in (*FORMATS, *MESHES)}))
+"""
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path):
+    """As a worker reads it; four times the points or triangles, both more than a few pieces."""
+    for name, (small, large) in in_a_process(MEMORY, tmp_path).items():
+        assert large < 1.25 * small, (name, small, large)
+
+
+LIMITED = """
+def limited(file):
+    status = Path("/proc/self/status").read_text()
+    now = int(status.split("VmData:")[1].split()[0]) * 1024
+    resource.setrlimit(resource.RLIMIT_DATA, (now + 100_000_000,) * 2)
+    surface = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
+    with MappedArrays(folder / "arrays") as arrays:
+        found, _ = _read(arrays.folder, (0, surface))
+        count = len(arrays.opened(found.surface.points))
+    try:
+        surface.read()
+        return count, "fits"
+    except MemoryError:
+        return count, "does not fit"
+file, points = write_points("6.grd", 2000, 4000, folder)
+expected = len(points)
+del points
+print(json.dumps([expected, *limited(file)]))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="a limit that counts no mapped files")
+def test_a_raster_is_read_in_less_memory_than_its_points_take(tmp_path):
+    expected, count, whole = in_a_process(LIMITED, tmp_path)
+    assert count == expected and 24 * count > 150_000_000
+    assert whole == "does not fit"
+
+
+def test_a_file_as_bytes(tmp_path):
+    file = tmp_path / "f"
+    given = b"".join(b"line %d\n" % n for n in range(200_000)) + b"end"
+    file.write_bytes(given)
+    found = FileBytes(file)
+    assert len(found) == len(given)
+    for part in (slice(0, 5), slice(-4, None), slice(7, 3), slice(1_000_000, 1_000_050), slice(None)):
+        assert found[part] == given[part]
+    for begin, end in ((0, None), (1_999_990, None), (len(given) - 3, None), (0, 3), (900, 12_000)):
+        assert found.find(b"\n", begin, end) == given.find(b"\n", begin, end)
+    assert found.find(b"!") == -1
+    assert found.count(b"\n", 10, 1_500_000) == given.count(b"\n", 10, 1_500_000)
+    pieces = list(pieces_of(found, 7))
+    assert b"".join(piece for _, piece in pieces) == given[7:]
+    assert all(piece.endswith(b"\n") for _, piece in pieces[:-1]) and len(pieces) > 3
+    file.write_bytes(given[:100])
+    with pytest.raises(InputRefused, match="became shorter"):
+        found[50:200]
+    with pytest.raises(InputRefused, match="cannot be read"):
+        FileBytes(tmp_path / "missing")
+
+
+@pytest.mark.parametrize("begin", range(5))
+def test_the_encoding_is_that_of_the_whole_file(tmp_path, begin):
+    """Letters of several bytes across the ends of pieces."""
+    file = tmp_path / "f"
+    text = "a" * ((1 << 19) - begin) + "äöü€" * 100 + "b" * (1 << 19)
+    file.write_text(text, encoding="utf-8")
+    assert encoding_of(FileBytes(file)) == "utf-8"
+    file.write_bytes(text.encode() + "ä".encode()[:1])
+    assert encoding_of(FileBytes(file)) == "latin-1"
+    file.write_bytes("ä".encode("latin-1") + text.encode())
+    assert encoding_of(FileBytes(file)) == "latin-1"
+
+
+def test_lines_of_old_machines(tmp_path):
+    file = tmp_path / "f"
+    file.write_bytes(b"1 2\r3 4\r")
+    assert text_content(file)[:] == b"1 2\n3 4\n"
+    file.write_bytes("1 2\r\n".encode("utf-16"))
+    assert text_content(file)[:] == b"1 2\r\n"
+
+
+def test_decimal_commas_late_in_a_large_table(tmp_path):
+    """What is read is read once more, and nothing of the first attempt is left."""
+    rows = "1 2 3\n" * 150_000 + "1 2 4,5\n"
+    file = tmp_path / "p.txt"
+    file.write_text(rows)
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        points, _ = read_point_file(PointFile(file), gather=arrays.gather)
+        assert len(points) == 150_001 and points[-1].tolist() == [1, 2, 4.5]
+
+
+def test_what_is_wrong_late_in_a_file_has_its_line(tmp_path):
+    file = tmp_path / "p.csv"
+    file.write_text("x,y,z\n" + "1,2,3\n" * 200_000 + "1,2,three\n" + "1,2,3\n" * 200_000)
+    with pytest.raises(InputRefused, match=r"p\.csv:200002: z is not a number: 'three'"):
+        read_point_file(PointFile(file))
+    file = tmp_path / "g.asc"
+    heights = "1 2 3\n" * 200_000 + "1 x 3\n" + "1 2 3\n" * 199_999
+    file.write_text("ncols 3\nnrows 400000\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + heights)
+    with pytest.raises(InputRefused, match=r"g\.asc:200006: not a height: 'x'"):
+        read_point_file(PointFile(file))
