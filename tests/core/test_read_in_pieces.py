@@ -129,6 +129,45 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
         assert large < 1.25 * small, (name, small, large)
 
 
+DIVIDED = """
+from realmodel.core.local_heights import local_heights
+from realmodel.core.project import Surface
+from realmodel.core.tiles.tile_model import write_windows, write_parts
+from realmodel.core.tiles.grid import tile_grid
+from realmodel.core.work import run
+import numpy as np
+
+def peak(scale):
+    rows, columns = 200 * scale, 220 * scale
+    file, _ = write_points("6.grd", rows, columns, folder)
+    with MappedArrays(folder / "arrays") as arrays:
+        given = SurfaceInput("rock", Surface("S", points=PointFile(file)), None, None, "m")
+        points = given.read(arrays=arrays).surface.points
+        mesh = tuple(map(arrays.keep, lattice(rows, columns)))
+        extent = np.array([points[:, :2].min(axis=0), points[:, :2].max(axis=0)])
+        settings = Surface("S", method="grid", points=points).method_options()
+        grid = tile_grid([mesh[0]], (1000.0, 1000.0))
+        tiles = folder / f"tiles-{scale}"
+        for name in grid:
+            (tiles / str(name)).mkdir(parents=True)
+        tracemalloc.start()
+        found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays.room))
+        boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
+        write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    return peak, len(boxes)
+print(json.dumps([peak(2), peak(4)]))
+"""
+
+
+def test_memory_for_a_raster_in_tiles_does_not_grow(tmp_path):
+    """Its grid is found, and its points and the mesh that it lies on are divided; four times the tiles."""
+    (small, tiles), (large, more) = in_a_process(DIVIDED, tmp_path)
+    assert tiles > 12 and more > 3 * tiles
+    assert large < 1.25 * small, (small, large)
+
+
 LIMITED = """
 def limited(file):
     status = Path("/proc/self/status").read_text()

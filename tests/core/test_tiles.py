@@ -29,7 +29,7 @@ from realmodel.core import (
 from realmodel.core.local_heights import LocalHeights
 from realmodel.core.tiles import grid as tile_grids
 from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
-from realmodel.core.tiles.windows import point_windows
+from realmodel.core.tiles.windows import PointWindows
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import tile_folder
 from realmodel.distributed.workers import Workers
@@ -329,6 +329,69 @@ def assert_same_heights(tiled, whole):
             assert all(known[x, y] == z for x, y, z in model.surface(k)[0].tolist())
 
 
+def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):
+    """Points on a grid, turned by an angle, in any order."""
+    rng = np.random.default_rng(seed)
+    across, up = np.mgrid[0 : shape[0], 0 : shape[1]].reshape(2, -1) * np.array(steps)[:, None]
+    x, y = across * np.cos(turn) - up * np.sin(turn), across * np.sin(turn) + up * np.cos(turn)
+    z = shift + 2 * np.sin(x / 15) + rng.normal(0, 0.2, len(x))
+    points = np.column_stack([corner[0] + x, corner[1] + y, z])
+    return points[rng.permutation(len(x))[: int(len(x) * (1 - left_out))]]
+
+
+def test_grids_are_interpolated_by_windows(monkeypatch, tmp_path):
+    """With nodes missing, nodes beside the grid, and points given twice."""
+    holes = on_a_grid((45, 60), (2.3, 1.7), (20, -10), 0.4, 0, 1, left_out=0.3)
+    holes = holes[(np.abs(holes[:, :2] - [60, 50]) > 12).any(axis=1)]
+    tied = on_a_grid((30, 30), (4, 4), (-10, -10), 0, 12, 3)
+    tied = np.concatenate([tied, np.add(tied[:7], [0, 0, 0.05]), tied[9:11]])
+    surfaces = [
+        Surface("holes", points=holes, method="grid"),
+        Surface("coarse", points=on_a_grid((6, 5), (23, 29), (-5, -5), 0, 6, 2), method="grid"),
+        Surface("tied", points=tied, method="grid"),
+        Surface("aside", points=on_a_grid((20, 90), (1.1, 0.3), (60, 20), -0.2, 18, 4), method="grid"),
+    ]
+    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
+    seen, real = [], LocalHeights.heights
+
+    def heights(self, work, points, nodes, threads):
+        seen.append((len(nodes), len(points)))
+        return real(self, work, points, nodes, threads)
+
+    monkeypatch.setattr(LocalHeights, "heights", heights)
+    tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)
+    assert_same_blocks(tiled, whole)
+    assert_same_heights(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+    of_tiles = [points for nodes, points in seen if nodes]
+    assert len(of_tiles) == 4 * len(tiled.tiles)
+    for number in (0, 2):  # those that cover most of the region
+        assert np.mean(of_tiles[number::4]) < 0.4 * len(surfaces[number].points)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda points: points + np.eye(len(points), 3) * 0.5, "not a regular grid"),
+        (
+            lambda points: np.concatenate([points, np.add(points[3:4], [0, 0, 9])]),
+            "two points with different",
+        ),
+        (lambda points: points[:3], "at least four points"),
+        (lambda points: points[points[:, 0] == 0], "in one row"),
+    ],
+)
+def test_points_that_are_no_grid_are_refused_the_same(change, said, tmp_path):
+    points = change(on_a_grid((20, 20), (5, 5), (0, 0), 0, 0, 1))
+    surface = Surface("S", points=points, method="grid")
+    project = Project("p", [Rock("r", [surface], region=OUTLINE, edge_length=9.0, base_elevation=-30.0)])
+    with pytest.raises(InputRefused, match=said) as told:
+        build_tiles(project, tmp_path / "t", (40, 40))
+    with pytest.raises(InputRefused) as here:
+        build(project)
+    assert str(told.value) == str(here.value)
+
+
 def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):
     """By all points; tiles interpolate by what was chosen, where they can."""
     smooth = scattered(300, 1, 5)
@@ -385,7 +448,12 @@ def test_windows_hold_the_nearest_points():
         np.mgrid[0:20, 0:30].T.reshape(-1, 2) * 4.0,
     ):
         boxes = [(0.0, 0.0, 30.0, 20.0), (60.0, 10.0, 61.0, 90.0), (-300.0, 500.0, -280.0, 510.0)]
-        for box, window in zip(boxes, point_windows(points, boxes, 16), strict=True):
+        found = PointWindows(points, boxes, 16)
+        windows = {box: [] for box in range(3)}
+        for begin in range(0, len(points), 100):
+            for box, which in found.of(points[begin : begin + 100], begin == 0):
+                windows[box].append(which + begin)
+        for box, window in zip(boxes, map(np.concatenate, windows.values()), strict=True):
             assert window[0] == 0 and (np.diff(window) > 0).all()
             for place in rng.uniform(box[:2], box[2:], (50, 2)):
                 squared = np.square(points - place).sum(axis=1)

@@ -11,6 +11,14 @@ import numpy as np
 from .errors import InputRefused
 from .heights import from_neighbours
 from .heights.interpolation import Task, run_method
+from .heights.regular_grid import (
+    RegularGrid,
+    Room,
+    bilinear,
+    find_grid,
+    has_each_node_once,
+    require_one_height,
+)
 from .heights.run import elsewhere, few_points, runs_away
 from .methods import METHODS
 from .mis_ties import without_mis_ties
@@ -22,8 +30,8 @@ from .work import Work, native_module
 @dataclass(frozen=True)
 class LocalHeights:
     """What the parts of a surface have in common. needed: how many of the points nearest to a node count.
-    known: for kriging the variogram of all points; spacing: for splines their mean spacing. lowest, highest:
-    of the points."""
+    lowest, highest: of the points. known: for kriging the variogram of all points; spacing: for splines their
+    mean spacing; grid: which one they are."""
 
     method: str
     settings: dict
@@ -32,6 +40,7 @@ class LocalHeights:
     lowest: float
     highest: float
     spacing: float = 0.0
+    grid: RegularGrid | None = None
 
     def heights(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
         """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
@@ -39,6 +48,8 @@ class LocalHeights:
         task = Task(work, points, nodes, self.settings, threads)
         if self.known is not None:
             return from_neighbours.krige(task, self.known).z
+        if self.grid is not None:
+            return bilinear(task, self.grid).z
         if self.method == "spline":
             return from_neighbours.thin_plate(task, self.spacing).z
         return run_method(self.method, task).z
@@ -66,23 +77,36 @@ def _is_local(surface: Surface) -> bool:
     method, settings = surface.method_options()
     return (
         METHODS[method].is_local
-        and settings.get("neighbours", 0) != 0
-        and settings["octants"] == 0
-        and not settings["radius"]
+        and (method == "grid" or settings.get("neighbours", 0) != 0)
+        and settings.get("octants", 0) == 0
+        and not settings.get("radius")
         and settings["extrapolate"] == "method"
     )
 
 
 def local_heights(
-    work: Work, points: np.ndarray, extent: np.ndarray, method: str, settings: dict, threads: int
+    work: Work,
+    points: np.ndarray,
+    extent: np.ndarray,
+    method: str,
+    settings: dict,
+    threads: int,
+    room: Room = np.zeros,
 ) -> tuple[LocalHeights, np.ndarray, list[str]]:
     """What is found once from all points of a surface; the points that its parts are interpolated from, each
-    place once; and what there is to tell. extent: (2, 2), of all nodes. Raises InputRefused."""
+    place once; and what there is to tell. extent: (2, 2), of all nodes. room: for notes of each point. Raises
+    InputRefused."""
     native = native_module()
-    points, mis_ties = without_mis_ties(points)
+    grid, mis_ties, is_sorted_out = None, None, False
+    if method == "grid":  # mostly nothing is to be sorted out of a raster, which may not fit the memory
+        grid = find_grid(points)
+        is_sorted_out = has_each_node_once(points, grid, room)
+    if not is_sorted_out:
+        points, mis_ties = without_mis_ties(points)
     told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
     task = Task(work, points, np.empty((0, 2)), settings, threads)
-    known, needed, spacing = None, settings["neighbours"], 0.0
+    known, spacing = None, 0.0
+    needed = 1 if method == "grid" else settings["neighbours"]  # where the grid lacks a node
     try:
         if "kriging" in method:
             known = from_neighbours.structure(task)
@@ -91,12 +115,17 @@ def local_heights(
             known = replace(known, warnings=())
         elif method == "spline":
             spacing = native.mean_spacing(points)
-        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]), spacing)
+        elif method == "grid" and not is_sorted_out:
+            grid = find_grid(points)
+            require_one_height(points, grid)
+        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]), spacing, grid)
         found.heights(work, points, task.nodes, threads)  # of no nodes: it checks the points
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    _, first = np.unique(points[:, :2], axis=0, return_index=True)
-    return found, np.ascontiguousarray(points[np.sort(first)]), told
+    if not is_sorted_out:
+        _, first = np.unique(points[:, :2], axis=0, return_index=True)
+        points = np.ascontiguousarray(points[np.sort(first)])
+    return found, points, told
 
 
 def _range(z: np.ndarray) -> tuple[float, float]:

@@ -109,6 +109,12 @@ class MappedArrays:
         """Gathers pieces in a file, read-only."""
         return _gathered(self.rows(empty), pieces)
 
+    def room(self, shape: tuple[int, ...], dtype) -> np.ndarray:
+        """Zeros in a file, for the caller to change."""
+        file = self._new_file()
+        with _told_of(file):
+            return np.lib.format.open_memmap(file, "w+", dtype, shape)
+
     def _new_file(self) -> Path:
         return self.folder / f"{secrets.token_hex(8)}.npy"
 

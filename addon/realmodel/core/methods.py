@@ -298,7 +298,11 @@ METHODS: dict[str, Method] = {
         "TIN", "Linear in the Delaunay triangles of the points", "from_triangulation.linear", _EXTRAPOLATE
     ),
     "grid": Method(
-        "Grid", "Bilinear between points on a regular grid", "regular_grid.bilinear", _EXTRAPOLATE
+        "Grid",
+        "Bilinear between points on a regular grid",
+        "regular_grid.bilinear",
+        _EXTRAPOLATE,
+        is_local=True,
     ),
     "plane": Method(
         "Plane",

@@ -150,14 +150,14 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
 
     def fitted(work: Work):
         given = np.ascontiguousarray(arrays.opened(points))
-        return local_heights(work, given, extent, method, settings, threads=1)
+        found, left, told = local_heights(work, given, extent, method, settings, 1, arrays.room)
+        return found, points if left is given else arrays.place(left), told
 
     try:
-        local, points, told = run(fitted)
+        return run(fitted)
     except InputRefused as error:
         file, line = surface.shape_source()
         raise error.within(surface_item(Rock(rock, []), surface), file=file, line=line) from error
-    return local, arrays.place(points), told
 
 
 class _Reader:
@@ -252,10 +252,9 @@ def divided(
         if k == PLAN:
             boxes[r] = there
     tasks = [
-        (r, k, arrays.place(points), frame.local[r, k].needed, boxes[r])
-        for (r, k), points in found.near.items()
+        (r, k, arrays.place(points), frame.local[r, k], boxes[r]) for (r, k), points in found.near.items()
     ]
-    tasks += [(r, k, arrays.place(arrays.keep(points)), 0, None) for (r, k), points in found.own.items()]
+    tasks += [(r, k, arrays.place(arrays.keep(points)), None, None) for (r, k), points in found.own.items()]
     for _ in workers.in_any_order(_divide_points, shared, tasks, cancel, here=True):
         pass
     return sorted(met, key=lambda name: name[::-1])
@@ -270,9 +269,9 @@ def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) 
 
 def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> None:
     folder, grid, folder_of = shared
-    rock, surface, place, needed, boxes = task
+    rock, surface, place, local, boxes = task
     points = MappedArrays(folder).opened(place)
     if boxes is None:
         write_own_points(points, rock, surface, grid, folder_of)
     else:
-        write_windows(points, rock, surface, needed, boxes, folder_of)
+        write_windows(points, rock, surface, local, boxes, folder_of)

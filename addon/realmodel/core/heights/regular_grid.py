@@ -6,12 +6,14 @@ Calculated without NumPy's linear algebra, which gives other last digits on othe
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..elementary import hypot
 from ..errors import InputRefused, place_text
+from ..mapped_arrays import ROWS_AT_ONCE, in_pieces
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 
@@ -20,31 +22,62 @@ _OFF_GRID = 0.02
 _ON_LINE = 1e-9  # of a cell: what is so near a line of the grid lies on it, but for rounding
 _SAMPLE = 200  # points whose neighbours show the grid's directions
 _MOST_EMPTY = 100  # nodes of the grid for each point
+_NEAR = 16  # points, in the mean, in a cell where neighbours are looked for
+_SURE = 0.99  # of a cell's side: points so far are in the cells around, but for rounding
+_ONE_ROW = "the points lie in one row; a grid needs two"
+
+Room = Callable[[tuple[int, ...], type], np.ndarray]  # zeros
 
 
 @dataclass(frozen=True)
 class RegularGrid:
-    """Node (i, j) lies at origin + i * axes[0] + j * axes[1]; z (I, J), NaN where the grid has no point."""
+    """Node (i, j) lies at origin + i * axes[0] + j * axes[1], both from 0 and below `shape`."""
 
     origin: np.ndarray
     axes: np.ndarray
-    z: np.ndarray
+    shape: tuple[int, int]
 
     def places(self, plan: np.ndarray) -> np.ndarray:
         """(N, 2) places in numbers of cells."""
         return _in_cells(plan - self.origin, self.axes)
 
+    def nodes(self, points: np.ndarray) -> np.ndarray:
+        """(P, 2) int64: the nodes that points are."""
+        return np.rint(self.places(points[:, :2])).astype(np.int64)
 
-def bilinear(task: Task) -> Result:
+    def box_of_cells(self, box: Sequence[float]) -> tuple[float, float, float, float]:
+        """A box in plan around the nodes of all cells that places in a box get their heights from."""
+        at = self.places(np.array([[box[a], box[b]] for a in (0, 2) for b in (1, 3)]))
+        last = np.array(self.shape) - 1
+        low = np.clip(np.floor(at.min(axis=0)), 0, last) - 1
+        high = np.clip(np.floor(at.max(axis=0)) + 1, 0, last) + 1
+        corners = np.array([[i, j] for i in (low[0], high[0]) for j in (low[1], high[1])])
+        plan = self.origin + corners[:, :1] * self.axes[0] + corners[:, 1:] * self.axes[1]
+        return (*plan.min(axis=0).tolist(), *plan.max(axis=0).tolist())
+
+
+def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
     """Bilinear between the four nodes of a cell (a product of linear functions). Outside the grid, and in
-    cells that lack a node: the heights of its border straight on, or of the nearest point."""
-    grid = find_grid(task.points)
+    cells that lack a node: the heights of its border straight on, or of the nearest point.
+
+    grid: that of all points, where the task has a part of them; None: it has all."""
+    if not len(task.nodes):
+        return Result(np.empty(0), outside=np.empty(0, bool))
+    is_part = grid is not None
+    if grid is None:
+        grid = find_grid(task.points)
     at = grid.places(task.nodes)
-    last = np.array(grid.z.shape) - 1
+    last = np.array(grid.shape) - 1
     outside = ((at < -_OFF_GRID) | (at > last + _OFF_GRID)).any(axis=1)
     at = np.clip(np.where(np.abs(at - np.rint(at)) < _ON_LINE, np.rint(at), at), 0, last)
     i, j = np.minimum(at.astype(np.int64), last - 1).T
     u, v = at[:, 0] - i, at[:, 1] - j
+    low = np.array([i.min(), j.min()]) if is_part else np.zeros(2, np.int64)
+    high = np.array([i.max(), j.max()]) + 1 if is_part else last
+    known = _heights(task.points, grid, low, high)
+    if not is_part:
+        require_one_height(task.points, grid, known)
+    i, j = i - low[0], j - low[1]
     z = np.zeros(len(at))
     for di, dj, weight in (
         (0, 0, (1 - u) * (1 - v)),
@@ -52,7 +85,7 @@ def bilinear(task: Task) -> Result:
         (0, 1, (1 - u) * v),
         (1, 1, u * v),
     ):
-        corner = grid.z[i + di, j + dj]
+        corner = known[i + di, j + dj]
         z += np.where(weight == 0, 0.0, weight * corner)  # a corner that is not needed may be missing
     missing = np.isnan(z)
     if missing.any():
@@ -60,52 +93,100 @@ def bilinear(task: Task) -> Result:
     return Result(z, outside=outside | missing)
 
 
+def _heights(points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Of the nodes from `low` to `high`; NaN where there is no point."""
+    z = np.full(high - low + 1, np.nan)
+    for piece in in_pieces(points):
+        node = grid.nodes(piece)
+        inside = ((node >= low) & (node <= high)).all(axis=1)
+        z[tuple((node[inside] - low).T)] = piece[inside, 2]
+    return z
+
+
+def require_one_height(points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None) -> None:
+    """Raises InputRefused where two points that are one node have different heights. z: of all nodes, of one
+    point each, where they are known."""
+    if z is None:
+        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1)
+    for piece in in_pieces(points):
+        differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
+        for bad in piece[differs][:1]:
+            raise InputRefused(
+                f"two points with different heights lie at one node of the grid, {place_text(bad)}",
+                item="points",
+                place=tuple(bad),
+            )
+
+
+def has_each_node_once(points: np.ndarray, grid: RegularGrid, room: Room) -> bool:
+    """Whether no two points are one node of their grid. room: where it is noted which ones there are."""
+    seen = room(grid.shape, bool).reshape(-1)
+    for piece in in_pieces(points):
+        i, j = grid.nodes(piece).T
+        node = i * grid.shape[1] + j
+        if seen[node].any() or len(np.unique(node)) < len(node):
+            return False
+        seen[node] = True
+    return True
+
+
 def find_grid(points: np.ndarray) -> RegularGrid:
-    """The grid whose nodes the points (P, 3) are. Raises InputRefused, naming a point that is off it."""
+    """The grid whose nodes the points (P, 3) are, which may be in a file. Raises InputRefused, naming a point
+    that is off it."""
     if len(points) < 4:
         raise InputRefused("a grid needs at least four points", item="points")
-    plan = points[:, :2]
-    start = plan[0]
-    axes = _axes(plan - start)
-    numbers = np.rint(_in_cells(plan - start, axes))
+    start = points[0, :2]
+    grid = RegularGrid(start, _axes(points), (0, 0))
     for _ in range(3):  # the axes are known by one cell at first; the whole grid makes them sharper
-        mean, middle = numbers.mean(axis=0), (plan - start).mean(axis=0)
-        axes = _fitted_axes(numbers - mean, plan - start - middle)
-        if abs(_determinant(axes)) <= 1e-9 * np.square(axes).sum():
-            raise InputRefused("the points lie in one row; a grid needs two", item="points")
-        origin = start + middle - mean[0] * axes[0] - mean[1] * axes[1]
-        at = _in_cells(plan - origin, axes)
-        numbers = np.rint(at)
-    off = np.abs(at - numbers).max(axis=1)
-    if off.max() > _OFF_GRID:
-        worst = int(off.argmax())
+        grid = _fitted(points, start, grid)
+    far, worst, least, most = -1.0, 0, np.inf, -np.inf
+    for number, piece in enumerate(in_pieces(points)):
+        at = grid.places(piece[:, :2])
+        node = np.rint(at)
+        off = np.abs(at - node).max(axis=1)
+        if off.max() > far:
+            far, worst = float(off.max()), number * ROWS_AT_ONCE + int(off.argmax())
+        least, most = np.minimum(least, node.min(axis=0)), np.maximum(most, node.max(axis=0))
+    if far > _OFF_GRID:
         raise InputRefused(
-            f"the points are not a regular grid: {place_text(points[worst])} is {off[worst]:.2g} cells off",
+            f"the points are not a regular grid: {place_text(points[worst])} is {far:.2g} cells off",
             item="points",
             place=tuple(points[worst]),
             advice='use method = "tin" or "kriging" for scattered points',
         )
-    least = numbers.min(axis=0)
-    numbers = (numbers - least).astype(np.int64)
-    shape = numbers.max(axis=0) + 1
-    if shape.min() < 2:
-        raise InputRefused("the points lie in one row; a grid needs two", item="points")
+    shape = tuple(int(count) for count in most - least + 1)
+    if min(shape) < 2:
+        raise InputRefused(_ONE_ROW, item="points")
     if shape[0] * shape[1] > _MOST_EMPTY * len(points):
         raise InputRefused(
             f"{len(points)} points would make a grid of {shape[0]} x {shape[1]} nodes, nearly all empty",
             item="points",
         )
-    z = np.full(shape, np.nan)
-    z[tuple(numbers.T)] = points[:, 2]
-    told = z[tuple(numbers.T)] == points[:, 2]
-    if not told.all():
-        bad = points[np.flatnonzero(~told)[0]]
-        raise InputRefused(
-            f"two points with different heights lie at one node of the grid, {place_text(bad)}",
-            item="points",
-            place=tuple(bad),
-        )
-    return RegularGrid(origin + least[0] * axes[0] + least[1] * axes[1], axes, z)
+    origin = grid.origin + int(least[0]) * grid.axes[0] + int(least[1]) * grid.axes[1]
+    return RegularGrid(origin, grid.axes, shape)
+
+
+def _fitted(points: np.ndarray, start: np.ndarray, grid: RegularGrid) -> RegularGrid:
+    """The grid that fits points best, with the nodes that they are in another: by sums over pieces."""
+
+    def pieces() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        for piece in in_pieces(points):
+            yield np.rint(grid.places(piece[:, :2])), piece[:, :2] - start
+
+    sums = [np.array([node.sum(axis=0), plan.sum(axis=0)]) for node, plan in pieces()]
+    mean, middle = _added(sums) / len(points)
+    sums = [_products(node - mean, plan - middle) for node, plan in pieces()]
+    axes = _fitted_axes(*_added(sums))
+    if abs(_determinant(axes)) <= 1e-9 * np.square(axes).sum():
+        raise InputRefused(_ONE_ROW, item="points")
+    return RegularGrid(start + middle - mean[0] * axes[0] - mean[1] * axes[1], axes, grid.shape)
+
+
+def _added(sums: list) -> np.ndarray:
+    total = sums[0]
+    for each in sums[1:]:
+        total = total + each
+    return total
 
 
 def _determinant(axes: np.ndarray) -> float:
@@ -119,36 +200,82 @@ def _in_cells(plan: np.ndarray, axes: np.ndarray) -> np.ndarray:
     return np.column_stack(along) / _determinant(axes)
 
 
-def _fitted_axes(numbers: np.ndarray, plan: np.ndarray) -> np.ndarray:
-    """The axes that lead best (least squares) from numbers of nodes to places, both about their means; zeros
-    where the nodes lie in one row."""
+def _products(numbers: np.ndarray, plan: np.ndarray) -> np.ndarray:
+    """The sums that _fitted_axes takes, of numbers of nodes and places, both about their means."""
     i, j = numbers.T
-    ii, ij, jj = (i * i).sum(), (i * j).sum(), (j * j).sum()
+    squares = (i * i).sum(), (i * j).sum(), (j * j).sum()
+    return np.array([*squares, *(i[:, None] * plan).sum(axis=0), *(j[:, None] * plan).sum(axis=0)])
+
+
+def _fitted_axes(ii, ij, jj, *products) -> np.ndarray:
+    """The axes that lead best (least squares) from numbers of nodes to places; zeros where the nodes lie in
+    one row."""
     size = ii * jj - ij * ij
     if size <= 1e-9 * ii * jj:
         return np.zeros((2, 2))
-    by_i, by_j = (i[:, None] * plan).sum(axis=0), (j[:, None] * plan).sum(axis=0)
+    by_i, by_j = np.array(products).reshape(2, 2)
     return np.array([jj * by_i - ij * by_j, ii * by_j - ij * by_i]) / size
 
 
-def _axes(plan: np.ndarray) -> np.ndarray:
+def _axes(points: np.ndarray) -> np.ndarray:
     """The shortest steps between points, and the shortest across them: [[x, y], [x, y]]."""
-    steps = []
-    for k in np.linspace(0, len(plan) - 1, min(len(plan), _SAMPLE)).astype(np.int64):
-        d = plan - plan[k]
-        squared = np.square(d).sum(axis=1)
-        squared[squared == 0] = np.inf
-        first = d[squared.argmin()]
-        # Not along the first: more than 30 degrees off it.
-        cross = d[:, 0] * first[1] - d[:, 1] * first[0]
-        across = cross**2 > 0.25 * np.where(np.isinf(squared), 1.0, squared) * np.square(first).sum()
-        if not across.any():
-            continue
-        second = d[np.where(across, squared, np.inf).argmin()]
-        steps.append((first, second))
+    numbers = np.linspace(0, len(points) - 1, min(len(points), _SAMPLE)).astype(np.int64)
+    found = _steps(points, numbers)
+    steps = [found[number] for number in numbers.tolist() if found[number] is not None]
     if not steps:
-        raise InputRefused("the points lie in one row; a grid needs two", item="points")
+        raise InputRefused(_ONE_ROW, item="points")
     # The commonest, by the lengths of both: cells with a missing neighbour show longer steps.
     lengths = np.array([[hypot(*a), hypot(*b)] for a, b in steps])
     best = np.lexsort((lengths[:, 0], np.round(lengths.sum(axis=1) / lengths.min(), 6)))[0]
     return np.array(steps[best])
+
+
+def _steps(points: np.ndarray, numbers: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray] | None]:
+    """From some points to the nearest one, and to the nearest one across that direction, if there is one."""
+    start = points[0, :2]
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    size = high - low
+    side = max(np.sqrt(_NEAR * size[0] * size[1] / len(points)), _NEAR * size.max() / len(points)) or 1.0
+    found, waiting = {}, [(number, points[number, :2]) for number in numbers.tolist()]
+    while waiting:
+        near = _in_cells_around(points, np.array([place for _, place in waiting]), low, side) - start
+        unsure = []
+        for number, place in waiting:
+            found[number], reach = _step(near, place - start)
+            if reach > _SURE * side and len(near) < len(points):
+                unsure.append((number, place))  # there may be nearer points elsewhere
+        waiting, side = unsure, 4 * side
+    return found
+
+
+def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, side: float) -> np.ndarray:
+    """The places of points, in their order, in the square cells of some places and in those around them."""
+
+    def cells(plan: np.ndarray) -> np.ndarray:
+        return np.floor((plan - low) / side).astype(np.int64) + 1  # from 0, with those around
+
+    around = np.array([[i, j] for i in (-1, 0, 1) for j in (-1, 0, 1)])
+    wanted = (cells(places)[:, None, :] + around).reshape(-1, 2)
+    rows = int(wanted[:, 1].max()) + 2  # more than there are, so that each cell has a number of its own
+    wanted = np.unique(wanted[:, 0] * rows + wanted[:, 1])
+    found = []
+    for piece in in_pieces(points):
+        plan = piece[:, :2]
+        column, row = cells(plan).T
+        found.append(plan[np.isin(column * rows + np.minimum(row, rows - 1), wanted)])
+    return np.concatenate(found)
+
+
+def _step(plan: np.ndarray, place: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray] | None, float]:
+    """From a place to the nearest of others, and to the nearest across, if there is one; how far that is."""
+    d = plan - place
+    squared = np.square(d).sum(axis=1)
+    squared[squared == 0] = np.inf
+    first = d[squared.argmin()].copy()  # a view would keep all
+    # Not along the first: more than 30 degrees off it.
+    cross = d[:, 0] * first[1] - d[:, 1] * first[0]
+    across = cross**2 > 0.25 * np.where(np.isinf(squared), 1.0, squared) * np.square(first).sum()
+    if not across.any():
+        return None, np.inf
+    away = np.where(across, squared, np.inf)
+    return (first, d[away.argmin()].copy()), float(np.sqrt(away.min()))

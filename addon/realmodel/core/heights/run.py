@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputRefused
+from ..mapped_arrays import in_pieces
 from ..methods import METHODS, SURFACE_OPTIONS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
@@ -78,13 +79,18 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
     """What to tell where points are too few for a surface that was to have a shape of its own."""
     if not METHODS[method].has_shape:
         return []
-    # no sorting of all places: it takes seconds of millions, and lets no other thread run meanwhile
-    elsewhere = points[(points[:, :2] != points[:1, :2]).any(axis=1), :2]
-    if len(points) and not len(elsewhere):
+    if not len(points):
+        return []
+    other = None
+    for piece in in_pieces(points):
+        plan = piece[(piece[:, :2] != points[0, :2]).any(axis=1), :2]
+        if len(plan) and other is None:
+            other = plan[0]
+        if len(plan) and (plan != other).any():
+            return []
+    if other is None:
         return ["there is one point only: the surface is its height everywhere"]
-    if len(elsewhere) and (elsewhere == elsewhere[0]).all():
-        return ["there are two points only: they do not show the slope across their line"]
-    return []
+    return ["there are two points only: they do not show the slope across their line"]
 
 
 def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:

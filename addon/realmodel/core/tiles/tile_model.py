@@ -36,7 +36,7 @@ from .grid import (
 )
 from .settling import BorderVertices, Box
 from .tile_lists import TileLists
-from .windows import point_windows
+from .windows import PointWindows
 
 Name = tuple[int, int]  # column and row of a tile
 REGION = "region"  # in the place of a surface's number
@@ -101,15 +101,20 @@ def write_windows(
     points: np.ndarray,
     rock: int,
     surface: int,
-    needed: int,
+    local: LocalHeights,
     boxes: dict[Name, Box],
     folder_of: Callable[[Name], Path],
 ) -> None:
-    """Writes the points (P, 3) that each tile interpolates a surface from. needed: LocalHeights.needed;
-    boxes: around the nodes of each tile."""
-    windows = point_windows(points[:, :2], list(boxes.values()), needed)
-    for name, numbers in zip(boxes, windows, strict=True):
-        _write({"points": points[numbers]}, folder_of(name) / _part(rock, f"{surface}-near"))
+    """Writes the points (P, 3) that each tile interpolates a surface from. boxes: around the nodes of each
+    tile."""
+    part, names = _part(rock, f"{surface}-near"), list(boxes)
+    windows = PointWindows(points, list(boxes.values()), local.needed, local.grid)
+    with TileLists(folder_of, part, np.empty((0, 3))) as near:
+        for number, piece in enumerate(in_pieces(points)):
+            for box, which in windows.of(piece, number == 0):
+                near.add(names[box], piece[which])
+        for name in near.tiles:
+            _write({"points": near.of(name)}, folder_of(name) / part)
 
 
 def write_own_points(

@@ -7,28 +7,51 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..heights.regular_grid import RegularGrid
+from ..mapped_arrays import in_pieces
 from .settling import Box
 
 _IN_CELL = 2.0  # points, in the mean
-_MOST_CELLS = 1 << 24
+_MOST_CELLS = 1 << 20
 _SLACK = 1 + 1e-6  # for rounding
 
 
-def point_windows(points: np.ndarray, boxes: Sequence[Box], needed: int) -> Iterator[np.ndarray]:
-    """Of each box the numbers of the points (P, 2), ascending, among which are the `needed` nearest to any
-    place in it, all of one distance, and one more; and the first of all. No two points have one place."""
-    if len(points) <= needed + 1 or not len(boxes):
-        yield from (np.arange(len(points)) for _ in boxes)
-        return
-    cells = _Cells(points, boxes)
-    order = np.argsort(points[:, 0], kind="stable")
-    x = points[order, 0]
-    for box in boxes:
-        reach = cells.reach(box, needed + 1)
-        first, last = np.searchsorted(x, [box[0] - reach, box[2] + reach])
-        near = order[first : min(last + 1, len(order))]
-        y = points[near, 1]
-        yield np.union1d([0], near[(y >= box[1] - reach) & (y <= box[3] + reach)])
+class PointWindows:
+    """Of some boxes the points among which are the `needed` nearest to any place in a box, all of one
+    distance, and one more; those of the cells of `grid` that places in it lie in; and the first of all. No
+    two points have one place."""
+
+    def __init__(
+        self, points: np.ndarray, boxes: Sequence[Box], needed: int, grid: RegularGrid | None = None
+    ):
+        """points: (P, 2 or more), which may be in a file."""
+        self._windows = np.array(boxes).reshape(-1, 4)
+        if len(points) <= needed + 1:
+            self._windows[:] = -np.inf, -np.inf, np.inf, np.inf
+        elif len(boxes):
+            cells = _Cells(points, boxes)
+            reach = np.array([[cells.reach(box, needed + 1)] for box in boxes])
+            self._windows += reach * [-1, -1, 1, 1]
+            if grid is not None:
+                of_cells = np.array([grid.box_of_cells(box) for box in boxes])
+                self._windows[:, :2] = np.minimum(self._windows[:, :2], of_cells[:, :2])
+                self._windows[:, 2:] = np.maximum(self._windows[:, 2:], of_cells[:, 2:])
+
+    def of(self, piece: np.ndarray, is_first: bool) -> Iterator[tuple[int, np.ndarray]]:
+        """The numbers of boxes that have some of a piece of the points, and which, ascending. is_first: the
+        first of all is the first of these."""
+        order = np.argsort(piece[:, 0], kind="stable")
+        x = piece[order, 0]
+        begins = np.searchsorted(x, self._windows[:, 0], "left")
+        ends = np.searchsorted(x, self._windows[:, 2], "right")
+        for box, (_, low, _, high) in enumerate(self._windows):
+            near = order[begins[box] : ends[box]]
+            y = piece[near, 1]
+            near = np.sort(near[(y >= low) & (y <= high)])
+            if is_first and (not len(near) or near[0]):
+                near = np.append(0, near)
+            if len(near):
+                yield box, near
 
 
 class _Cells:
@@ -36,16 +59,20 @@ class _Cells:
 
     def __init__(self, points: np.ndarray, boxes: Sequence[Box]):
         boxes = np.array(boxes).reshape(-1, 2, 2)
-        self._low = np.minimum(points.min(axis=0), boxes[:, 0].min(axis=0))
-        size = np.maximum(points.max(axis=0), boxes[:, 1].max(axis=0)) - self._low
+        plan = points[:, :2]
+        self._low = np.minimum(plan.min(axis=0), boxes[:, 0].min(axis=0))
+        size = np.maximum(plan.max(axis=0), boxes[:, 1].max(axis=0)) - self._low
         cells = min(len(points) / _IN_CELL, _MOST_CELLS)
         self._side = max(float(np.sqrt(size[0] * size[1] / cells)), float(size.max()) / cells) or 1.0
         shape = self._at(self._low + size) + 1
         self._last = shape - 1
-        column, row = self._at(points).T
-        count = np.bincount(column * shape[1] + row, minlength=shape[0] * shape[1]).reshape(shape)
         self._sum = np.zeros(shape + 1, np.int64)  # of all cells below
-        self._sum[1:, 1:] = count.cumsum(axis=0).cumsum(axis=1)
+        count = self._sum[1:, 1:]
+        for piece in in_pieces(plan):
+            cell, of_piece = np.unique(self._at(piece) @ [shape[1], 1], return_counts=True)
+            count[np.divmod(cell, shape[1])] += of_piece
+        np.cumsum(count, axis=0, out=count)
+        np.cumsum(count, axis=1, out=count)
 
     def _at(self, places: np.ndarray) -> np.ndarray:
         return np.floor((places - self._low) / self._side).astype(np.int64)
