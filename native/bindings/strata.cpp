@@ -60,11 +60,31 @@ CellKind kind_of(const std::string& cells) {
     return cells == "blocks" ? CellKind::kBlocks : CellKind::kColumns;
 }
 
+/// The least corner of a grid, the size of a cell, and of each cell whether it is wanted.
+using WantedArrays =
+    std::tuple<std::array<double, 3>, std::array<double, 3>,
+               py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>>;
+
+std::optional<strata::WantedSpace> space_of(const std::optional<WantedArrays>& wanted,
+                                            CellKind kind) {
+    if (!wanted) return {};
+    const auto& [low, step, cells] = *wanted;
+    if (kind != CellKind::kColumns) throw py::value_error("wanted: of columns alone");
+    if (cells.ndim() != 3 || cells.size() == 0 || cells.shape(2) > 64)
+        throw py::value_error("wanted: (nx, ny, nz), with 64 layers at most");
+    strata::WantedSpace space{low, step, {}, view(cells)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        space.cells[axis] = static_cast<std::size_t>(cells.shape(static_cast<py::ssize_t>(axis)));
+    return space;
+}
+
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
                            int threads, Progress* control,
                            const std::vector<std::vector<std::size_t>>& emptied,
-                           const std::vector<std::vector<std::uint8_t>>& fills) {
+                           const std::vector<std::vector<std::uint8_t>>& fills,
+                           const std::optional<WantedArrays>& wanted) {
     const CellKind kind = kind_of(cells);
+    const std::optional<strata::WantedSpace> space = space_of(wanted, kind);
     auto input = views_of(rocks);
     if (!emptied.empty() && (emptied.size() != rocks.size() || kind != CellKind::kColumns))
         throw py::value_error("emptied: one for each rock mass, of columns alone");
@@ -84,7 +104,8 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, threads, control, kind);
+        complex =
+            strata::build_rock_masses(input, threads, control, kind, space ? &*space : nullptr);
     }
     return to_dict(std::move(complex));
 }
@@ -147,7 +168,7 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
-                             {}, {});
+                             {}, {}, std::nullopt);
 }
 
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
@@ -178,6 +199,7 @@ void bind_strata(py::module_& module) {
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
                py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
+               py::arg("wanted") = std::nullopt,
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
@@ -188,8 +210,11 @@ flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosion
 all; emptied: of each rock mass the surfaces, ascending, before which all that is there becomes air,
 and only what was protected stays so (columns, no base elevation); fills: of each rock mass for each
 surface before the last of these 1 where it is the top of a body: then what is below the oldest
-surface stays, but for places at which a body was there first; none: nothing stays. Surfaces are
-counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
+surface stays, but for places at which a body was there first; none: nothing stays; wanted: None, or
+(low (3,), step (3,), cells (nx, ny, nz) uint8), the least corner of a grid, the size of a cell and of
+each whether it is wanted: columns that lie nowhere in these may be left out (nz: 64 at most; what is
+above or below the grid is wanted, beside it is as in the nearest cells). Surfaces are counted
+through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,

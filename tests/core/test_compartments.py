@@ -77,13 +77,15 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
     for part, row in enumerate(structures.sides):
         own = (rows == row).all(axis=1)
         seen |= own
-        over = reach.over(reach.columns(part), (sheet, squares))
+        space = reach.cells_of(part)
+        assert space[tuple(((points[own] - reach.low) // reach.step).astype(int).T)].all()
+        over = reach.over(space.any(axis=2), (sheet, squares))
         x, y = np.clip((points[own, :2] * 4).astype(int), 0, 39).T
         at = x * 40 + y
         assert over[at].all() and over[at + 1600].all()
         assert own.any() or name == "near"
         # the region for it has all of these points, and nothing that the sheet would not be kept over
-        plan, triangles = reach.around(reach.columns(part))
+        plan, triangles = reach.around(space.any(axis=2))
         level = np.column_stack([plan, np.zeros(len(plan))])
         inside = np.isfinite(native_module().surface_heights(level, triangles, points[:, :2].copy()))
         assert inside[own].all()
@@ -95,7 +97,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
 def test_a_part_reaches_no_farther_than_it_must():
     structures = network(NETWORKS["parallel"])
     reach = run(lambda work: Reach(work, structures, 0))
-    shares = sorted(reach.columns(part).mean() for part in range(len(structures.sides)))
+    shares = sorted(reach.cells_of(part).any(axis=2).mean() for part in range(len(structures.sides)))
     assert len(shares) == 3 and sum(shares) < 1.3
 
 

@@ -122,12 +122,20 @@ bool lie_on_one_upright_line(const SpacePoints& points, const Construction& own,
            lie_in_one_upright_plane(points, own, of);
 }
 
-/// The first of some points that was constructed where a line passes through a plane.
-const Construction* first_construction(const SpacePoints& points,
-                                       std::span<const SpacePointId> of) {
-    const auto found = std::ranges::find_if(
-        of, [&points](SpacePointId p) { return points.construction(p) != nullptr; });
-    return found == of.end() ? nullptr : points.construction(*found);
+/// How one of some points was constructed: where a line that is not upright passes through a plane,
+/// if there is such a one; nullptr where none was constructed so.
+const Construction* construction_of_one(const SpacePoints& points,
+                                        std::span<const SpacePointId> of) {
+    const Construction* found = nullptr;
+    for (const SpacePointId p : of) {
+        const Construction* own = points.construction(p);
+        if (own == nullptr) continue;
+        const SpacePosition &from = points.rounded(own->of.of[0]),
+                            &to = points.rounded(own->of.of[1]);
+        if (from[0] != to[0] || from[1] != to[1]) return own;
+        found = own;
+    }
+    return found;
 }
 
 /// A coordinate to twice the precision of doubles.
@@ -220,7 +228,7 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
                                           points.rounded(d), inexactness(points, of)))
         return *sign;
     if (lie_on_one_plane_by_construction(points, of)) return 0;
-    const Construction* own = first_construction(points, of);
+    const Construction* own = construction_of_one(points, of);
     if (own != nullptr && lie_in_one_upright_plane(points, *own, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
@@ -236,7 +244,7 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
     if (const auto sign = orient2d_filter(seen(a), seen(b), seen(c), inexactness(points, of)))
         return *sign;
     if (lie_on_one_line_by_construction(points, of)) return 0;
-    const Construction* own = first_construction(points, of);
+    const Construction* own = construction_of_one(points, of);
     if (own != nullptr && lie_on_one_upright_line(points, *own, of)) return 0;
     if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
     return by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });

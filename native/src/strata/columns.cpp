@@ -7,6 +7,7 @@
 #include "strata/cells/cell_building.hpp"
 #include "strata/overlay/facet_overlay.hpp"
 #include "strata/overlay/rock_footprints.hpp"
+#include "strata/overlay/whole_triangles.hpp"
 #include "strata/overlay/windowed_region.hpp"
 #include "strata/steps.hpp"
 #include "strata/tiling/rules.hpp"
@@ -69,8 +70,20 @@ private:
     std::vector<SurfaceTiling> replayed_;
 };
 
+/// Beneath facets where nothing is wanted no column reaches the base. To be called where all of
+/// these are thick, for they become the outside.
+void leave_out_unwanted(const Site& site, double base, Envelope& envelope) {
+    LocalArrangement scope(site.geometry);
+    for (std::size_t f = 0; f < envelope.size(); ++f) {
+        if (!envelope.plane[f].has_value()) continue;
+        spatial::Box box = box_of(scope, envelope.outlines[f], envelope.plane[f]);
+        box.low[2] = base;
+        if (!site.wanted->any_in(box)) envelope.block_beneath[f] = kSkyBlock;
+    }
+}
+
 /// Closes the rock mass beneath its envelope.
-void finish_rock(const Site& site, const EnteredRock& rock, const Envelope& envelope,
+void finish_rock(const Site& site, const EnteredRock& rock, Envelope& envelope,
                  Construction& construction) {
     bool is_far_above = false;
     if (rock.base) {
@@ -80,6 +93,7 @@ void finish_rock(const Site& site, const EnteredRock& rock, const Envelope& enve
         is_far_above = lowest[2] - base >
                        site.geometry.clear_height(std::max(std::abs(lowest[2]), std::abs(base)));
     }
+    if (is_far_above && site.wanted) leave_out_unwanted(site, *rock.base_elevation, envelope);
     finish(envelope, rock.base, is_far_above, construction);
 }
 
@@ -88,6 +102,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
               int threads, Progress* progress) {
     const std::size_t first_node = construction.node_block.size();
     const auto count = static_cast<std::int32_t>(rock.surfaces.size());
+    const WantedBoxes* wanted = site.wanted ? &*site.wanted : nullptr;
     Envelope envelope;
     if (rock.region) envelope = region_envelope(site, rock, threads, progress);
     TilingSequence tilings(site, rock, threads, progress);
@@ -98,7 +113,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
         SurfaceTiling tiling = tilings.take(k);
         envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
                                         : overlay_columns(site.geometry, envelope, tiling, k,
-                                                          construction, threads, progress);
+                                                          construction, wanted, threads, progress);
         tilings.give_back(std::move(tiling));
     }
     finish_rock(site, rock, envelope, construction);
@@ -111,6 +126,7 @@ BuiltCells build_columns(Site& site, int threads, Progress* progress) {
     // of triangulations of these vertices, and one is crossed by a trace here and there
     site.geometry.expect_lines(4 * site.geometry.point_count());
     Construction construction;
+    construction.may_lack_nodes = site.wanted.has_value();
     RockFootprints footprints;
     double start = kInputDone;
     for (EnteredRock& rock : site.rocks) {

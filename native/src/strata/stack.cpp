@@ -123,9 +123,10 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
 }  // namespace
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
-                              CellKind cells) {
+                              CellKind cells, const WantedSpace* wanted) {
     const page_store::Keeper keeper;
     const Entered entered = enter_joined(rocks, threads, progress);
+    if (wanted != nullptr) entered.site->wanted.emplace(*wanted);
     return build_site(*entered.site, entered.warnings, cells, threads, progress).complex;
 }
 

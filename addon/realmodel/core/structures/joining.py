@@ -127,7 +127,8 @@ def _part_model(
     stacks = [
         _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
     ]
-    columns = reach.columns(part)
+    space = reach.cells_of(part)
+    columns = space.any(axis=2)
     kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
     stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
     taken = [n for n, stack in enumerate(stacks) if stack.sheets]
@@ -136,10 +137,12 @@ def _part_model(
     rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
-    voids = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
-    built_as = "columns" if voids else cells
+    more = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
+    built_as = "columns" if more else cells
     # blocks end at one border: those that each sheet ends at by itself leave many small ones between
     around = reach.around(columns) if built_as == "blocks" else None
+    if cells == "columns" and not space.all():
+        more["wanted"] = (reach.low, reach.step, space.astype(np.uint8))
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
     rocks = [
         (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
@@ -148,7 +151,7 @@ def _part_model(
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
-        built = work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **voids)
+        built = work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **more)
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):
             error.items = rows[error.surface][error.items].tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where in plan each part of space may have rock: the cells of a part are made only there."""
+"""Where each part of space may have rock: the cells of a part are made only there."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have poi
 
 
 class Reach:
-    """Answers which triangles may lie over or under some part.
+    """Answers where some part may be, and which triangles may lie over or under it.
 
     The box of all rock is divided into cells. A cell that a fault may pass, or go on through beyond its
     border, has points on both sides of it; what hangs together without passing such a cell is on one side. So
@@ -31,22 +31,22 @@ class Reach:
         self.structures = structures
         self.low, self.size = structures.box[0], structures.box[1] - structures.box[0]
         step = self.size[:2].max() / _CELLS[0]
-        self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
-        self.step = self.size / self.cells
+        self.count = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
+        self.step = self.size / self.count
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
         self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
 
-    def columns(self, part: int) -> np.ndarray:
-        """(nx, ny) bool: over which cells in plan a part may have points."""
-        possible = np.ones(self.cells, bool)
+    def cells_of(self, part: int) -> np.ndarray:
+        """(nx, ny, nz) bool: in which cells a part may have points."""
+        possible = np.ones(self.count, bool)
         for mask, side in zip(self.masks, self.structures.sides[part].tolist(), strict=False):
             if side:
                 possible &= (mask & (_ABOVE if side > 0 else _BELOW)) > 0
         first, last = self._range(self.structures.low[part][None], self.structures.high[part][None])
-        inside = np.zeros(self.cells, bool)
+        inside = np.zeros(self.count, bool)
         inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
-        return (possible & inside).any(axis=2)
+        return possible & inside
 
     def around(self, columns: np.ndarray) -> Triangulation:
         """A region in plan: these columns and a little around them, and what is beyond the last ones."""
@@ -94,7 +94,7 @@ class Reach:
         near = 1e-6 * self.step[:n]
         first = np.floor((low - near - self.low[:n]) / self.step[:n])
         last = np.floor((high + near - self.low[:n]) / self.step[:n])
-        limit = self.cells[:n] - 1
+        limit = self.count[:n] - 1
         return np.clip(first, 0, limit).astype(np.int64), np.clip(last, 0, limit).astype(np.int64)
 
     def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
@@ -105,9 +105,9 @@ class Reach:
         middles = self._middles()
         # the first and the last of all, too: the fault is continued as far as the points reach
         asked = np.concatenate([middles[beside], middles[[0, -1], [0, -1], [0, -1]]])
-        side = np.zeros(self.cells, np.int8)
+        side = np.zeros(self.count, np.int8)
         side[beside] = fault_sides(work, asked, fault, threads)[:-2]
-        found = np.full(self.cells, _BOTH, np.uint8)
+        found = np.full(self.count, _BOTH, np.uint8)
         for number in np.unique(part[beside]):
             seen = side[beside & (part == number)]
             if (seen == seen[0]).all():
@@ -115,12 +115,12 @@ class Reach:
         return found
 
     def _middles(self) -> np.ndarray:
-        axes = [self.low[k] + self.step[k] * (np.arange(self.cells[k]) + 0.5) for k in range(3)]
+        axes = [self.low[k] + self.step[k] * (np.arange(self.count[k]) + 0.5) for k in range(3)]
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
 
     def _passed(self, corners: np.ndarray) -> np.ndarray:
         """(nx, ny, nz) bool: the cells that triangles (K, 3, 3) pass, or come near."""
-        passed = np.zeros(self.cells, bool)
+        passed = np.zeros(self.count, bool)
         pieces = _divided(corners, float(self.step.max()), self.low, self.low + self.size)
         if len(pieces):
             first, last = self._range(*extents(pieces))

@@ -80,6 +80,13 @@ struct StackInput {
     std::optional<Window> window = {};
 };
 
+/// Where in space anything is wanted: in some cells of a grid of at most 64 layers.
+struct WantedSpace {
+    std::array<double, 3> low, step;          ///< the least corner, the size of a cell
+    std::array<std::size_t, 3> cells;         ///< how many along each axis
+    std::span<const std::uint8_t> is_wanted;  ///< of each cell, the last axis fastest: 0 it is not
+};
+
 using realmodel::CellComplex;
 using realmodel::CellKind;
 using realmodel::kBase;
@@ -91,13 +98,15 @@ using realmodel::Warning;
 /// youngest surface of each (docs/dev/architecture.md). Where rock masses share a stretch of border
 /// the wall between them is overlaid from both sides. Every decision is exact on the input;
 /// coordinates are rounded once. The same input gives the same result for any number of threads.
+/// @param wanted  of columns: those that lie nowhere in it may be left out
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle, double_valued,
 /// base_not_below,
 ///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all
 ///         rock masses
 /// @throws Cancelled
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
-                              CellKind cells = CellKind::kColumns);
+                              CellKind cells = CellKind::kColumns,
+                              const WantedSpace* wanted = nullptr);
 
 /// A vertex of a tile on a line that bounds it.
 struct BorderVertex {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
@@ -19,7 +20,7 @@ void check(const Lines& lines) {
     if (count == 0 || lines.starts.size() != count || lines.values.size() % count != 0 ||
         lines.values.size() < 2 * count)
         throw InputError("option", "each line needs a direction, a start and two samples or more");
-    if (!(lines.step > 0) || !std::isfinite(lines.step))
+    if (!(lines.step > 0) || !std::isfinite(lines.step) || !std::isfinite(1 / lines.step))
         throw InputError("option", "the step between samples must be positive");
 }
 
@@ -30,7 +31,8 @@ std::vector<double> line_sums(std::span<const std::array<double, 2>> nodes, cons
     check(lines);
     require_finite_nodes(nodes);
     const std::size_t samples = lines.values.size() / lines.directions.size();
-    const double last = static_cast<double>(samples - 1);
+    const double last = static_cast<double>(samples - 1), steps = 1 / lines.step;
+    const auto last_cell = static_cast<std::int64_t>(samples - 2);
     std::vector<double> sums(nodes.size());
     const NodeLoop loop{nodes.size(), kNodesAtOnce, threads, progress, "simulating heights"};
     loop.over_chunks([] { return 0; },
@@ -39,11 +41,11 @@ std::vector<double> line_sums(std::span<const std::array<double, 2>> nodes, cons
                              if (cancelled(progress)) return;
                              const auto [x, y] = lines.directions[l];
                              const double* line = lines.values.data() + l * samples;
+                             const double start = lines.starts[l];
                              for (std::size_t i = begin; i < end; ++i) {
                                  const double along = nodes[i][0] * x + nodes[i][1] * y;
-                                 const double at =
-                                     std::clamp((along - lines.starts[l]) / lines.step, 0.0, last);
-                                 const auto k = std::min(static_cast<std::size_t>(at), samples - 2);
+                                 const double at = std::clamp((along - start) * steps, 0.0, last);
+                                 const auto k = std::min(static_cast<std::int64_t>(at), last_cell);
                                  const double share = at - static_cast<double>(k);
                                  sums[i] += line[k] + share * (line[k + 1] - line[k]);
                              }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/cells/cell_building.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <optional>
 #include <string>
@@ -86,6 +87,10 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     if (geometry.point_count() > kManyPoints) give_back_memory();
     Conformed c = conform(geometry, construction, blocks, threads, progress);
     FaceList& faces = construction.faces;
+    if (construction.may_lack_nodes) {
+        for (auto* nodes : {&faces.above, &faces.below})
+            std::replace(nodes->begin(), nodes->end(), kLeftOut, kOutsideCell);
+    }
     std::optional<TileBorder> border;
     if (window) {
         border = find_tile_border(geometry, faces, c.plan_vertices, c.conformed, *window, threads,

@@ -251,7 +251,8 @@ private:
     bool is_between(const LineEdge& edge, const Array<std::uint8_t>& cell_is_thick) const {
         const auto face = static_cast<std::size_t>(edge.face);
         const auto is_thick = [&](std::int32_t cell) {
-            return cell == kOutsideCell || cell_is_thick[static_cast<std::size_t>(cell)] != 0;
+            return cell < 0 ? cell == kOutsideCell
+                            : cell_is_thick[static_cast<std::size_t>(cell)] != 0;
         };
         return is_thick(faces_.above[face]) && is_thick(faces_.below[face]);
     }

@@ -69,7 +69,7 @@ void IntervalCurves::collect(std::size_t number) {
 void IntervalCurves::add_curves(const LineEdge& edge) {
     const auto face = static_cast<std::size_t>(edge.face);
     const bool left = edge.from < edge.to;
-    Curve curve{0, 0, edge.face, faces_.above[face], faces_.below[face], left};
+    Curve curve{0, 0, edge.face, cell_of(faces_.above[face]), cell_of(faces_.below[face]), left};
     const std::int32_t steps = std::abs(edge.to - edge.from);
     std::uint32_t entry = edge.begin;
     std::int32_t vertex = conformed_.vertices[entry];

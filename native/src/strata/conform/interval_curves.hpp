@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,16 +55,21 @@ std::int32_t below_all(std::span<const Curve> curves, bool left);
 
 /// Calls visit(low, high, left, right) for each two neighboring heights of an interval: a curve at
 /// either, and what lies between the two left and right of the line.
+/// @param are_columns  cells are columns, some of which may be left out; else all nodes are there
 template <class Visit>
-void for_each_gap(std::span<const Curve> curves, const Visit& visit) {
-    std::int32_t left = below_all(curves, true), right = below_all(curves, false);
+void for_each_gap(std::span<const Curve> curves, bool are_columns, const Visit& visit) {
+    std::array beside{below_all(curves, false), below_all(curves, true)};  // right, left
+    if (are_columns) beside.fill(curves[0].below);
     for (std::size_t i = 0; i < curves.size();) {
+        // Where another column is below a curve than was above the last one on that side, a face in
+        // between goes on across the line, and so do the columns that it separates.
+        if (are_columns && curves[i].below != beside[curves[i].left ? 1 : 0])
+            beside.fill(curves[i].below);
         std::size_t level = i;  // past the curves at this height
-        for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
-            (curves[level].left ? left : right) = curves[level].above;
-        }
+        for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level)
+            beside[curves[level].left ? 1 : 0] = curves[level].above;
         if (level == curves.size()) break;
-        visit(curves[i], curves[level], left, right);
+        visit(curves[i], curves[level], beside[1], beside[0]);
         i = level;
     }
 }

@@ -95,6 +95,8 @@ void EdgeMatching::find_bounds() {
         const auto left = static_cast<std::size_t>(pair.left->face);
         const auto right = static_cast<std::size_t>(pair.right->face);
         const auto add = [&](std::int32_t l, std::int32_t r, std::int32_t is_beneath, auto& to) {
+            l = cell_of(l);
+            r = cell_of(r);
             if (l == r) return;
             to.push_back({packed(l, r), packed(is_beneath, pair.left->from), pair.left});
             const Bound& first = bounds_.empty() ? beneath_[0] : bounds_[0];

@@ -85,19 +85,20 @@ private:
         const std::size_t known = missing.size();
         curves_.find_crossings(line, curves, batch_.scope, missing);
         if (missing.size() > known) return;
-        for_each_gap(curves, [&](const Curve& low, const Curve& high, std::int32_t left,
-                                 std::int32_t right) {
-            const std::array lower{low.start, low.end}, upper{high.start, high.end};
-            if (is_same(left, right)) {
-                link(left, right);
-            } else if (blocks_ == nullptr) {
-                joining_.add(lower, upper, left, right, low.start != high.start);
-            } else {
-                batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
-                                                  static_cast<std::int32_t>(interval), lower, upper,
-                                                  left, right});
-            }
-        });
+        for_each_gap(
+            curves, blocks_ == nullptr,
+            [&](const Curve& low, const Curve& high, std::int32_t left, std::int32_t right) {
+                const std::array lower{low.start, low.end}, upper{high.start, high.end};
+                if (is_same(left, right)) {
+                    link(left, right);
+                } else if (blocks_ == nullptr) {
+                    joining_.add(lower, upper, left, right, low.start != high.start);
+                } else {
+                    batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
+                                                      static_cast<std::int32_t>(interval), lower,
+                                                      upper, left, right});
+                }
+            });
     }
 
     bool may_have_walls(const Curve& curve) {

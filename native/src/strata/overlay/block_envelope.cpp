@@ -118,8 +118,8 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
         }
     }
     const std::size_t first_face = construction_.faces.size();
-    Overlaid overlaid = overlay_facets(geometry_, envelope, part, number, &blocks, construction_,
-                                       threads_, progress_);
+    Overlaid overlaid = overlay_facets(geometry_, envelope, part, number, &blocks, nullptr,
+                                       construction_, threads_, progress_);
     sort_overlaid(overlaid.kept, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
         std::uint8_t& in_parts = wholes_.is_in_parts[index(whole_[exact[i]])];

@@ -165,7 +165,7 @@ void ChunkJoining::put(std::size_t c) {
     const ChunkStart& at = start_[c];
     LocalArrangement& scope = *chunk.scope;
     const auto shared_node = [&](std::int32_t node) {
-        return node == kOutsideCell ? node : node + static_cast<std::int32_t>(at.node);
+        return node < 0 ? node : node + static_cast<std::int32_t>(at.node);
     };
     FaceList& faces = construction_.faces;
     strata::put(construction_.node_block, static_cast<std::size_t>(at.node), chunk.node_block);

@@ -15,7 +15,7 @@ namespace realmodel::strata {
 /// A piece of the surface that becomes part of the envelope.
 struct PieceBelow {
     std::int32_t polygon;     ///< of the tiling
-    std::int32_t node_above;  ///< counted within the chunk, or kOutsideCell
+    std::int32_t node_above;  ///< counted within the chunk, kOutsideCell or kLeftOut
 };
 
 /// What one chunk of facets became. Lines and points are the scope's for as long as there is one;

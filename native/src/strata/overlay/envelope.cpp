@@ -25,7 +25,7 @@ std::int32_t Construction::add_node(std::int32_t block, bool is_thick) {
 void Construction::seal(const Envelope& envelope, std::size_t facet, std::int32_t node) {
     const auto [begin, end] = envelope.faces_of(facet);
     for (std::size_t f = begin; f < end; ++f) {
-        if (node == kOutsideCell && envelope.face_above[f] == kOutsideCell) continue;
+        if (node < 0 && envelope.face_above[f] < 0) continue;
         faces.add(envelope.face_polygons[f], envelope.plane[facet], envelope.surface[facet],
                   envelope.face_above[f], node);
     }

@@ -14,6 +14,12 @@ namespace realmodel::strata {
 
 /// Instead of a node or a cell.
 inline constexpr std::int32_t kOutsideCell = -1;
+/// Instead of a node that is left out and may be thin; what is outside otherwise is thick.
+inline constexpr std::int32_t kLeftOut = -2;
+/// The node, or the outside also for one that is left out.
+constexpr std::int32_t cell_of(std::int32_t node) {
+    return node == kLeftOut ? kOutsideCell : node;
+}
 
 /// Faces that are finished: convex plan polygons, each in the plane of a triangle, between two
 /// nodes.
@@ -21,7 +27,7 @@ struct FaceList {
     PolygonPool polygons;
     Array<PlaneId> plane;
     Array<std::int32_t> surface;  ///< number of the surface that the face lies on, -1 the base
-    Array<std::int32_t> above;    ///< node, or kOutsideCell
+    Array<std::int32_t> above;    ///< node, kOutsideCell or kLeftOut
     Array<std::int32_t> below;
 
     std::size_t size() const { return plane.size(); }
@@ -45,7 +51,7 @@ struct Envelope {
     Array<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
     Array<std::int64_t> face_offsets{0};
     PolygonPool face_polygons;
-    Array<std::int32_t> face_above;  ///< node above each face, or kOutsideCell
+    Array<std::int32_t> face_above;  ///< node above each face, kOutsideCell or kLeftOut
 
     std::size_t size() const { return plane.size(); }
     std::pair<std::size_t, std::size_t> faces_of(std::size_t facet) const {
@@ -84,6 +90,7 @@ struct Construction {
     /// more than rounding moves heights.
     Array<std::uint8_t> node_is_thick;
     std::vector<std::pair<std::int32_t, std::int32_t>> links;  ///< nodes of one block that touch
+    bool may_lack_nodes = false;                               ///< whether kLeftOut stands for some
 
     /// @throws InputError kind too_large, where there are more nodes than numbers for them
     std::int32_t add_node(std::int32_t block, bool is_thick);

@@ -26,11 +26,13 @@ constexpr std::size_t kColumnFacets = 1024, kBlockFacets = 64;
 class FacetOverlay {
 public:
     FacetOverlay(const Envelope& envelope, const SurfaceTiling& tiling, std::int32_t number,
-                 const BlockFacets* blocks, Overlaid& overlaid, ChunkResult& result)
+                 const BlockFacets* blocks, const WantedBoxes* wanted, Overlaid& overlaid,
+                 ChunkResult& result)
         : envelope_(envelope),
           tiling_(tiling),
           number_(number),
           blocks_(blocks),
+          wanted_(wanted),
           overlaid_(overlaid),
           result_(result),
           finder_(*result.scope, tiling),
@@ -74,6 +76,19 @@ public:
     }
 
 private:
+    /// Whether any of what is between a facet and the pieces below it is.
+    bool is_wanted(std::size_t facet, const Pieces& pieces) {
+        if (wanted_ == nullptr) return true;
+        spatial::Box box =
+            box_of(*result_.scope, envelope_.outlines[facet], envelope_.plane[facet]);
+        for (const Piece& piece : pieces.list) {
+            if (piece.side != Side::kBelow) continue;
+            const HeightRange heights = tiling_.heights[static_cast<std::size_t>(piece.polygon)];
+            box.low[2] = std::min(box.low[2], heights.low);
+        }
+        return wanted_->any_in(box);
+    }
+
     /// Whether pieces below make one node without looking at their edges: nowhere as high as the
     /// facet, of triangles that go on in others all around; or over a block, undivided by a border.
     bool is_one_node(std::size_t facet, const Pieces& pieces) {
@@ -135,7 +150,9 @@ private:
 
     /// All of the facet lies above the surface, and one node is between them.
     void close(std::size_t facet, const Pieces& pieces) {
-        const std::int32_t node = add_nodes(facet, 1, blocks_ != nullptr || pieces.is_clear);
+        const bool is_thick = blocks_ != nullptr || pieces.is_clear;
+        std::int32_t node = is_thick ? kOutsideCell : kLeftOut;
+        if (is_wanted(facet, pieces)) node = add_nodes(facet, 1, is_thick);
         const auto [begin, end] = envelope_.faces_of(facet);
         for (std::size_t f = begin; f < end; ++f)
             seal(facet, f, envelope_.face_polygons[f], node);
@@ -144,13 +161,14 @@ private:
     }
 
     void split(std::size_t facet, const Pieces& pieces, std::int32_t nodes) {
-        const std::int32_t first_node = add_nodes(facet, nodes, false);
+        const bool wanted = nodes > 0 && is_wanted(facet, pieces);
+        const std::int32_t first_node = add_nodes(facet, wanted ? nodes : 0, false);
         const auto [begin, end] = envelope_.faces_of(facet);
         for (std::size_t i = 0; i < pieces.list.size(); ++i) {
             const Piece& piece = pieces.list[i];
             const PolygonView outline = pieces.outline(piece);
             const bool below = piece.side == Side::kBelow;
-            const std::int32_t node = below ? first_node + group_[i] : kOutsideCell;
+            const std::int32_t node = wanted ? first_node + group_[i] : kLeftOut;
             if (below) {
                 add_below(pieces, piece, node);
             } else {
@@ -175,6 +193,7 @@ private:
 
     /// Finishes a face of the facet: the node beneath it is known now.
     void seal(std::size_t facet, std::size_t face, PolygonView outline, std::int32_t node) {
+        if (node < 0 && envelope_.face_above[face] < 0) return;
         result_.faces.add(outline, envelope_.plane[facet], envelope_.surface[facet],
                           envelope_.face_above[face], node);
     }
@@ -183,6 +202,7 @@ private:
     const SurfaceTiling& tiling_;
     std::int32_t number_;
     const BlockFacets* blocks_;
+    const WantedBoxes* wanted_;
     Overlaid& overlaid_;
     ChunkResult& result_;
     PieceFinder finder_;
@@ -195,7 +215,9 @@ private:
 
 Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
                         const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
-                        Construction& construction, int threads, const Progress* progress) {
+                        const WantedBoxes* wanted, Construction& construction, int threads,
+                        const Progress* progress) {
+    assert(blocks == nullptr || wanted == nullptr);
     assert(blocks == nullptr || (blocks->span.size() == envelope.size() &&
                                  blocks->is_complete.size() == envelope.size()));
     Overlaid overlaid;
@@ -210,7 +232,7 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         const std::size_t begin = c * size, end = std::min(envelope.size(), begin + size);
         results[c] = std::make_unique<ChunkResult>(geometry, end - begin);
-        FacetOverlay facets(envelope, tiling, number, blocks, overlaid, *results[c]);
+        FacetOverlay facets(envelope, tiling, number, blocks, wanted, overlaid, *results[c]);
         for (std::size_t f = begin; f < end; ++f)
             facets.process(f);
         for (const PolygonPool* pool : results[c]->pools())
@@ -226,9 +248,10 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
 
 Envelope overlay_columns(PlanArrangement& geometry, const Envelope& envelope,
                          const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, int threads, const Progress* progress) {
-    Overlaid overlaid = overlay_facets(geometry, envelope, tiling, number, nullptr, construction,
-                                       threads, progress);
+                         Construction& construction, const WantedBoxes* wanted, int threads,
+                         const Progress* progress) {
+    Overlaid overlaid = overlay_facets(geometry, envelope, tiling, number, nullptr, wanted,
+                                       construction, threads, progress);
     const PiecesOfPolygons pieces =
         sort_by_polygon(overlaid.below, tiling.plane.size(), threads, progress);
     add_surface_facets(tiling, overlaid.is_divided, overlaid.below, pieces, number, overlaid.kept,

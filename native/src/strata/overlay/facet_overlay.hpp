@@ -6,6 +6,7 @@
 #include "strata/overlay/border_edges.hpp"
 #include "strata/overlay/envelope.hpp"
 #include "strata/overlay/surface_facets.hpp"
+#include "strata/overlay/wanted_space.hpp"
 
 namespace realmodel::strata {
 
@@ -31,14 +32,18 @@ struct Overlaid {
 
 /// Overlays facets with surface `number`: beneath those parts that lie above it nodes are closed.
 /// Pieces are grouped to columns, or as `blocks` says.
+/// @param wanted  as overlay_columns has it; not with `blocks`
 Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelope,
                         const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
-                        Construction& construction, int threads, const Progress* progress);
+                        const WantedBoxes* wanted, Construction& construction, int threads,
+                        const Progress* progress);
 
 /// Lays surface `number` under the envelope: where it is lower, a column is closed between the two
 /// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
+/// @param wanted  where columns are; those elsewhere are left out. Nothing: all of them are
 Envelope overlay_columns(exact::PlanArrangement& geometry, const Envelope& envelope,
                          const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, int threads, const Progress* progress);
+                         Construction& construction, const WantedBoxes* wanted, int threads,
+                         const Progress* progress);
 
 }  // namespace realmodel::strata

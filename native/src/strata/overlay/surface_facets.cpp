@@ -117,11 +117,13 @@ void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint
         if (pieces.empty() || use[p] == kElsewhere) return;
         if (use[p] == kTogether) {
             add_facet(tiling.polygons[p], tiling.plane[p]);
-            const bool open = std::all_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
-                return below.node_above[i] == kOutsideCell;
-            });
-            if (open) {  // nothing above needs the pieces
-                add_face(tiling.polygons[p], kOutsideCell);
+            std::int32_t least = kOutsideCell, greatest = kOutsideCell;
+            for (const std::uint32_t i : pieces) {
+                least = std::min(least, below.node_above[i]);
+                greatest = std::max(greatest, below.node_above[i]);
+            }
+            if (greatest == kOutsideCell) {  // nothing above needs the pieces
+                add_face(tiling.polygons[p], least);
                 return;
             }
         }

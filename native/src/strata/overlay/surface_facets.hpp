@@ -14,7 +14,7 @@ namespace realmodel::strata {
 struct PiecesBelow {
     PolygonPool outlines;
     Array<std::int32_t> polygon;     ///< of the tiling
-    Array<std::int32_t> node_above;  ///< or kOutsideCell
+    Array<std::int32_t> node_above;  ///< node, kOutsideCell or kLeftOut
 };
 
 /// The pieces of each polygon.

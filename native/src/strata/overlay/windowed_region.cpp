@@ -17,8 +17,8 @@ Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progr
                                                      rock.window_plan, {}, -1, threads, progress);
     site.surface_of_plane.resize(site.geometry.plane_count(), kBase);
     Construction nothing;
-    Overlaid overlaid = overlay_facets(site.geometry, region, window, kSkyBlock, nullptr, nothing,
-                                       threads, progress);
+    Overlaid overlaid = overlay_facets(site.geometry, region, window, kSkyBlock, nullptr, nullptr,
+                                       nothing, threads, progress);
     std::fill(overlaid.kept.plane.begin(), overlaid.kept.plane.end(), kOutside);
     for (std::size_t i = 0; i < overlaid.below.polygon.size(); ++i)
         overlaid.kept.add_facet(overlaid.below.outlines[i], kSky, -1, kSkyBlock);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "strata/overlay/wanted_space.hpp"
 #include "strata/repair/plan_snapping.hpp"
 #include "strata/tiling/surface_tiling.hpp"
 
@@ -38,6 +39,7 @@ struct Site {
     std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
     std::int32_t surfaces = 0;                   ///< in all rock masses
     std::optional<Window> window;                ///< of a tile, or nothing
+    std::optional<WantedBoxes> wanted;           ///< of columns, or all of them are
     /// Whether no surface covers a position twice, and no border of a region crosses itself.
     bool is_single_valued = true;
 

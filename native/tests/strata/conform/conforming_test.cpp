@@ -178,6 +178,48 @@ TEST(IntervalCurves, AreTheEdgesOverEachInterval) {
     }
 }
 
+using Gap = std::array<std::int32_t, 4>;  // the vertices at the start, the cells left and right
+
+std::vector<Gap> gaps_of(const std::vector<Curve>& curves) {
+    std::vector<Gap> gaps;
+    for_each_gap(curves, true,
+                 [&](const Curve& low, const Curve& high, std::int32_t left, std::int32_t right) {
+                     gaps.push_back({low.start, high.start, left, right});
+                 });
+    return gaps;
+}
+
+TEST(IntervalCurves, GapsLieBetweenTheCellsOfTheTwoSides) {
+    // on the left two columns, on the right one that is as high
+    const std::vector<Curve> curves{{0, 0, 0, 7, -1, false},
+                                    {0, 0, 1, 5, -1, true},
+                                    {1, 1, 2, 6, 5, true},
+                                    {2, 2, 3, -1, 7, false},
+                                    {2, 2, 4, -1, 6, true}};
+    EXPECT_EQ(gaps_of(curves), (std::vector<Gap>{{0, 1, 5, 7}, {1, 2, 6, 7}}));
+}
+
+TEST(IntervalCurves, AFaceThatGoesOnAcrossTheLineEndsCellsOnBothSides) {
+    // from 0 to 1 a column on the left; then one on both sides, whose bottom goes on across the
+    // line
+    const std::vector<Curve> curves{
+        {0, 0, 0, 5, -1, true},
+        {1, 1, 1, -1, 5, true},
+        {2, 2, 2, -1, 6, false},
+        {2, 2, 3, -1, 6, true},
+        // and where the next one ends on the left alone, outside is beside it
+        {3, 3, 4, 8, -1, true},
+        {4, 4, 5, -1, 8, true}};
+    EXPECT_EQ(gaps_of(curves),
+              (std::vector<Gap>{{0, 1, 5, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 4, 8, -1}}));
+    // a column on both sides whose top goes on across the line, and a later one on the left
+    const std::vector<Curve> later{{0, 0, 0, 5, -1, false},
+                                   {0, 0, 1, 5, -1, true},
+                                   {2, 2, 2, 8, -1, true},
+                                   {3, 3, 3, -1, 8, true}};
+    EXPECT_EQ(gaps_of(later), (std::vector<Gap>{{0, 2, 5, 5}, {2, 3, 8, -1}}));
+}
+
 TEST(MatchedEdges, WallsFollowFromTheCellsAlone) {
     SmallFaces small({0, 1});
     small.add_two_columns();
