@@ -32,7 +32,9 @@ CUTS = (
     "their memory, MB",
     "",
 )
-_ASKED = {1: (4, 2), 3: (8, 3), 6: (12, 4)}  # times the time without, and the goal
+# times the time without, and the goal: of columns on own triangulations, as models are built by default
+_ASKED = {1: (4, 2), 3: (8, 3), 6: (12, 4)}
+_RUNS = 3
 _THREADS = 2
 
 
@@ -57,19 +59,24 @@ def _faulted(plan: str, cells: str, count: int, without, quads: int, memory: flo
     name = f"10 x {2 * quads * quads:,}" + (" on one plan mesh" if plan == "shared" else "")
     spec = {"surfaces": 10, "quads": quads, "plan": plan}
     try:
-        found = alone("structures.build_faulted", spec, cells, _THREADS, count, memory=memory)
+        runs = [
+            alone("structures.build_faulted", spec, cells, _THREADS, count, memory=memory)
+            for _ in range(_RUNS)
+        ]
     except Skipped as why:
         return [name, cells, str(count), *["-"] * 8, f"SKIPPED: {why}"], None
+    found = sorted(runs, key=lambda run: run["seconds"])[_RUNS // 2]
     row = [name, cells, str(count), f"{found['seconds']:.2f}"]
     verdict = ""
     if without is None:
         row += ["-"] * 4
     else:
-        asked, goal = _ASKED[count]
+        asked, goal = _ASKED[count] if (plan, cells) == ("own", "columns") else (None, None)
         times = found["seconds"] / without["seconds"]
-        verdict = "met" if times <= asked else "NOT met"
+        if asked is not None:
+            verdict = "met" if times <= asked else "NOT met"
         of_processors = found["processor"] / without["processor"]
-        row += [f"**{times:.1f}**", f"{of_processors:.1f}", str(asked), str(goal)]
+        row += [f"**{times:.1f}**", f"{of_processors:.1f}", str(asked or "-"), str(goal or "-")]
     row += [f"{found['cells']:,}", str(found["compartments"]), f"{found['peak'] / 1e6:,.0f}", verdict]
     return row, found
 

@@ -4,6 +4,7 @@
 #include <CGAL/function_objects.h>
 #include <CGAL/natural_neighbor_coordinates_2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -56,16 +57,51 @@ std::vector<double> on_triangulation(std::span<const std::array<double, 3>> poin
     return z;
 }
 
-/// Sibson's coordinates, checked: their weighted mean must give the node back. As near to an edge
-/// of the hull as rounding, an area may be infinite.
+using Point = PointTriangulation::Kernel::Point_2;
+
+/// Whether a circle through a node and both ends of an edge has its center nowhere, for doubles.
+bool has_no_center(const Point& node, const Delaunay::Edge& edge) {
+    const auto corner = [&](int turned) {
+        return edge.first->vertex((edge.second + turned) % 3)->point();
+    };
+    const auto is_flat = [&](const Point& p, const Point& q) {
+        return (q.x() - p.x()) * (node.y() - p.y()) == (q.y() - p.y()) * (node.x() - p.x());
+    };
+    return is_flat(corner(1), corner(2)) || is_flat(corner(2), corner(1));
+}
+
+/// Appends Sibson's coordinates of a node, not normalized.
+/// @return false where there are none: the node is as near to the border as rounding
+template <class Weights>
+bool add_weights(const Delaunay& delaunay, const Point& node, Face face, Weights& weights) {
+    using Weight = typename Weights::value_type;
+    Delaunay::Locate_type kind = Delaunay::FACE;
+    int at = 0;
+    face = delaunay.locate(node, kind, at, face);
+    if (kind == Delaunay::EDGE &&
+        (delaunay.is_infinite(face) || delaunay.is_infinite(face->neighbor(at)))) {
+        CGAL::natural_neighbor_coordinates_2(delaunay, node, std::back_inserter(weights),
+                                             CGAL::Identity<Weight>(), face);
+        return true;
+    }
+    thread_local std::vector<Delaunay::Edge> hole;
+    hole.clear();
+    delaunay.get_boundary_of_conflicts(node, std::back_inserter(hole), face);
+    if (std::ranges::any_of(hole, [&](const auto& edge) { return has_no_center(node, edge); }))
+        return false;
+    CGAL::natural_neighbor_coordinates_2(delaunay, node, std::back_inserter(weights),
+                                         CGAL::Identity<Weight>(), hole.begin(), hole.end());
+    return true;
+}
+
+/// Sibson's coordinates, checked: their weighted mean must give the node back.
 double natural(const DataPoints& data, const PointTriangulation& triangulation,
                const Position& node, Face face) {
     using Weight = std::pair<Delaunay::Vertex_handle, double>;
     thread_local std::vector<Weight> weights;
     weights.clear();
-    CGAL::natural_neighbor_coordinates_2(
-        triangulation.delaunay(), PointTriangulation::Kernel::Point_2(node[0], node[1]),
-        std::back_inserter(weights), CGAL::Identity<Weight>(), face);
+    if (!add_weights(triangulation.delaunay(), {node[0], node[1]}, face, weights))
+        return triangulation.linear(node, face);
     double sum = 0, x = 0, y = 0, z = 0, reach = 0;
     const double base =
         weights.empty() ? 0 : data.values[static_cast<std::size_t>(weights.front().first->info())];
