@@ -69,7 +69,8 @@ class _Cells:
         self._sum = np.zeros(shape + 1, np.int64)  # of all cells below
         count = self._sum[1:, 1:]
         for piece in in_pieces(plan):
-            cell, of_piece = np.unique(self._at(piece) @ [shape[1], 1], return_counts=True)
+            column, row = self._at(piece).T
+            cell, of_piece = np.unique(column * shape[1] + row, return_counts=True)
             count[np.divmod(cell, shape[1])] += of_piece
         np.cumsum(count, axis=0, out=count)
         np.cumsum(count, axis=1, out=count)
