@@ -10,8 +10,8 @@ namespace realmodel::strata {
 
 void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList& faces,
                          std::size_t first_face, const Progress* progress) {
-    // The lowest faces tile what a rock mass covers, each position once; where columns are left out,
-    // others may lie over or under them.
+    // The lowest faces tile what a rock mass covers, each position once; where columns are left
+    // out, others may lie over or under them.
     PolygonPool own;
     for (std::size_t f = first_face; f < faces.size(); ++f) {
         if (faces.below[f] == kOutsideCell) own.add(faces.polygons[f]);
