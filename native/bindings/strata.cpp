@@ -163,6 +163,27 @@ py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, P
     return py::make_tuple(result, joined.warning->text);
 }
 
+py::object snap_plan(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
+    const auto input = views_of(rocks);
+    std::vector<std::vector<double>> meshes;
+    {
+        const py::gil_scoped_release release;
+        meshes = strata::snap_plan(input, threads, control);
+    }
+    if (meshes.empty()) return py::none();
+    std::size_t next = 0;
+    py::list result;
+    for (const auto& [surfaces, region, base_elevation, rules] : rocks) {
+        py::list vertices;
+        for (std::size_t k = 0; k < surfaces.size(); ++k)
+            vertices.append(to_array(std::move(meshes[next++]), 3));
+        py::object in_plan = py::none();
+        if (region) in_plan = to_array(std::move(meshes[next++]), 2);
+        result.append(py::make_tuple(vertices, in_plan));
+    }
+    return result;
+}
+
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      const std::optional<SurfaceArrays>& region,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
@@ -234,6 +255,13 @@ equal where points are, in all tiles.)");
 
 Returns None where that is nothing; else (rocks as they were given, with new arrays, and the text of
 the warning). Triangles that are not divided keep their numbers. Raises InputError and Cancelled.)");
+    module.def(
+        "snap_plan", &snap_plan, py::arg("rocks"), py::arg("threads") = 0,
+        py::arg("control") = nullptr,
+        R"(The vertices of rock masses with plan coordinates that differ by rounding alone made one.
+
+Returns None where there are no such coordinates; else for each rock mass (vertices of its surfaces, of
+its region or None). Raises Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
                py::arg("threads") = 0, py::arg("control") = nullptr,

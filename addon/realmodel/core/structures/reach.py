@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 
 import numpy as np
@@ -36,6 +37,19 @@ class Reach:
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
         self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
+        self.numbers: dict[int, np.ndarray] = {}
+
+    def of_some(self, structures: Structures, faults: list[int], numbers: dict[int, np.ndarray]) -> Reach:
+        """The same of some of the faults, by their numbers. numbers: as numbers_of gives them, by the id of the
+        sheet."""
+        few = copy.copy(self)
+        few.structures, few.ranges, few.numbers = structures, {}, numbers
+        few.masks = [self.masks[fault] for fault in faults]
+        return few
+
+    def numbers_of(self, sheet: Triangulation) -> np.ndarray:
+        """(T,) the numbers of the triangles of a sheet in the whole surface, of which there may be a part."""
+        return self.numbers.get(id(sheet), np.arange(len(sheet[1])))
 
     def cells_of(self, part: int) -> np.ndarray:
         """(nx, ny, nz) bool: in which cells a part may have points."""
