@@ -309,13 +309,16 @@ def without_cells(model: dict, dropped: np.ndarray) -> dict:
     }
 
 
-def one_cell_each(model: dict) -> dict:
+def one_cell_each(model: dict, joins: np.ndarray | None = None) -> dict:
     """The arrays of a model of blocks with each connected part of a block as one cell: without the faces
-    between cells of one block."""
+    between cells of one block. joins: (F,) bool, the faces that connect; None: all. `cell`: (C,) int32 the new
+    cell of each."""
     faces, block = model["face_cells"], model["cell_block"]
-    part = native_module().cell_components(faces, block)
+    connecting = faces if joins is None else np.where(joins[:, None], faces, np.int32(-1))
+    part = native_module().cell_components(np.ascontiguousarray(connecting), block)
     roots, cell = np.unique(part, return_inverse=True)
-    cells = np.append(cell.ravel(), -1).astype(np.int32)[faces]
+    cell = cell.ravel().astype(np.int32)
+    cells = np.append(cell, np.int32(-1))[faces]
     kept = np.flatnonzero(cells[:, 0] != cells[:, 1])
     size = np.diff(model["face_offsets"])
     corner = np.repeat(np.isin(np.arange(len(faces)), kept), size)
@@ -327,4 +330,5 @@ def one_cell_each(model: dict) -> dict:
         "face_cells": np.ascontiguousarray(cells[kept]),
         "face_surface": model["face_surface"][kept],
         "cell_block": np.ascontiguousarray(block[roots]),
+        "cell": cell,
     }

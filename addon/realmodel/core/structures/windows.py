@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..rock_input import RockInput
+from ..tiles.grid import TileGrid, tile_grid, triangles_by_tile
 from ..work import Work, native_module
 from .joining import beyond_all
 from .parts import Structures
@@ -36,24 +37,29 @@ class Window:
     part: np.ndarray
 
 
-@dataclass(frozen=True)
 class _Plan:
-    """The triangles (T, 3) of a sheet or a region, and in plan its vertices (V, 2) and the least and greatest
-    coordinates of triangles, (T, 2) each."""
+    """The triangles (T, 3) of a sheet or a region, and its vertices in plan (V, 2)."""
 
-    triangles: np.ndarray
-    vertices: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray):
+        self.triangles, self.vertices = triangles, np.ascontiguousarray(vertices[:, :2])
+        self.low, self.high = extents(self.vertices[triangles])
+        self._of_tile: dict[tuple[int, int], np.ndarray] = {}
+        self._grid: TileGrid | None = None
 
-    @classmethod
-    def of(cls, vertices: np.ndarray, triangles: np.ndarray) -> _Plan:
-        plan = np.ascontiguousarray(vertices[:, :2])
-        return cls(triangles, plan, *extents(plan[triangles]))
+    def sort(self, grid: TileGrid) -> None:
+        """Finds which triangles meet which tiles, so that those near one are found soon."""
+        lists: dict[tuple[int, int], list[np.ndarray]] = {}
+        for name, numbers in triangles_by_tile((self.vertices, self.triangles), grid):
+            lists.setdefault(name, []).append(numbers)
+        self._grid, self._of_tile = grid, {name: np.concatenate(each) for name, each in lists.items()}
 
-    def meet(self, box: Box) -> np.ndarray:
-        """(T,) bool: which triangles' boxes meet a box."""
-        return ((self.low <= box[2:]) & (self.high >= box[:2])).all(axis=1)
+    def meeting(self, box: Box) -> np.ndarray:
+        """The numbers, ascending, of the triangles whose boxes meet a box."""
+        tiles = [self._of_tile[name] for name in self._grid.tiles_meeting(box) if name in self._of_tile]
+        if not tiles:
+            return np.empty(0, np.int32)
+        near = tiles[0] if len(tiles) == 1 else np.unique(np.concatenate(tiles))
+        return near[((self.low[near] <= box[2:]) & (self.high[near] >= box[:2])).all(axis=1)]
 
 
 class Windows:
@@ -65,7 +71,7 @@ class Windows:
         self._reach = Reach(work, structures, threads)
         self._plans: dict[int, list[_Plan]] = {}
         self._regions = [
-            None if entry.region is None else _Plan.of(*entry.region) for entry in self._inputs
+            None if entry.region is None else _Plan(*entry.region) for entry in self._inputs
         ]
         self._plan_of = {id(sheet): self._known_plan(sheet) for sheet in self._sheets()}
         self._all = [plans for of in self._plans.values() for plans in of]
@@ -89,30 +95,35 @@ class Windows:
         for plan in known:
             if np.array_equal(vertices[:, :2], plan.vertices):
                 return plan
-        known.append(_Plan.of(vertices, triangles))
+        known.append(_Plan(vertices, triangles))
         return known[-1]
 
-    def meshes(self) -> list[np.ndarray]:
-        """The vertices in plan, (V, 2), of all sheets and regions."""
-        return [plan.vertices for plan in self._all]
+    def divide(self, tile_size: tuple[float, float]) -> TileGrid:
+        """The grid of the tiles; to be called before any window is asked for. Raises UsageError."""
+        grid = tile_grid([plan.vertices for plan in self._all], tile_size)
+        for plan in self._all:
+            plan.sort(grid)
+        return grid
 
     def meets(self, box: Box) -> bool:
         """Whether anything lies over or under a box."""
-        return any(plan.meet(box).any() for plan in self._all)
+        return any(len(plan.meeting(box)) for plan in self._all)
 
     def _around(self, box: Box) -> Box:
         """A box around all triangles that meet one, and itself."""
         low, high = np.array(box[:2]), np.array(box[2:])
         for plan in self._all:
-            met = plan.meet(box)
-            if met.any():
+            met = plan.meeting(box)
+            if len(met):
                 low = np.minimum(low, plan.low[met].min(axis=0))
                 high = np.maximum(high, plan.high[met].max(axis=0))
         return *low.tolist(), *high.tolist()
 
-    def window(self, work: Work, box: Box) -> Window:
-        """That of a tile, or of cells that reach beyond it."""
+    def window(self, work: Work, box: Box, farther: int = 0) -> Window:
+        """That of a tile, or of cells that reach beyond it. farther: by so many more rows of triangles."""
         safe = self._around(self._around(box))
+        for _ in range(farther):
+            safe = self._around(safe)
         taken = self._around(safe)
         present, fixed = self._structures_near(work, self._around(taken))
         structures, part = self._few(present, fixed, taken)
@@ -257,7 +268,7 @@ class Windows:
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of a plan the numbers of triangles in a box, of their vertices, and these triangles."""
         if id(plan) not in of_plan:
-            own = np.flatnonzero(plan.meet(taken))
+            own = plan.meeting(taken)
             used, corners = np.unique(plan.triangles[own], return_inverse=True)
             of_plan[id(plan)] = own, used, corners.reshape(-1, 3).astype(np.int32)
         return of_plan[id(plan)]
