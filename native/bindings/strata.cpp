@@ -165,11 +165,12 @@ py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, P
 
 py::object snap_plan(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
     const auto input = views_of(rocks);
-    std::vector<std::vector<double>> meshes;
+    strata::SnappedPlan snapped;
     {
         const py::gil_scoped_release release;
-        meshes = strata::snap_plan(input, threads, control);
+        snapped = strata::snap_plan(input, threads, control);
     }
+    auto& meshes = snapped.meshes;
     if (meshes.empty()) return py::none();
     std::size_t next = 0;
     py::list result;
@@ -181,7 +182,7 @@ py::object snap_plan(const std::vector<RockArrays>& rocks, int threads, Progress
         if (region) in_plan = to_array(std::move(meshes[next++]), 2);
         result.append(py::make_tuple(vertices, in_plan));
     }
-    return result;
+    return py::make_tuple(result, snapped.warning.text);
 }
 
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
@@ -260,8 +261,8 @@ the warning). Triangles that are not divided keep their numbers. Raises InputErr
         py::arg("control") = nullptr,
         R"(The vertices of rock masses with plan coordinates that differ by rounding alone made one.
 
-Returns None where there are no such coordinates; else for each rock mass (vertices of its surfaces, of
-its region or None). Raises Cancelled.)");
+Returns None where there are no such coordinates; else (for each rock mass, vertices of its surfaces and of
+its region or None; the text of the warning). Raises Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
                py::arg("threads") = 0, py::arg("control") = nullptr,

@@ -197,11 +197,10 @@ JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Pro
     return result;
 }
 
-std::vector<std::vector<double>> snap_plan(std::span<const StackInput> rocks, int threads,
-                                           Progress* progress) {
+SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads, Progress* progress) {
     const PlanSnapping snapping = find_snapping(rocks, threads, progress);
     if (snapping.empty()) return {};
-    return snapped(rocks, snapping);
+    return {snapped(rocks, snapping), joined_by_rounding(snapping, {})};
 }
 
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress, CellKind cells) {

@@ -37,13 +37,12 @@ class Reach:
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
         self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
-        self.numbers: dict[int, np.ndarray] = {}
+        self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
 
-    def of_some(self, structures: Structures, faults: list[int], numbers: dict[int, np.ndarray]) -> Reach:
-        """The same of some of the faults, by their numbers. numbers: as numbers_of gives them, by the id of the
-        sheet."""
+    def of_some(self, structures: Structures, faults: list[int]) -> Reach:
+        """The same of some of the faults, by their numbers. structures: these, and some bodies."""
         few = copy.copy(self)
-        few.structures, few.ranges, few.numbers = structures, {}, numbers
+        few.structures, few.ranges, few.numbers = structures, {}, {}
         few.masks = [self.masks[fault] for fault in faults]
         return few
 

@@ -27,7 +27,8 @@ _BESIDE = 0.05  # of the extent of the rock around a tile: a structure so near c
 class Window:
     """inputs, structures, reach: as build_joined takes them. Each triangle that meets `safe` is there with all
     that lies over and under it, so a cell in this box is the same as in the whole. numbers: (S,) of the
-    structures in the whole; part: (P,) a part of the whole for each of theirs."""
+    structures in the whole; part: (P,) a part of the whole for each of theirs. sheets: each with the numbers of
+    its triangles in the whole."""
 
     safe: Box
     inputs: list[RockInput]
@@ -35,6 +36,11 @@ class Window:
     reach: Reach
     numbers: np.ndarray
     part: np.ndarray
+    sheets: list[tuple[Triangulation, np.ndarray]]
+
+    def number_sheets(self) -> None:
+        """To be called in the process that builds: there the sheets are other objects."""
+        self.reach.numbers = {id(sheet): numbers for sheet, numbers in self.sheets}
 
 
 class _Plan:
@@ -63,16 +69,15 @@ class _Plan:
 
 
 class Windows:
-    """The windows of a project that is read and interpolated, with its structures and sheets."""
+    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: with plan
+    coordinates that differ by rounding alone made one; snapped: what there is to tell of that, or None."""
 
     def __init__(self, work: Work, inputs: list[RockInput], structures: Structures, threads: int):
-        self._inputs = _snapped(work, inputs, threads)
-        self._structures, self._threads = structures, threads
+        self.inputs, self.snapped = _snapped(work, inputs, threads)
+        self.structures, self._threads = structures, threads
         self._reach = Reach(work, structures, threads)
         self._plans: dict[int, list[_Plan]] = {}
-        self._regions = [
-            None if entry.region is None else _Plan(*entry.region) for entry in self._inputs
-        ]
+        self._regions = [None if entry.region is None else _Plan(*entry.region) for entry in self.inputs]
         self._plan_of = {id(sheet): self._known_plan(sheet) for sheet in self._sheets()}
         self._all = [plans for of in self._plans.values() for plans in of]
         self._all += [region for region in self._regions if region is not None]
@@ -84,7 +89,7 @@ class Windows:
         self._extents = [extents(each) for each in corners]
 
     def _sheets(self) -> Iterator[Triangulation]:
-        for entry in self._inputs:
+        for entry in self.inputs:
             for number in range(len(entry.surfaces)):
                 yield from entry.structure.distinct(number)
 
@@ -100,14 +105,25 @@ class Windows:
 
     def divide(self, tile_size: tuple[float, float]) -> TileGrid:
         """The grid of the tiles; to be called before any window is asked for. Raises UsageError."""
-        grid = tile_grid([plan.vertices for plan in self._all], tile_size)
+        self._grid = tile_grid([plan.vertices for plan in self._all], tile_size)
         for plan in self._all:
-            plan.sort(grid)
-        return grid
+            plan.sort(self._grid)
+        return self._grid
 
     def meets(self, box: Box) -> bool:
         """Whether anything lies over or under a box."""
         return any(len(plan.meeting(box)) for plan in self._all)
+
+    def arrays(self) -> Iterator[np.ndarray]:
+        """All that gives shapes."""
+        for sheet in self._sheets():
+            yield from sheet
+        for plan in self._all:
+            yield plan.vertices
+            yield plan.triangles
+        for corners, is_continuation, _ in self._continued:
+            yield corners
+            yield is_continuation
 
     def _around(self, box: Box) -> Box:
         """A box around all triangles that meet one, and itself."""
@@ -119,22 +135,27 @@ class Windows:
                 high = np.maximum(high, plan.high[met].max(axis=0))
         return *low.tolist(), *high.tolist()
 
-    def window(self, work: Work, box: Box, farther: int = 0) -> Window:
-        """That of a tile, or of cells that reach beyond it. farther: by so many more rows of triangles."""
+    def window(self, work: Work, box: Box, farther: int | None = 0) -> Window:
+        """That of a tile, or of cells that reach beyond it. farther: by so many more rows of triangles; None:
+        all of them."""
         safe = self._around(self._around(box))
-        for _ in range(farther):
+        if farther is None:
+            safe = self._grid.whole
+        for _ in range(farther or 0):
             safe = self._around(safe)
         taken = self._around(safe)
         present, fixed = self._structures_near(work, self._around(taken))
         structures, part = self._few(present, fixed, taken)
-        numbers: dict[int, np.ndarray] = {}
+        sheets: list[tuple[Triangulation, np.ndarray]] = []
         of_plan: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         inputs = [
-            self._rock(rock, taken, present, fixed, numbers, of_plan) for rock in range(len(self._inputs))
+            self._rock(rock, taken, present, fixed, sheets, of_plan) for rock in range(len(self.inputs))
         ]
-        faults = [number for number in present if number < len(self._structures.faults)]
-        reach = self._reach.of_some(structures, faults, numbers)
-        return Window(safe, inputs, structures, reach, np.array(present, np.int32), part)
+        faults = [number for number in present if number < len(self.structures.faults)]
+        reach = self._reach.of_some(structures, faults)
+        window = Window(safe, inputs, structures, reach, np.array(present, np.int32), part, sheets)
+        window.number_sheets()
+        return window
 
     def _structures_near(self, work: Work, box: Box) -> tuple[list[int], np.ndarray]:
         """The numbers of the structures that come into a box, and (S,) int8 the side on which all of the box
@@ -143,7 +164,7 @@ class Windows:
         margin = _BESIDE * (space[1] - space[0])
         low, high = space[0] - margin, space[1] + margin
         middle = space.mean(axis=0)[None]
-        structures = self._structures
+        structures = self.structures
         shapes, number = structures.fault_shapes(), {f.name: n for n, f in enumerate(structures.faults)}
         present, fixed = [], np.zeros(len(structures), np.int8)
         for s, (least, most) in enumerate(self._extents):
@@ -166,7 +187,7 @@ class Windows:
 
     def _ends_first(self) -> list[int]:
         """The faults, each after those at which it ends."""
-        faults = self._structures.faults
+        faults = self.structures.faults
         number = {fault.name: n for n, fault in enumerate(faults)}
         order: list[int] = []
 
@@ -182,7 +203,7 @@ class Windows:
 
     def _few(self, present: list[int], fixed: np.ndarray, taken: Box) -> tuple[Structures, np.ndarray]:
         """Some structures alone; and (P,) a part of the whole for each of theirs."""
-        whole, count = self._structures, len(self._structures.faults)
+        whole, count = self.structures, len(self.structures.faults)
         rows = np.flatnonzero(_agree(whole.sides, present, fixed))
         sides, first, part = np.unique(
             whole.sides[np.ix_(rows, present)], axis=0, return_index=True, return_inverse=True
@@ -214,30 +235,28 @@ class Windows:
         away = 2 * float(np.linalg.norm(space[1] - space[0]))
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
-        if number >= len(self._structures.faults) or not near.any():
+        if number >= len(self.structures.faults) or not near.any():
             return self._continued[number]
         return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), kept
 
     def _rock(
-        self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, numbers: dict, of_plan: dict
+        self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, numbers: list, of_plan: dict
     ) -> RockInput:
-        entry = self._inputs[rock]
+        entry = self.inputs[rock]
         made: dict[int, Triangulation] = {}
 
         def sheet_of(sheet: Triangulation) -> Triangulation:
             if id(sheet) not in made:
                 own, used, triangles = self._part(self._plan_of[id(sheet)], taken, of_plan)
                 made[id(sheet)] = np.ascontiguousarray(sheet[0][used]), triangles
-                numbers[id(made[id(sheet)])] = own
+                numbers.append((made[id(sheet)], own))
             return made[id(sheet)]
 
         structure = entry.structure
         at = [n for n, number in enumerate(structure.faults.numbers) if number in present]
         whole = np.array(structure.faults.numbers, np.int64)
         rows = np.flatnonzero(_agree(structure.compartments, at, fixed[whole]))
-        compartments, first = np.unique(
-            structure.compartments[np.ix_(rows, at)], axis=0, return_index=True
-        )
+        compartments, first = np.unique(structure.compartments[np.ix_(rows, at)], axis=0, return_index=True)
         of = rows[first].tolist()
         sheets = [[sheet_of(sheet) for sheet in structure.sheets[c]] for c in of]
         found = RockStructure(
@@ -274,8 +293,9 @@ class Windows:
         return of_plan[id(plan)]
 
 
-def _snapped(work: Work, inputs: list[RockInput], threads: int) -> list[RockInput]:
-    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike."""
+def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[RockInput], str | None]:
+    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike; and what
+    there is to tell of it."""
     distinct = [
         {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.structure.distinct(k)}
         for entry in inputs
@@ -286,14 +306,14 @@ def _snapped(work: Work, inputs: list[RockInput], threads: int) -> list[RockInpu
     ]
     found = work.native(native_module().snap_plan, rocks, threads=threads)
     if found is None:
-        return inputs
-    snapped = []
-    for entry, sheets, (meshes, region) in zip(inputs, distinct, found, strict=True):
+        return inputs, None
+    snapped, (of_rocks, text) = [], found
+    for entry, sheets, (meshes, region) in zip(inputs, distinct, of_rocks, strict=True):
         new = {key: (mesh, sheet[1]) for (key, sheet), mesh in zip(sheets.items(), meshes, strict=True)}
         of = [[new[id(sheet)] for sheet in own] for own in entry.structure.sheets]
         given = None if region is None else (region, entry.region[1])
         snapped.append(replace(entry, region=given, structure=replace(entry.structure, sheets=of)))
-    return snapped
+    return snapped, text
 
 
 def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 
 from ..assembly import assemble
 from ..blocks import Block, count_blocks
-from ..build_warning import BuildWarning
 from ..model import Model
 from ..structures.joining import acts, body_block, build_joined, one_cell_each, without_cells
 from ..structures.labels import cell_compartments
@@ -63,38 +63,31 @@ def build_faulted_tile(
     model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
     owner = owners(model, frame.grid)
     mine = (owner == name).all(axis=1)
-    arrays, seams = _numbered_as_whole(model, whole, window), {}
+    whole_numbers = _numbered_as_whole(model, whole, window)
+    arrays = without_cells(whole_numbers, ~mine)
+    labels = _labels(built, whole, window, mine)
     of_tile = np.cumsum(mine) - 1
-    cells = np.append(mine, False)[model.face_cells]
-    between = np.flatnonzero((cells[:, 0] != cells[:, 1]) & (model.face_cells >= 0).all(axis=1))
-    own = np.where(cells[between, 0], 0, 1)
-    others = owner[model.face_cells[between, 1 - own]]
-    seen = _Seen(arrays)
-    own_cells = of_tile[model.face_cells[between, own]]
-    merged = without_cells(arrays, ~mine)
     if frame.cell_kind == "blocks":
-        merged = one_cell_each(merged, merged["face_surface"] == _WALL)
-        own_cells = merged["cell"][own_cells]
+        arrays = one_cell_each(arrays, arrays["face_surface"] == _WALL)
+        first = np.full(len(arrays["cell_block"]), len(of_tile), np.int64)
+        np.minimum.at(first, arrays["cell"], np.arange(len(labels[0])))
+        labels = labels[0][first], *labels[1:]
+        of_tile = arrays["cell"][of_tile]
+    found = _model(frame, whole, window, arrays, labels)
+    walls = np.where((found.face_surface == _WALL)[:, None], found.face_cells, np.int32(-1))
+    part = native_module().cell_components(np.ascontiguousarray(walls), found.cell_block)
+    both = np.column_stack([found.cell_component, part])
+    is_mine = np.append(mine, False)[model.face_cells]
+    between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
+    own = np.where(is_mine[between, 0], 0, 1)
+    others = owner[model.face_cells[between, 1 - own]]
+    parts = both[of_tile[model.face_cells[between, own]]]
+    seams, seen = {}, SimpleNamespace(**whole_numbers)
     for other in np.unique(others, axis=0).tolist():
         which = (others == other).all(axis=1)
-        seams[tuple(other)] = Seam.of(seen, between[which], own[which], own_cells[which])
-    labels = _labels(built, whole, window, mine)
-    if frame.cell_kind == "blocks":
-        first = np.full(len(merged["cell_block"]), len(labels[0]), np.int64)
-        np.minimum.at(first, merged["cell"], np.arange(len(labels[0])))
-        labels = labels[0][first], *labels[1:]
-    found = _model(frame, whole, window, merged, labels)
-    walls = np.where((merged["face_surface"] == _WALL)[:, None], merged["face_cells"], np.int32(-1))
-    part = native_module().cell_components(np.ascontiguousarray(walls), merged["cell_block"])
+        seams[tuple(other)] = Seam.of(seen, between[which], own[which], parts[which])
     reach = reach_of(model, mine) if mine.any() else None
     return FaultedTile(model, found, seams, reach, part)
-
-
-class _Seen:
-    """Arrays by their names."""
-
-    def __init__(self, arrays: dict[str, np.ndarray]):
-        self.__dict__.update(arrays)
 
 
 def _numbered_as_whole(model: Model, whole: Whole, window: Window) -> dict[str, np.ndarray]:
@@ -173,5 +166,3 @@ def _model(frame: Frame, whole: Whole, window: Window, arrays: dict, labels) -> 
     )
     model.cell_component = component
     return model
-
-

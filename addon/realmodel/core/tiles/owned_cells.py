@@ -60,29 +60,29 @@ def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
 @dataclass(frozen=True)
 class Seam:
     """The faces between cells of a tile and those of another, in order of their keys: (F,) key, the same for
-    the same polygon on the same surface; cell, the tile's; block (F, 2), the tile's first; is_wall, whether it
-    is a mere wall between columns; place (F, 3), a corner."""
+    the same polygon on the same surface; part (F, 2), of the tile's cell: the connected part of its block, and
+    that by walls between columns alone; block (F, 2), the tile's first; is_wall, whether it is such a wall;
+    place (F, 3), a corner."""
 
     key: np.ndarray
-    cell: np.ndarray
+    part: np.ndarray
     block: np.ndarray
     is_wall: np.ndarray
     place: np.ndarray
 
     @classmethod
-    def of(cls, model, faces: np.ndarray, own: np.ndarray, cell: np.ndarray) -> Seam:
-        """faces: some of a model. own: (F,) which of each one's cells is the tile's; cell: their numbers in
-        the tile."""
+    def of(cls, model, faces: np.ndarray, own: np.ndarray, part: np.ndarray) -> Seam:
+        """faces: some of a model. own: (F,) which of each one's cells is the tile's; part: of these."""
         key = face_keys(model, faces)
         order = np.argsort(key.view("S16"), kind="stable")
-        faces, own, cell = faces[order], own[order], cell[order]
+        faces, own = faces[order], own[order]
         cells = model.face_cells[faces]
         rows = np.arange(len(faces))
         block = np.column_stack([model.cell_block[cells[rows, side]] for side in (own, 1 - own)])
         first = model.face_vertices[model.face_offsets[faces]]
         return cls(
             key[order],
-            cell.astype(np.int32),
+            part[order].astype(np.int32),
             block.astype(np.int32).reshape(-1, 2),
             model.face_surface[faces] == _WALL,
             model.vertices[first].reshape(-1, 3),
@@ -90,16 +90,16 @@ class Seam:
 
     def arrays(self, prefix: str) -> dict[str, np.ndarray]:
         """By name, as of_arrays takes them."""
-        found = {f"{prefix}_{name}": getattr(self, name) for name in ("cell", "block", "is_wall", "place")}
+        found = {f"{prefix}_{name}": getattr(self, name) for name in ("part", "block", "is_wall", "place")}
         return {**found, f"{prefix}_key": self.key.view(np.uint8)}
 
     @classmethod
     def of_arrays(cls, arrays: dict[str, np.ndarray], prefix: str) -> Seam:
         if f"{prefix}_key" not in arrays:
-            none = np.empty(0, np.int32)
-            return cls(np.empty(0, _KEY), none, none.reshape(0, 2), none.astype(bool), np.empty((0, 3)))
+            none = np.empty((0, 2), np.int32)
+            return cls(np.empty(0, _KEY), none, none, np.empty(0, bool), np.empty((0, 3)))
         key = np.ascontiguousarray(arrays[f"{prefix}_key"]).view(_KEY)
-        return cls(key, *(arrays[f"{prefix}_{name}"] for name in ("cell", "block", "is_wall", "place")))
+        return cls(key, *(arrays[f"{prefix}_{name}"] for name in ("part", "block", "is_wall", "place")))
 
     def matches(self, other: Seam) -> bool:
         """Whether two tiles have the same faces between them, with the same blocks on both sides."""

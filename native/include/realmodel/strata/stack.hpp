@@ -146,11 +146,16 @@ struct JoinedInput {
 /// @throws InputError not_finite, bad_index, vertical_triangle
 JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress);
 
-/// The meshes of rock masses with plan coordinates that differ by rounding alone made one, which is
-/// the first thing that join_rock_masses does; none where there are no such coordinates. Surfaces
-/// of each rock mass, then its region.
-std::vector<std::vector<double>> snap_plan(std::span<const StackInput> rocks, int threads = 1,
-                                           Progress* progress = nullptr);
+/// The meshes of rock masses with plan coordinates that differ by rounding alone made one.
+struct SnappedPlan {
+    /// Vertices of the surfaces of each rock mass, then of its region; none where nothing changed.
+    std::vector<std::vector<double>> meshes;
+    Warning warning;
+};
+
+/// The first thing that join_rock_masses does.
+SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads = 1,
+                      Progress* progress = nullptr);
 
 /// build_rock_masses of one.
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress,
