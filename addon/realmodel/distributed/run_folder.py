@@ -187,8 +187,8 @@ class Parts:
 
 
 def blocks_of(frame: Frame, told: list[dict], parts: Parts, whole_cells: Parts) -> list[Block]:
-    """The blocks of the whole. told: the records of tiles; parts: the connected parts; whole_cells: the cells of
-    whole blocks."""
+    """The blocks of the whole. told: the records of tiles; parts: the connected parts; whole_cells: the cells
+    of whole blocks."""
     if not told:
         return []
     of_tiles = [[Block(**block) for block in record["blocks"]] for record in told]

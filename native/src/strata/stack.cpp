@@ -142,10 +142,11 @@ std::vector<std::vector<double>> snapped(std::span<const StackInput> rocks,
 }  // namespace
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
-                              CellKind cells, const WantedSpace* wanted) {
+                              CellKind cells, const WantedSpace* wanted, bool is_local) {
     const page_store::Keeper keeper;
     const Entered entered = enter_joined(rocks, threads, progress);
     if (wanted != nullptr) entered.site->wanted.emplace(*wanted);
+    entered.site->is_local = is_local;
     return build_site(*entered.site, entered.warnings, cells, threads, progress).complex;
 }
 

@@ -142,6 +142,9 @@ def _part_model(
     ]
     space = reach.cells_of(part)
     columns = space.any(axis=2)
+    if structures.continued is not None and columns.any():
+        # around a tile: sheets that ended here would be divided by lines that depend on what is far away
+        columns = np.ones_like(columns)
     kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
     stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
     taken = [n for n, stack in enumerate(stacks) if stack.sheets]
@@ -156,6 +159,8 @@ def _part_model(
     around = reach.around(columns) if built_as == "blocks" else None
     if cells == "columns" and not space.all():
         more["wanted"] = (reach.low, reach.step, space.astype(np.uint8))
+    if structures.continued is not None:  # around a tile
+        more["is_local"] = True
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
     rocks = [
         (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
@@ -311,8 +316,8 @@ def without_cells(model: dict, dropped: np.ndarray) -> dict:
 
 def one_cell_each(model: dict, joins: np.ndarray | None = None) -> dict:
     """The arrays of a model of blocks with each connected part of a block as one cell: without the faces
-    between cells of one block. joins: (F,) bool, the faces that connect; None: all. `cell`: (C,) int32 the new
-    cell of each."""
+    between cells of one block. joins: (F,) bool, the faces that connect; None: all. `cell`: (C,) int32 the
+    new cell of each."""
     faces, block = model["face_cells"], model["cell_block"]
     connecting = faces if joins is None else np.where(joins[:, None], faces, np.int32(-1))
     part = native_module().cell_components(np.ascontiguousarray(connecting), block)

@@ -25,10 +25,10 @@ _BESIDE = 0.05  # of the extent of the rock around a tile: a structure so near c
 
 @dataclass(frozen=True)
 class Window:
-    """inputs, structures, reach: as build_joined takes them. Each triangle that meets `safe` is there with all
-    that lies over and under it, so a cell in this box is the same as in the whole. numbers: (S,) of the
-    structures in the whole; part: (P,) a part of the whole for each of theirs. sheets: each with the numbers of
-    its triangles in the whole."""
+    """inputs, structures, reach: as build_joined takes them. Each triangle that meets `safe` is there with
+    all that lies over and under it, so a cell in this box is the same as in the whole. numbers: (S,) of the
+    structures in the whole; part: (P,) a part of the whole for each of theirs. sheets: each with the numbers
+    of its triangles in the whole."""
 
     safe: Box
     inputs: list[RockInput]
@@ -69,8 +69,9 @@ class _Plan:
 
 
 class Windows:
-    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: with plan
-    coordinates that differ by rounding alone made one; snapped: what there is to tell of that, or None."""
+    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: with
+    plan coordinates that differ by rounding alone made one; snapped: what there is to tell of that, or
+    None."""
 
     def __init__(self, work: Work, inputs: list[RockInput], structures: Structures, threads: int):
         self.inputs, self.snapped = _snapped(work, inputs, threads)
@@ -152,7 +153,7 @@ class Windows:
             self._rock(rock, taken, present, fixed, sheets, of_plan) for rock in range(len(self.inputs))
         ]
         faults = [number for number in present if number < len(self.structures.faults)]
-        reach = self._reach.of_some(structures, faults)
+        reach = self._reach.within(structures, faults, safe)
         window = Window(safe, inputs, structures, reach, np.array(present, np.int32), part, sheets)
         window.number_sheets()
         return window
@@ -204,7 +205,8 @@ class Windows:
     def _few(self, present: list[int], fixed: np.ndarray, taken: Box) -> tuple[Structures, np.ndarray]:
         """Some structures alone; and (P,) a part of the whole for each of theirs."""
         whole, count = self.structures, len(self.structures.faults)
-        rows = np.flatnonzero(_agree(whole.sides, present, fixed))
+        near = (whole.low[:, :2] <= taken[2:]).all(axis=1) & (whole.high[:, :2] >= taken[:2]).all(axis=1)
+        rows = np.flatnonzero(_agree(whole.sides, present, fixed) & near)
         sides, first, part = np.unique(
             whole.sides[np.ix_(rows, present)], axis=0, return_index=True, return_inverse=True
         )
@@ -294,8 +296,8 @@ class Windows:
 
 
 def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[RockInput], str | None]:
-    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike; and what
-    there is to tell of it."""
+    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike; and
+    what there is to tell of it."""
     distinct = [
         {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.structure.distinct(k)}
         for entry in inputs

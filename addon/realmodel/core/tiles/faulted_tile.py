@@ -37,9 +37,9 @@ class Whole:
 
 @dataclass(frozen=True)
 class FaultedTile:
-    """around: the model of all that the window holds. model: of the cells that belong to the tile, numbered as
-    in the whole. seams: by the tile on the other side. reach: a box in plan around these cells and those beside
-    them; None where there is no cell. part: (C,) as cell_component, by walls between columns alone."""
+    """around: the model of all that the window holds. model: of the cells that belong to the tile, numbered
+    as in the whole. seams: by the tile on the other side. reach: a box in plan around these cells and those
+    beside them; None where there is no cell. part: (C,) as cell_component, by walls between columns alone."""
 
     around: Model
     model: Model

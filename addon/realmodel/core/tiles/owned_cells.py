@@ -59,10 +59,10 @@ def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True)
 class Seam:
-    """The faces between cells of a tile and those of another, in order of their keys: (F,) key, the same for
-    the same polygon on the same surface; part (F, 2), of the tile's cell: the connected part of its block, and
-    that by walls between columns alone; block (F, 2), the tile's first; is_wall, whether it is such a wall;
-    place (F, 3), a corner."""
+    """The faces between cells of a tile and those of another, in order of their keys: (F,) key, the same
+    for the same polygon on the same surface; part (F, 2), of the tile's cell: the connected part of its
+    block, and that by walls between columns alone; block (F, 2), the tile's first; is_wall, whether it is
+    such a wall; place (F, 3), a corner."""
 
     key: np.ndarray
     part: np.ndarray

@@ -283,8 +283,8 @@ def _warnings(inputs: list[RockInput], built: dict, numbers: list[np.ndarray]) -
 
 
 def tile_arrays(model: Model) -> dict[str, np.ndarray]:
-    """A tile's model as arrays: those of others, and what clips its rock masses. A tile of a model with faults
-    or bodies is a part of one, which nothing clips."""
+    """A tile's model as arrays: those of others, and what clips its rock masses. A tile of a model with
+    faults or bodies is a part of one, which nothing clips."""
     arrays = model_arrays(model)
     for r, entry in enumerate(model.rock_inputs):
         if not model.is_cut:

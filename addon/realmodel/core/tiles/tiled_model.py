@@ -155,8 +155,8 @@ class TiledModel:
 
 
 def joined_intervals(found: list[Interval]) -> list[Interval]:
-    """Intervals of one borehole in several tiles, from above downward; what one block has in two tiles becomes
-    one."""
+    """Intervals of one borehole in several tiles, from above downward; what one block has in two tiles
+    becomes one."""
     joined: list[Interval] = []
     for each in sorted(found, key=lambda interval: -interval.top):
         last = joined[-1] if joined else None

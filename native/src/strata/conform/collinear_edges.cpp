@@ -196,68 +196,7 @@ public:
         for (const LineEdge& edge : edges_)
             same_x |= plan_vertices_.has_same_x_next(edge.from);
         if (same_x) put_in_order({});
-        return pass_matched(edges_, cell_is_thick, matched);
-    }
-
-    /// The same where a line as a whole does not match, for each run of edges: up to where no edge
-    /// goes on. So what is elsewhere on the line does not matter to it.
-    /// @return the edges of the runs that do not match, which pass all
-    std::span<const LineEdge> pass_runs(
-        std::span<const std::pair<std::int32_t, PlanVertexId>> extra,
-        const Array<std::uint8_t>& cell_is_thick, MatchedEdges& matched) {
-        if (!is_ranked_) put_in_order(extra);
-        find_runs();
-        if (run_begins_.size() < 2) {
-            pass_all(extra);
-            return edges_;
-        }
-        std::vector<std::vector<LineEdge>> runs(run_begins_.size());
-        for (const LineEdge& edge : edges_)
-            runs[run_at(std::min(edge.from, edge.to))].push_back(edge);
-        std::vector<std::uint8_t> is_left(runs.size(), 0);
-        for (const std::int32_t rank : extra_ranks_) {
-            // at its begin, it is an end of edges
-            const std::size_t run = run_at(rank);
-            if (rank > run_begins_[run]) is_left[run] = 1;
-        }
-        for (std::size_t run = 0; run < runs.size(); ++run) {
-            if (is_left[run] != 0 || !pass_matched(runs[run], cell_is_thick, matched))
-                is_left[run] = 1;
-        }
-        left_.clear();
-        for (const LineEdge& edge : edges_) {
-            if (is_left[run_at(std::min(edge.from, edge.to))] != 0) left_.push_back(edge);
-        }
-        for (const LineEdge& edge : left_)
-            pass(edge, edge.from, edge.to, false);
-        return left_;
-    }
-
-private:
-    void put_in_order(std::span<const std::pair<std::int32_t, PlanVertexId>> extra) {
-        assert(!is_ranked_);
-        on_line_.clear();
-        std::vector<std::int32_t> numbers;
-        for (const auto& [_, plan_vertex] : extra)
-            numbers.push_back(on_line_.add(plan_vertex));
-        for (LineEdge& edge : edges_) {
-            edge.from = on_line_.add(edge.from);
-            edge.to = on_line_.add(edge.to);
-        }
-        on_line_.sort(line_);
-        for (LineEdge& edge : edges_) {
-            edge.from = on_line_.rank(edge.from);
-            edge.to = on_line_.rank(edge.to);
-        }
-        extra_ranks_.clear();
-        for (const std::int32_t number : numbers)
-            extra_ranks_.push_back(on_line_.rank(number));
-        is_ranked_ = true;
-    }
-
-    bool pass_matched(std::span<const LineEdge> edges, const Array<std::uint8_t>& cell_is_thick,
-                      MatchedEdges& matched) {
-        if (!matching_.match_all(edges, line_)) return false;
+        if (!matching_.match_all(edges_, line_)) return false;
         matching_.add_walls(matched);
         bool all_known = is_ranked_;
         for (const auto& [left, right] : matching_.matches()) {
@@ -273,25 +212,22 @@ private:
         return true;
     }
 
-    /// Where runs of edges begin, counted along the line.
-    void find_runs() {
-        std::vector<std::array<std::int32_t, 2>> ends;
-        for (const LineEdge& edge : edges_)
-            ends.push_back({std::min(edge.from, edge.to), std::max(edge.from, edge.to)});
-        std::ranges::sort(ends);
-        run_begins_.clear();
-        std::int32_t farthest = 0;
-        for (const auto& [low, high] : ends) {
-            if (run_begins_.empty() || low >= farthest) run_begins_.push_back(low);
-            farthest = std::max(farthest, high);
+private:
+    void put_in_order(std::span<const std::pair<std::int32_t, PlanVertexId>> extra) {
+        on_line_.clear();
+        for (const auto& [_, plan_vertex] : extra)
+            on_line_.add(plan_vertex);
+        for (LineEdge& edge : edges_) {
+            edge.from = on_line_.add(edge.from);
+            edge.to = on_line_.add(edge.to);
         }
+        on_line_.sort(line_);
+        for (LineEdge& edge : edges_) {
+            edge.from = on_line_.rank(edge.from);
+            edge.to = on_line_.rank(edge.to);
+        }
+        is_ranked_ = true;
     }
-    std::size_t run_at(std::int32_t rank) const {
-        const auto after = std::ranges::upper_bound(run_begins_, rank);
-        return static_cast<std::size_t>(std::max(after - run_begins_.begin(), std::ptrdiff_t{1})) -
-               1;
-    }
-
     void sort_ends_of_matches() {
         on_line_.clear();
         for (const LineEdge& edge : edges_)
@@ -329,8 +265,6 @@ private:
     std::span<LineEdge> edges_;
     LineId line_ = kNone;
     bool is_ranked_ = false;  ///< whether ends of edges are counted along the line
-    std::vector<std::int32_t> extra_ranks_, run_begins_;
-    std::vector<LineEdge> left_;
 };
 
 }  // namespace
@@ -378,15 +312,9 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
                 if (cell_is_thick != nullptr && first_extra == next_extra &&
                     chunk.pass_matched(*cell_is_thick, matched))
                     continue;
-                const std::span missing(extra_vertices.begin() + first_extra,
-                                        extra_vertices.begin() + next_extra);
-                if (cell_is_thick == nullptr) {
-                    chunk.pass_all(missing);
-                    kept[bucket].add(lines.representative[t], of_line);
-                    continue;
-                }
-                const auto left = chunk.pass_runs(missing, *cell_is_thick, matched);
-                if (!left.empty()) kept[bucket].add(lines.representative[t], left);
+                chunk.pass_all(
+                    {extra_vertices.begin() + first_extra, extra_vertices.begin() + next_extra});
+                kept[bucket].add(lines.representative[t], of_line);
             }
             result.matched[bucket] = matched;  // without room for more
         },
