@@ -41,8 +41,8 @@ class Reach:
         self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
 
     def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
-        """The same of some of the faults, by their numbers, where only a box in plan is asked for: low x, low
-        y, high x, high y. structures: these, and some bodies."""
+        """The same of some of the faults, by their numbers, and of parts that come into a box in plan: low x,
+        low y, high x, high y. structures: these, and some bodies."""
         few = copy.copy(self)
         few.structures, few.ranges, few.numbers = structures, {}, {}
         first, last = self._range(np.array([box[:2]]), np.array([box[2:]]))
@@ -65,7 +65,8 @@ class Reach:
         first, last = self._range(self.structures.low[part][None], self.structures.high[part][None])
         inside = np.zeros(self.count, bool)
         inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
-        return possible & inside & self.asked
+        found = possible & inside
+        return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:
         """A region in plan: these columns and a little around them, and what is beyond the last ones."""

@@ -145,15 +145,16 @@ class Windows:
         for _ in range(farther or 0):
             safe = self._around(safe)
         taken = self._around(safe)
-        present, fixed = self._structures_near(work, self._around(taken))
-        structures, part = self._few(present, fixed, taken)
+        around = self._around(taken)
+        present, fixed = self._structures_near(work, around)
+        structures, part = self._few(present, fixed, around)
         sheets: list[tuple[Triangulation, np.ndarray]] = []
         of_plan: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         inputs = [
             self._rock(rock, taken, present, fixed, sheets, of_plan) for rock in range(len(self.inputs))
         ]
         faults = [number for number in present if number < len(self.structures.faults)]
-        reach = self._reach.within(structures, faults, safe)
+        reach = self._reach.within(structures, faults, around)
         window = Window(safe, inputs, structures, reach, np.array(present, np.int32), part, sheets)
         window.number_sheets()
         return window
@@ -202,10 +203,10 @@ class Windows:
             visit(n)
         return order
 
-    def _few(self, present: list[int], fixed: np.ndarray, taken: Box) -> tuple[Structures, np.ndarray]:
+    def _few(self, present: list[int], fixed: np.ndarray, around: Box) -> tuple[Structures, np.ndarray]:
         """Some structures alone; and (P,) a part of the whole for each of theirs."""
         whole, count = self.structures, len(self.structures.faults)
-        near = (whole.low[:, :2] <= taken[2:]).all(axis=1) & (whole.high[:, :2] >= taken[:2]).all(axis=1)
+        near = (whole.low[:, :2] <= around[2:]).all(axis=1) & (whole.high[:, :2] >= around[:2]).all(axis=1)
         rows = np.flatnonzero(_agree(whole.sides, present, fixed) & near)
         sides, first, part = np.unique(
             whole.sides[np.ix_(rows, present)], axis=0, return_index=True, return_inverse=True
@@ -224,16 +225,16 @@ class Windows:
             low,
             high,
             whole.box,
-            [self._continued_near(number, taken) for number in present],
+            [self._continued_near(number, around) for number in present],
             self._ends,
         )
         return few, rows[first].astype(np.int32)
 
-    def _continued_near(self, number: int, taken: Box) -> tuple:
+    def _continued_near(self, number: int, around: Box) -> tuple:
         """The triangles of a structure that are nearest to anything in the window; of a body, or of a fault
         that is far away, all of them."""
         corners, is_continuation, kept = self._continued[number]
-        space = np.array([[*taken[:2], self._ends[0]], [*taken[2:], self._ends[1]]])
+        space = np.array([[*around[:2], self._ends[0]], [*around[2:], self._ends[1]]])
         away = 2 * float(np.linalg.norm(space[1] - space[0]))
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
