@@ -151,7 +151,7 @@ def peak(scale):
         for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
-        found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
+        found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
         boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
         write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
         peak = tracemalloc.get_traced_memory()[1]
@@ -220,7 +220,7 @@ def pieces(count):
 def divided(points, arrays, method):
     settings = Surface("S", method=method, points=points[:9]).method_options()
     extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
+    found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
     tiles = folder / method
     boxes = {(0, 0): (500.0, 500, 510, 510), (1, 0): (510.0, 500, 520, 510)}
     for name in boxes:
