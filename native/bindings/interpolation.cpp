@@ -124,10 +124,10 @@ Array<double> spline(const Array<double>& points, const Array<double>& nodes, do
     return to_array(std::move(z));
 }
 
-double mean_spacing(const Array<double>& points) {
+double mean_spacing(const Array<double>& points, bool are_apart) {
     const auto from = rows<3>(points, "points");
     const py::gil_scoped_release unlocked;
-    return interpolation::mean_spacing(from);
+    return interpolation::mean_spacing(from, are_apart);
 }
 
 Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes, int threads,
@@ -159,10 +159,11 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
 }
 
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
-                       bool finds_anisotropy, const std::string& drift, int neighbours, int threads,
-                       Progress* control) {
+                       bool finds_anisotropy, const std::string& drift, int neighbours,
+                       bool are_apart, int threads, Progress* control) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours, threads, finds_anisotropy};
+    const interpolation::FitOptions options{drift_of(drift), neighbours, threads, finds_anisotropy,
+                                            are_apart};
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
@@ -254,8 +255,10 @@ spacing     the unit of distances, mean_spacing of all points where these are a 
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
     module.def(
-        "mean_spacing", &mean_spacing, arg("points"),
+        "mean_spacing", &mean_spacing, arg("points"), arg("are_apart") = false,
         R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.
+
+are_apart   no two points have one place, and all are finite: they stay where they are
 
 Raises InputError as krige does for points.)");
     module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
@@ -276,12 +279,13 @@ step        between samples
 Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
                arg("anisotropy_azimuth") = 0.0, arg("finds_anisotropy") = false,
-               arg("drift") = "constant", arg("neighbours") = 32, arg("threads") = 0,
-               arg("control") = py::none(),
+               arg("drift") = "constant", arg("neighbours") = 32, arg("are_apart") = false,
+               arg("threads") = 0, arg("control") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
 finds_anisotropy  instead of taking the one that is given
 neighbours        with which points that are left out are told, at most 64
+are_apart         no two points have one place, and all are finite: of many only some are copied
 threads           0: as many as there are; the result does not depend on it
 
 Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// outside_hull, tin, natural_neighbour, surface_heights, dsi.
+// hull_corners, outside_hull, tin, natural_neighbour, surface_heights, dsi.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -17,6 +17,16 @@ namespace py = pybind11;
 namespace realmodel::bindings {
 
 namespace {
+
+Array<double> hull_corners(const Array<double>& nodes) {
+    const auto given = rows<2>(nodes, "nodes");
+    std::vector<std::array<double, 2>> corners;
+    {
+        const py::gil_scoped_release unlocked;
+        corners = interpolation::ConvexHull({given.begin(), given.end()}).corners();
+    }
+    return to_array(std::move(corners));
+}
 
 py::array outside_hull(const Array<double>& points, const Array<double>& nodes, int threads,
                        Progress* control) {
@@ -86,6 +96,8 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
 
 void bind_surfaces(py::module_& module) {
     using py::arg;
+    module.def("hull_corners", &hull_corners, arg("nodes"),
+               R"(The corners (H, 2) of the convex hull of finite nodes (N, 2). Exact.)");
     module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"), arg("threads") = 0,
                arg("control") = py::none(),
                R"(The nodes (N, 2) outside the convex hull of points (P, 3) in plan: (N,) bool.)");

@@ -151,7 +151,7 @@ def peak(scale):
         for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
-        found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays.room))
+        found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
         boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
         write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
         peak = tracemalloc.get_traced_memory()[1]
@@ -189,11 +189,79 @@ print(json.dumps([expected, *limited(file)]))
 """
 
 
-@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="a limit that counts no mapped files")
+needs_a_limit = pytest.mark.skipif(
+    not Path("/proc/self/status").is_file(), reason="a limit that counts no mapped files"
+)
+
+
+@needs_a_limit
 def test_a_raster_is_read_in_less_memory_than_its_points_take(tmp_path):
     expected, count, whole = in_a_process(LIMITED, tmp_path)
     assert count == expected and 24 * count > 150_000_000
     assert whole == "does not fit"
+
+
+SCATTERED = """
+from realmodel.core import BuildFailed
+from realmodel.core.local_heights import local_heights
+from realmodel.core.project import Surface
+from realmodel.core.tiles.tile_model import write_windows
+from realmodel.core.work import run
+from realmodel.core.heights import heights
+import numpy as np
+
+def pieces(count):
+    random = np.random.default_rng(1)
+    for _ in range(count // 50_000):
+        plan = 1000 * random.random((50_000, 2))
+        plan[::100] = plan[1::100]
+        yield np.column_stack([plan, 20 * np.sin(plan[:, 0] / 70) * np.cos(plan[:, 1] / 90)])
+
+def divided(points, arrays, method):
+    settings = Surface("S", method=method, points=points[:9]).method_options()
+    extent = np.array([[0.0, 0], [1000, 1000]])
+    found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
+    tiles = folder / method
+    boxes = {(0, 0): (500.0, 500, 510, 510), (1, 0): (510.0, 500, 520, 510)}
+    for name in boxes:
+        (tiles / str(name)).mkdir(parents=True)
+    write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
+    with np.load(tiles / "(0, 0)" / "0-0-near.npz") as near:
+        return found, settings, near["points"]
+
+with MappedArrays(folder / "arrays") as arrays:
+    points = arrays.gather(pieces(2_500_000), np.empty((0, 3)))
+    divided(points[:100_000], arrays, "kriging")  # the libraries are there then
+    status = Path("/proc/self/status").read_text()
+    now = int(status.split("VmData:")[1].split()[0]) * 1024
+    resource.setrlimit(resource.RLIMIT_DATA, (now + 90_000_000, -1))
+    (folder / "kriging").rename(folder / "before")
+    done, nodes = [], np.array([[503.5, 507.0], [509.0, 501.5]])
+    for method in ("spline", "kriging", "universal_kriging"):
+        found, settings, near = divided(points, arrays, method)
+        done.append([method, len(near), run(lambda work: found.heights(work, near, nodes, 1)).tolist()])
+    try:
+        run(lambda work: heights(work, points, nodes, *settings, 1))
+        fits = True
+    except BuildFailed:  # not enough memory
+        fits = False
+    resource.setrlimit(resource.RLIMIT_DATA, (-1, -1))
+    whole = []
+    for method, *_ in done:
+        settings = Surface("S", method=method, points=points[:9]).method_options()
+        whole.append(run(lambda work: heights(work, points, nodes, *settings, 1)).z.tolist())
+print(json.dumps([done, fits, whole]))
+"""
+
+
+@needs_a_limit
+def test_points_are_divided_in_less_memory_than_they_take(tmp_path):
+    """Those at one place are found, a variogram is fitted, and a tile gets those around; with the same
+    heights."""
+    done, fits, whole = in_a_process(SCATTERED, tmp_path)
+    assert not fits
+    for (method, near, heights), expected in zip(done, whole, strict=True):
+        assert 500 < near < 10_000 and heights == expected, method
 
 
 def test_a_file_as_bytes(tmp_path):

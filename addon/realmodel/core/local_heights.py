@@ -13,18 +13,20 @@ from .heights import from_neighbours
 from .heights.interpolation import Task, run_method
 from .heights.regular_grid import (
     RegularGrid,
-    Room,
     bilinear,
     find_grid,
     has_each_node_once,
     require_one_height,
 )
 from .heights.run import elsewhere, few_points, runs_away
+from .mapped_arrays import MappedArrays, in_memory
 from .methods import METHODS
-from .mis_ties import without_mis_ties
+from .mis_ties import each_place_once, without_mis_ties
 from .project import Rock, Surface
 from .surface_heights import needed_surfaces
 from .work import Work, native_module
+
+_MOST = 1e150  # as data_points.cpp
 
 
 @dataclass(frozen=True)
@@ -91,41 +93,47 @@ def local_heights(
     method: str,
     settings: dict,
     threads: int,
-    room: Room = np.zeros,
+    arrays: MappedArrays | None = None,
 ) -> tuple[LocalHeights, np.ndarray, list[str]]:
-    """What is found once from all points of a surface; the points that its parts are interpolated from, each
-    place once; and what there is to tell. extent: (2, 2), of all nodes. room: for notes of each point. Raises
-    InputRefused."""
+    """What is found once from all points of a surface, which may be in a file; the points that its parts are
+    interpolated from, each place once; and what there is to tell. extent: (2, 2), of all nodes. arrays: where
+    those of as many rows as points are kept; None: in memory. Raises InputRefused."""
     native = native_module()
-    grid, mis_ties, is_sorted_out = None, None, False
-    if method == "grid":  # mostly nothing is to be sorted out of a raster, which may not fit the memory
-        grid = find_grid(points)
-        is_sorted_out = has_each_node_once(points, grid, room)
-    if not is_sorted_out:
-        points, mis_ties = without_mis_ties(points)
-    told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
-    task = Task(work, points, np.empty((0, 2)), settings, threads)
-    known, spacing = None, 0.0
-    needed = 1 if method == "grid" else settings["neighbours"]  # where the grid lacks a node
+    room, gather = (np.zeros, in_memory) if arrays is None else (arrays.room, arrays.gather)
+    given, grid, mis_ties, are_apart = points, None, None, False
     try:
+        if method == "grid":  # mostly nothing is to be sorted out of a raster
+            grid = find_grid(points)
+            are_apart = has_each_node_once(points, grid, room)
+        if not are_apart:
+            points, mis_ties, are_apart = each_place_once(given, room, gather)
+            if method == "grid":  # where it lies, points that repeat others tell, too
+                counted, _ = without_mis_ties(given, room, gather)
+                grid = find_grid(counted)
+                require_one_height(counted, grid, room=room)
+            elif not are_apart or not _are_usable(points):
+                native.mean_spacing(without_mis_ties(given)[0])  # it refuses them
+        told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
+        task = Task(work, points, np.empty((0, 2)), settings, threads)
+        known, spacing = None, 0.0
+        needed = 1 if method == "grid" else settings["neighbours"]  # where the grid lacks a node
         if "kriging" in method:
-            known = from_neighbours.structure(task)
+            known = from_neighbours.structure(task, are_apart=True)
             needed = known.neighbours
             told += known.warnings
             known = replace(known, warnings=())
         elif method == "spline":
-            spacing = native.mean_spacing(points)
-        elif method == "grid" and not is_sorted_out:
-            grid = find_grid(points)
-            require_one_height(points, grid)
+            spacing = native.mean_spacing(points, are_apart=True)
         found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]), spacing, grid)
-        found.heights(work, points, task.nodes, threads)  # of no nodes: it checks the points
+        found.heights(work, np.array(points[:1]), task.nodes, threads)  # of no nodes: it checks the settings
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    if not is_sorted_out:
-        _, first = np.unique(points[:, :2], axis=0, return_index=True)
-        points = np.ascontiguousarray(points[np.sort(first)])
     return found, points, told
+
+
+def _are_usable(points: np.ndarray) -> bool:
+    """Whether native code takes them: it squares coordinates."""
+    return all(points[:, axis].min() > -_MOST and points[:, axis].max() < _MOST for axis in range(3))
 
 
 def _range(z: np.ndarray) -> tuple[float, float]:

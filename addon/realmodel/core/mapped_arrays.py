@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import shutil
 from collections.abc import Callable, Iterable, Iterator
@@ -18,6 +19,7 @@ from .errors import BuildFailed, OutputFailed
 Keep = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
 # One array of pieces, one after another; the second is empty, and has the type and the columns of all.
 Gather = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
+Room = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
 _HEADER = 128  # bytes before an array in a file of NumPy
@@ -113,7 +115,11 @@ class MappedArrays:
         """Zeros in a file, for the caller to change."""
         file = self._new_file()
         with _told_of(file):
-            return np.lib.format.open_memmap(file, "w+", dtype, shape)
+            array = np.lib.format.open_memmap(file, "w+", dtype, shape)
+            if hasattr(os, "posix_fallocate") and array.nbytes:  # a disk that is full tells it now
+                with file.open("r+b") as opened:
+                    os.posix_fallocate(opened.fileno(), 0, file.stat().st_size)
+            return array
 
     def _new_file(self) -> Path:
         return self.folder / f"{secrets.token_hex(8)}.npy"

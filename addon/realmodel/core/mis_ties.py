@@ -3,35 +3,126 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .errors import place_text
+from .mapped_arrays import ROWS_AT_ONCE, Gather, Room, in_memory, in_pieces
 
 # of the height range of all points: beyond this it is a mistake in the data, and interpolation refuses it
 LARGEST_SHARE = 0.05
+_AT_ONCE = 1 << 18  # points among which those at one place are looked for
 
 
-def without_mis_ties(points: np.ndarray) -> tuple[np.ndarray, str | None]:
+def without_mis_ties(
+    points: np.ndarray, room: Room = np.zeros, gather: Gather = in_memory
+) -> tuple[np.ndarray, str | None]:
     """Points with one height at each place, and what was done, as a sentence (None: nothing).
 
-    points: (P, 3) float64. Where heights at one place differ by no more than a twentieth of the height range
-    of all points, their mean takes the place of the first of them; larger contradictions are left in.
+    points: (P, 3) float64, which may be in a file. Where heights at one place differ by no more than a
+    twentieth of the height range of all points, their mean takes the place of the first of them; larger
+    contradictions are left in. room, gather: where arrays are kept.
     """
-    place, first, apart = _places(points)
-    if not apart.any():
-        return points, None
-    tolerated = (apart > 0) & (apart <= LARGEST_SHARE * np.ptp(points[:, 2]))
-    if not tolerated.any():
-        return points, None
-    merged = points.copy()
-    merged[first[tolerated], 2] = _means(points, place)[tolerated]
-    keep = ~tolerated[place]
-    keep[first[tolerated]] = True
-    worst = int(np.where(tolerated, apart, 0.0).argmax())
-    count = int(tolerated.sum())
-    places = "1 position has" if count == 1 else f"{count} positions have"
-    most = f"up to {apart[worst]:.6g} apart (at {place_text(points[first[worst], :2])})"
-    return merged[keep], f"{places} several heights, {most}: their mean is used"
+    found = _Places(points, room, is_once=False)
+    return found.kept(gather), found.told()
+
+
+def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.ndarray, str | None, bool]:
+    """without_mis_ties, and of points that repeat another only the first; whether no two have one place now:
+    larger contradictions are left in."""
+    found = _Places(points, room, is_once=True)
+    return found.kept(gather), found.told(), not found.has_contradictions
+
+
+class _Places:
+    """Which points are left when those at one place have become one. is_once: also where they have one
+    height."""
+
+    def __init__(self, points: np.ndarray, room: Room, is_once: bool):
+        self._points = points
+        self._keeps = room((len(points),), bool)
+        self._changed: list[tuple[np.ndarray, np.ndarray]] = []  # numbers and heights
+        self._count, self._worst = 0, (0.0, 0.0, 0.0)  # how far apart, and where
+        self.has_contradictions = False
+        most = LARGEST_SHARE * float(np.ptp(points[:, 2])) if len(points) else 0.0
+        for numbers, rows in _by_place(points, room):
+            self._settle(numbers, rows, most, is_once)
+
+    def _settle(self, numbers: np.ndarray, rows: np.ndarray, most: float, is_once: bool) -> None:
+        place, first, apart = _places(rows)
+        contradict = apart > most
+        tolerated = (apart > 0) & ~contradict
+        merged = ~contradict if is_once else tolerated
+        keep = ~merged[place]
+        keep[first[merged]] = True
+        self._keeps[numbers] = keep
+        self.has_contradictions |= bool(contradict.any())
+        if not tolerated.any():
+            return
+        self._count += int(tolerated.sum())
+        self._changed.append((numbers[first[tolerated]], _means(rows, place)[tolerated]))
+        worst = int(np.where(tolerated, apart, 0.0).argmax())
+        x, y = rows[first[worst], :2].tolist()
+        self._worst = max(self._worst, (float(apart[worst]), -x, -y))  # of equals the first from the west
+
+    def kept(self, gather: Gather) -> np.ndarray:
+        """The points themselves where all are left as they are."""
+        if not self._changed and all(piece.all() for piece in in_pieces(self._keeps)):
+            return self._points
+        return gather(self._pieces(), np.empty((0, self._points.shape[1])))
+
+    def _pieces(self) -> Iterator[np.ndarray]:
+        numbers = np.concatenate([np.empty(0, np.int64), *(each for each, _ in self._changed)])
+        heights = np.concatenate([np.empty(0), *(each for _, each in self._changed)])
+        order = np.argsort(numbers)
+        numbers, heights = numbers[order], heights[order]
+        for begin in range(0, len(self._points), ROWS_AT_ONCE):
+            piece = np.array(self._points[begin : begin + ROWS_AT_ONCE])
+            first, last = np.searchsorted(numbers, [begin, begin + len(piece)])
+            piece[numbers[first:last] - begin, 2] = heights[first:last]
+            yield piece[self._keeps[begin : begin + len(piece)]]
+
+    def told(self) -> str | None:
+        if not self._count:
+            return None
+        apart, x, y = self._worst
+        places = "1 position has" if self._count == 1 else f"{self._count} positions have"
+        most = f"up to {apart:.6g} apart (at {place_text((-x, -y))})"
+        return f"{places} several heights, {most}: their mean is used"
+
+
+def _by_place(points: np.ndarray, room: Room) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Numbers of points, ascending, and the points, so that all at one place come together: all at once, or
+    sorted by what their coordinates are mixed to."""
+    if len(points) <= _AT_ONCE:
+        yield np.arange(len(points)), np.asarray(points)
+        return
+    groups = -(-2 * len(points) // _AT_ONCE)
+    ends = np.zeros(groups + 1, np.int64)
+    for piece in in_pieces(points):
+        ends[1:] += np.bincount(_mixed(piece, groups), minlength=groups)
+    ends = np.cumsum(ends)
+    rows, numbers, at, begin = room(points.shape, float), room((len(points),), np.int64), ends[:-1].copy(), 0
+    for piece in in_pieces(points):
+        group = _mixed(piece, groups)
+        order = np.argsort(group, kind="stable")
+        count = np.bincount(group, minlength=groups)
+        to = np.arange(len(piece)) + np.repeat(at - (np.cumsum(count) - count), count)
+        rows[to], numbers[to] = piece[order], order + begin
+        at += count
+        begin += len(piece)
+    for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True):
+        yield np.array(numbers[first:last]), np.array(rows[first:last])
+
+
+def _mixed(points: np.ndarray, groups: int) -> np.ndarray:
+    """(P,) numbers below `groups`, equal for points at one place."""
+    x, y = (np.ascontiguousarray(points[:, axis] + 0.0).view(np.uint64) for axis in (0, 1))  # no -0
+    mixed = (x * np.uint64(0x9E3779B97F4A7C15)) ^ (y * np.uint64(0xC2B2AE3D27D4EB4F) + np.uint64(1))
+    mixed ^= mixed >> np.uint64(29)
+    mixed *= np.uint64(0xBF58476D1CE4E5B9)
+    return ((mixed >> np.uint64(32)) * np.uint64(groups) >> np.uint64(32)).astype(np.int64)
 
 
 def mean_heights(points: np.ndarray) -> np.ndarray:

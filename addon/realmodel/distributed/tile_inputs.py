@@ -150,7 +150,7 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
 
     def fitted(work: Work):
         given = np.ascontiguousarray(arrays.opened(points))
-        found, left, told = local_heights(work, given, extent, method, settings, 1, arrays.room)
+        found, left, told = local_heights(work, given, extent, method, settings, 1, arrays)
         return found, points if left is given else arrays.place(left), told
 
     try:

@@ -30,8 +30,9 @@ class Structure:
     warnings: tuple[str, ...] = ()
 
 
-def structure(task: Task) -> Structure:
-    """As the settings have it, or fitted to the points."""
+def structure(task: Task, are_apart: bool = False) -> Structure:
+    """As the settings have it, or fitted to the points. are_apart: no two points have one place; they may be
+    in a file."""
     settings = task.settings
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
@@ -46,6 +47,7 @@ def structure(task: Task) -> Structure:
         anisotropy_azimuth=anisotropy["azimuth"],
         finds_anisotropy=finds,
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
+        are_apart=are_apart,
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
     variogram = Variogram.from_fit(fitted, finds)

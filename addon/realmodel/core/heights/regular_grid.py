@@ -6,14 +6,14 @@ Calculated without NumPy's linear algebra, which gives other last digits on othe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..elementary import hypot
 from ..errors import InputRefused, place_text
-from ..mapped_arrays import ROWS_AT_ONCE, in_pieces
+from ..mapped_arrays import ROWS_AT_ONCE, Room, in_pieces
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 
@@ -25,8 +25,6 @@ _MOST_EMPTY = 100  # nodes of the grid for each point
 _NEAR = 16  # points, in the mean, in a cell where neighbours are looked for
 _SURE = 0.99  # of a cell's side: points so far are in the cells around, but for rounding
 _ONE_ROW = "the points lie in one row; a grid needs two"
-
-Room = Callable[[tuple[int, ...], type], np.ndarray]  # zeros
 
 
 @dataclass(frozen=True)
@@ -93,9 +91,12 @@ def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
     return Result(z, outside=outside | missing)
 
 
-def _heights(points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def _heights(
+    points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, room: Room = np.zeros
+) -> np.ndarray:
     """Of the nodes from `low` to `high`; NaN where there is no point."""
-    z = np.full(high - low + 1, np.nan)
+    z = room(tuple((high - low + 1).tolist()), float)
+    z.fill(np.nan)
     for piece in in_pieces(points):
         node = grid.nodes(piece)
         inside = ((node >= low) & (node <= high)).all(axis=1)
@@ -103,11 +104,13 @@ def _heights(points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.nd
     return z
 
 
-def require_one_height(points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None) -> None:
+def require_one_height(
+    points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None, room: Room = np.zeros
+) -> None:
     """Raises InputRefused where two points that are one node have different heights. z: of all nodes, of one
-    point each, where they are known."""
+    point each, where they are known. room: for them where they are not."""
     if z is None:
-        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1)
+        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1, room)
     for piece in in_pieces(points):
         differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
         for bad in piece[differs][:1]:

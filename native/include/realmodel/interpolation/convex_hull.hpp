@@ -23,6 +23,9 @@ public:
     /// On the border is inside. A hull of no positions contains none.
     bool contains(const Position& position) const;
 
+    /// Each once, the lower chain first; none in the middle of an edge.
+    std::vector<Position> corners() const;
+
 private:
     std::vector<Position> lower_, upper_;
 };

@@ -25,8 +25,9 @@ struct ThinPlateOptions {
 };
 
 /// The side of a square as large as each point's share of the box of all; 1 where this is none.
+/// @param are_apart  no two points lie at one position, and all are finite: nothing is looked for
 /// @throws InputError as thin_plate for points
-double mean_spacing(std::span<const std::array<double, 3>> points);
+double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apart = false);
 
 /// Thin plate splines (Duchon 1977; Wahba 1990, "Spline models for observational data",
 /// section 2.4): sum w_i r_i^2 log r_i + a + b x + c y, the surface that bends least through the

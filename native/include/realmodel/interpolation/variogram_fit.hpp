@@ -35,6 +35,7 @@ struct FitOptions {
     int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
     int threads = 0;                ///< 0: as many as there are
     bool finds_anisotropy = false;  ///< instead of taking the one that is given
+    bool are_apart = false;         ///< no two points lie at one position, and all are finite
 };
 
 struct FittedVariogram {
@@ -59,7 +60,11 @@ struct FittedVariogram {
 /// spread in two directions; one is accepted where it lowers the mean square of the errors by 3 %
 /// and by two standard errors, and the rest is fitted again under it.
 ///
-/// With a drift all this is done with the residuals of the polynomial that fits best.
+/// With a drift all this is done with the residuals of the polynomial that fits best, or that fits
+/// a fixed part of more than 20,000 points best.
+///
+/// Points that are apart may lie in a file: of many only those that are compared, and their
+/// nearest, are copied.
 ///
 /// The same bytes for any number of threads.
 /// @throws InputError kind "no_points", "not_finite", "contradicting_points", "too_large",

@@ -26,13 +26,16 @@ double squared_distance(const Position& a, const Position& b) {
     return dx * dx + dy * dy;
 }
 
-double mean_spacing_of(std::span<const Position> positions) {
-    const spatial::PlanBox box = spatial::box_around(positions);
+double spacing_in(const spatial::PlanBox& box, std::size_t points) {
     const double width = box.width(), height = box.height();
-    const auto count = static_cast<double>(positions.size());
+    const auto count = static_cast<double>(points);
     const double spacing =
         std::max(std::sqrt(width * height / count), std::max(width, height) / count);
     return spacing > 0 ? spacing : 1;
+}
+
+double mean_spacing_of(std::span<const Position> positions) {
+    return spacing_in(spatial::box_around(positions), positions.size());
 }
 
 /// A spline through some points. Keeps its memory; one for each thread.
@@ -101,8 +104,14 @@ void check_options(const ThinPlateOptions& options) {
 
 }  // namespace
 
-double mean_spacing(std::span<const std::array<double, 3>> points) {
-    return mean_spacing_of(prepare_points(points).local);
+double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apart) {
+    if (!are_apart) return mean_spacing_of(prepare_points(points).local);
+    spatial::PlanBox box = spatial::kNoBox;
+    for (const auto& point : points) {
+        const double x = point[0] - points[0][0], y = point[1] - points[0][1];
+        box = box.united({x, y, x, y});
+    }
+    return spacing_in(box, points.size());
 }
 
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,

@@ -41,6 +41,13 @@ bool ConvexHull::contains(const Position& position) const {
                                     : exact::orient2d(before, *beyond, position) <= 0;
 }
 
+std::vector<Position> ConvexHull::corners() const {
+    std::vector<Position> out = lower_;
+    for (std::size_t i = 1; i + 1 < upper_.size(); ++i)
+        out.push_back(upper_[i]);
+    return out;
+}
+
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
                                        std::span<const std::array<double, 2>> nodes, int threads,
                                        Progress* progress) {

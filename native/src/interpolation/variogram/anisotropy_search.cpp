@@ -72,14 +72,16 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
     return anisotropy_of(best);
 }
 
-bool spread_in_plan(const DataPoints& data) {
+bool spread_in_plan(const ManyPoints& points) {
     double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    const auto count = static_cast<double>(data.local.size());
-    for (const auto& [px, py] : data.local) {
+    const auto count = static_cast<double>(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto [px, py] = points.local(i);
         x += px / count;
         y += py / count;
     }
-    for (const auto& [px, py] : data.local) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto [px, py] = points.local(i);
         xx += (px - x) * (px - x);
         xy += (px - x) * (py - y);
         yy += (py - y) * (py - y);

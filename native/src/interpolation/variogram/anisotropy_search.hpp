@@ -17,6 +17,6 @@ Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
                            const CappedSquare& square_of);
 
 /// Whether positions spread in two directions, so that an anisotropy shows.
-bool spread_in_plan(const DataPoints& data);
+bool spread_in_plan(const ManyPoints& points);
 
 }  // namespace realmodel::interpolation

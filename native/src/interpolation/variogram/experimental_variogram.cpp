@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "interpolation/neighbors/nearest_of_some.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
-#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -86,39 +88,22 @@ double upper_median(std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<Position> isotropic_positions(const DataPoints& data, const Anisotropy& anisotropy) {
-    const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
-    const double stretch = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
-    const double s = elementary::sin(azimuth), c = elementary::cos(azimuth);
-    std::vector<Position> positions;
-    positions.reserve(data.local.size());
-    for (const auto& [x, y] : data.local)
-        positions.push_back({s * x + c * y, stretch * (c * x - s * y)});
-    return positions;
-}
-
-double diagonal(std::span<const Position> positions) {
-    const spatial::PlanBox box = spatial::box_around(positions);
-    return elementary::hypot(box.width(), box.height());
-}
-
-ExperimentalVariogram experimental_variogram(const DataPoints& data, const Anisotropy& anisotropy) {
-    const std::size_t count = data.local.size();
+ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Anisotropy& anisotropy,
+                                             const Progress* progress) {
+    const std::size_t count = points.size();
     if (count < 2) return {};
-    const std::vector<Position> positions = isotropic_positions(data, anisotropy);
-    const spatial::NearestPoints tree(positions);
+    const IsotropicSpace space(anisotropy);
     const std::vector<std::int32_t> near_part = even_part(count, kPointsForNearPairs);
-    const std::size_t neighbors = std::min(kNearNeighbors, count - 1);
-    std::vector<spatial::Neighbor> found;
+    const std::size_t row = std::min(kNearNeighbors, count - 1) + 1;
+    const std::vector<spatial::Neighbor> near = points.nearest(space, near_part, row, 1, progress);
     std::vector<double> nearest, farthest;
-    for (const std::int32_t i : near_part) {
-        tree.find(positions[i], neighbors + 1, found);
-        nearest.push_back(found[1].squared_distance);
-        farthest.push_back(found.back().squared_distance);
+    for (std::size_t k = 0; k < near_part.size(); ++k) {
+        nearest.push_back(near[k * row + 1].squared_distance);
+        farthest.push_back(near[(k + 1) * row - 1].squared_distance);
     }
     const double spacing = std::sqrt(upper_median(nearest));
     const double near_limit = std::sqrt(upper_median(farthest)) / 2;
-    const double far_limit = std::max(0.5 * diagonal(positions), 1.5 * spacing);
+    const double far_limit = std::max(0.5 * points.diagonal(space), 1.5 * spacing);
 
     Classes classes(1.25 * spacing, far_limit);
     std::size_t near_classes = 0;
@@ -126,32 +111,36 @@ ExperimentalVariogram experimental_variogram(const DataPoints& data, const Aniso
         while (near_classes < classes.size() && classes.limit(near_classes) <= near_limit)
             ++near_classes;
     }
-    const auto add_pair = [&](std::size_t k, double distance, std::int32_t i, std::int32_t j) {
-        classes.add(k, distance, data.values[i] - data.values[j]);
-    };
+    const std::vector<std::int32_t> kept = points.kept(near);
+    const std::vector<double> values = points.some(kept).values;
+    const auto value = [&](std::int32_t i) { return values[index_among(kept, count, i)]; };
     // Near pairs: each point with its nearest others, as far as these are surely all.
-    std::vector<bool> in_part(count, false);
-    for (const std::int32_t i : near_part)
-        in_part[i] = true;
-    for (const std::int32_t i : near_part) {
-        if (near_classes == 0) break;
-        tree.find(positions[i], neighbors + 1, found);
-        for (const spatial::Neighbor& n : found) {
-            if (n.point <= i && in_part[n.point]) continue;  // itself, or a pair seen from there
+    for (std::size_t k = 0; k < near_part.size() && near_classes > 0; ++k) {
+        const std::int32_t i = near_part[k];
+        const double own = value(i);
+        for (const spatial::Neighbor& n : std::span(near).subspan(k * row, row)) {
+            // itself, or a pair seen from there
+            if (n.point <= i && std::binary_search(near_part.begin(), near_part.end(), n.point))
+                continue;
             const double distance = std::sqrt(n.squared_distance);
-            const std::size_t k = classes.class_of(distance);
-            if (k >= near_classes) break;
-            add_pair(k, distance, i, n.point);
+            const std::size_t at = classes.class_of(distance);
+            if (at >= near_classes) break;
+            classes.add(at, distance, own - value(n.point));
         }
     }
     const std::vector<std::int32_t> far_part = even_part(count, kPointsForFarPairs);
-    for (auto i = far_part.begin(); i != far_part.end(); ++i) {
-        for (auto j = i + 1; j != far_part.end(); ++j) {
-            const double distance = elementary::hypot(positions[*i][0] - positions[*j][0],
-                                                      positions[*i][1] - positions[*j][1]);
+    const DataPoints far = points.some(far_part);
+    std::vector<Position> places;
+    for (const Position& local : far.local)
+        places.push_back(space(local));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t j = i + 1; j < places.size(); ++j) {
+            const double distance =
+                elementary::hypot(places[i][0] - places[j][0], places[i][1] - places[j][1]);
             if (distance > far_limit) continue;
-            const std::size_t k = classes.class_of(distance);
-            if (k >= near_classes && k < classes.size()) add_pair(k, distance, *i, *j);
+            const std::size_t at = classes.class_of(distance);
+            if (at >= near_classes && at < classes.size())
+                classes.add(at, distance, far.values[i] - far.values[j]);
         }
     }
     // Thirty pairs a class is what practice asks for (Journel and Huijbregts 1978); few points
@@ -162,7 +151,7 @@ ExperimentalVariogram experimental_variogram(const DataPoints& data, const Aniso
 ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 3>> points,
                                              const Anisotropy& anisotropy) {
     check_anisotropy(anisotropy);
-    return experimental_variogram(prepare_points(points), anisotropy);
+    return experimental_variogram(ManyPoints(points), anisotropy);
 }
 
 }  // namespace realmodel::interpolation

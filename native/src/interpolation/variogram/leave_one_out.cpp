@@ -6,8 +6,8 @@
 
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
+#include "interpolation/neighbors/nearest_of_some.hpp"
 #include "interpolation/node_loop.hpp"
-#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -20,26 +20,23 @@ static_assert(kMostNeighbors <= LaneKriging::kMostNeighbors);
 
 }  // namespace
 
-LeaveOneOut::LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most,
+LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most,
                          int threads, Progress* progress)
-    : data_(data),
-      neighbors_(std::min({neighbors, data.local.size() - 1, kMostNeighbors})),
+    : neighbors_(std::min({neighbors, points.size() - 1, kMostNeighbors})),
       threads_(threads),
       progress_(progress),
-      left_out_(even_part(data.local.size(), most)) {
-    const std::size_t taken = left_out_.size();
-    others_.resize(taken * neighbors_);
-    const spatial::NearestPoints tree(data.local);
-    const NodeLoop loop{taken, kChunk, threads, nullptr};
-    loop.over_nodes([] { return std::vector<spatial::Neighbor>(); },
-                    [&](std::vector<spatial::Neighbor>& found, std::size_t k) {
-                        const std::int32_t point = left_out_[k];
-                        tree.find(data.local[point], neighbors_ + 1, found);
-                        std::int32_t* other = others_.data() + k * neighbors_;
-                        for (const spatial::Neighbor& neighbor : found) {
-                            if (neighbor.point != point) *other++ = neighbor.point;
-                        }
-                    });
+      left_out_(even_part(points.size(), most)) {
+    const std::vector<spatial::Neighbor> near =
+        points.nearest(IsotropicSpace({}), left_out_, neighbors_ + 1, threads, progress);
+    const std::vector<std::int32_t> kept = points.kept(near);
+    data_ = points.some(kept);
+    others_.reserve(left_out_.size() * neighbors_);
+    for (std::size_t k = 0; k < near.size(); ++k) {
+        if (near[k].point != left_out_[k / (neighbors_ + 1)])
+            others_.push_back(index_among(kept, points.size(), near[k].point));
+    }
+    for (std::int32_t& point : left_out_)
+        point = index_among(kept, points.size(), point);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include "interpolation/data_points.hpp"
 #include "interpolation/kriging/covariance.hpp"
+#include "interpolation/variogram/many_points.hpp"
 #include "realmodel/interpolation/drift.hpp"
 
 namespace realmodel {
@@ -24,7 +25,7 @@ class LeaveOneOut {
 public:
     /// @param neighbors  1 .. 64; fewer where there are not so many others
     /// @param most        points that are left out, where there are so many
-    LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most, int threads,
+    LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most, int threads,
                 Progress* progress);
 
     std::size_t size() const { return left_out_.size(); }
@@ -38,7 +39,7 @@ public:
 private:
     void predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const;
 
-    const DataPoints& data_;
+    DataPoints data_;  // those left out, and their others
     std::size_t neighbors_;
     int threads_;
     Progress* progress_;

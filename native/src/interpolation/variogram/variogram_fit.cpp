@@ -38,20 +38,20 @@ constexpr double kLeastScale = 0.25;
 /// The choice among models, ranges, nuggets and anisotropies by points left out.
 class Choice {
 public:
-    Choice(const DataPoints& data, const FitOptions& options, Progress* progress)
-        : data_(data),
+    Choice(const ManyPoints& all, const FitOptions& options, Progress* progress)
+        : all_(all),
           options_(options),
           progress_(progress),
-          points_(data, static_cast<std::size_t>(options.neighbors), kPointsLeftOut,
-                  options.threads, progress),
-          few_(data, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
+          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut, options.threads,
+                  progress),
+          few_(all, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
                kPointsSearched, options.threads, progress) {}
 
     /// Leaves `out` as it is where no model fits at all. Its experimental values and its
     /// variogram's anisotropy are given; they change where an anisotropy is found.
     void make(FittedVariogram& out) {
-        const bool finds = options_.finds_anisotropy && data_.local.size() >= kLeastForAnisotropy &&
-                           spread_in_plan(data_);
+        const bool finds =
+            options_.finds_anisotropy && all_.size() >= kLeastForAnisotropy && spread_in_plan(all_);
         std::vector<Candidate> all = search(out, kAllVariogramModels, 0, finds ? 0.35 : 0.7);
         if (all.empty()) return;
         if (finds) {
@@ -59,7 +59,7 @@ public:
             const Anisotropy found = find_anisotropy(few_, best, *square_of_);
             if (found.ratio > 1 && better_with(found, best)) {
                 out.variogram.anisotropy = found;
-                out.experimental = experimental_variogram(data_, found);
+                out.experimental = experimental_variogram(all_, found, progress_);
                 all = search(out, hopeful_models(all), 0.4, 0.75);
             }
         }
@@ -82,7 +82,7 @@ private:
     }
 
     double extent(const Anisotropy& anisotropy) const {
-        return diagonal(isotropic_positions(data_, anisotropy));
+        return all_.diagonal(IsotropicSpace(anisotropy));
     }
 
     std::vector<Candidate> search(const FittedVariogram& about,
@@ -137,7 +137,7 @@ private:
         const bool drifts = options_.drift != Drift::kConstant;
         std::optional<LeaveOneOut> fewer;
         if (drifts) {
-            fewer.emplace(data_, points_.neighbors(), kPointsLeftOutOfDrift, options_.threads,
+            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift, options_.threads,
                           progress_);
         }
         const LeaveOneOut& points = drifts ? *fewer : points_;
@@ -212,7 +212,7 @@ private:
         return 1;
     }
 
-    const DataPoints& data_;
+    const ManyPoints& all_;
     const FitOptions& options_;
     Progress* progress_;
     LeaveOneOut points_, few_;  // all that are left out, and those that search
@@ -220,12 +220,10 @@ private:
 };
 
 /// For points that show no variation, or are too few to show any.
-Variogram plain_variogram(const DataPoints& data, std::span<const double> given,
-                          const ExperimentalVariogram& e, const Anisotropy& anisotropy) {
-    double largest = 1;
-    for (const double z : given)
-        largest = std::max(largest, std::abs(z));
-    const double length = diagonal(isotropic_positions(data, anisotropy));
+Variogram plain_variogram(const ManyPoints& all, const ExperimentalVariogram& e,
+                          const Anisotropy& anisotropy) {
+    const double largest = std::max(1.0, all.largest_value());
+    const double length = all.diagonal(IsotropicSpace(anisotropy));
     Variogram variogram;
     variogram.anisotropy = anisotropy;
     variogram.range = length > 0 ? length : 1;
@@ -244,18 +242,17 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
     if (options.neighbors < 1) {
         throw InputError("option", "a variogram is fitted with at least one neighbor");
     }
-    DataPoints data = prepare_points(points);
-    const std::vector<double> given = data.values;
+    ManyPoints all(points, options.are_apart);
     // Kriging the residuals with the drift gives the same errors as kriging the values.
-    if (options.drift != Drift::kConstant) data.values = without_drift(data, options.drift);
+    if (options.drift != Drift::kConstant) all.take_drift_out(options.drift);
     FittedVariogram out;
-    out.experimental = experimental_variogram(data, anisotropy);
+    out.experimental = experimental_variogram(all, anisotropy, progress);
     const ExperimentalVariogram& e = out.experimental;
-    out.variogram = plain_variogram(data, given, e, anisotropy);
+    out.variogram = plain_variogram(all, e, anisotropy);
     const bool varies = !e.gamma.empty() && *std::max_element(e.gamma.begin(), e.gamma.end()) >
                                                 1e-12 * out.variogram.sill;
-    if (data.local.size() < 3 || e.lags.size() < 2 || !varies) return out;
-    Choice(data, options, progress).make(out);
+    if (all.size() < 3 || e.lags.size() < 2 || !varies) return out;
+    Choice(all, options, progress).make(out);
     return out;
 }
 

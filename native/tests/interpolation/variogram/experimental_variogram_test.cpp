@@ -41,12 +41,13 @@ TEST(ExperimentalVariogram, OfALineOfPoints) {
 }
 
 TEST(ExperimentalVariogram, DistancesUnderAnAnisotropy) {
-    const DataPoints data = prepare_points(Points{{0, 0, 0}, {0, 6, 0}, {2, 0, 0}});
+    const Points points{{0, 0, 0}, {0, 6, 0}, {2, 0, 0}};
     // Longest toward north: what lies east counts three times.
-    const std::vector<Position> plain = isotropic_positions(data, {3, 0});
-    EXPECT_NEAR(std::hypot(plain[1][0] - plain[0][0], plain[1][1] - plain[0][1]), 6, 1e-14);
-    EXPECT_NEAR(std::hypot(plain[2][0] - plain[0][0], plain[2][1] - plain[0][1]), 6, 1e-14);
-    EXPECT_NEAR(diagonal(plain), 6 * std::sqrt(2), 1e-14);
+    const IsotropicSpace space({3, 0});
+    const Position from = space({0, 0}), north = space({0, 6}), east = space({2, 0});
+    EXPECT_NEAR(std::hypot(north[0] - from[0], north[1] - from[1]), 6, 1e-14);
+    EXPECT_NEAR(std::hypot(east[0] - from[0], east[1] - from[1]), 6, 1e-14);
+    EXPECT_NEAR(ManyPoints(points).diagonal(space), 6 * std::sqrt(2), 1e-14);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 TEST(LeaveOneOut, TheErrorsOfCrossValidation) {
     const Points points = hills(300, 1000, {4e5, 5e6});
-    const DataPoints data = prepare_points(points);
+    const ManyPoints data(points);
     const Variogram v{VariogramModel::kMatern32, 500, 4, 0.1, {}, {}};
     for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
         const Kriged expected = krige_left_out(points, v, {12, 1, drift});
@@ -34,7 +34,8 @@ TEST(LeaveOneOut, TheErrorsOfCrossValidation) {
 }
 
 TEST(LeaveOneOut, FewPointsAndCancelling) {
-    const DataPoints data = prepare_points(Points{{0, 0, 1}, {1, 0, 4}});
+    const Points two{{0, 0, 1}, {1, 0, 4}};
+    const ManyPoints data(two);
     Progress progress;
     const LeaveOneOut both(data, 32, 1000, 1, &progress);
     EXPECT_EQ(both.neighbors(), 1U);
@@ -76,11 +77,11 @@ TEST(CappedSquare, QuantilesAndHonestSills) {
 }
 
 TEST(AnisotropySearch, OfPointsThatSpreadAndThatDoNot) {
-    EXPECT_TRUE(spread_in_plan(prepare_points(hills(50, 100))));
+    EXPECT_TRUE(spread_in_plan(ManyPoints(hills(50, 100))));
     Points line;
     for (int i = 0; i < 50; ++i)
         line.push_back({3.0 * i, 2.0 * i + 0.01 * (i % 3), 0});
-    EXPECT_FALSE(spread_in_plan(prepare_points(line)));
+    EXPECT_FALSE(spread_in_plan(ManyPoints(line)));
     CurveFit fit;
     fit.curve.range = 10;
     EXPECT_EQ(stretched(fit, {4, 0}).curve.range, 20);
@@ -90,7 +91,7 @@ TEST(AnisotropySearch, FindsTheDirectionInWhichHeightsChangeLeast) {
     Points points = hills(400, 100);
     for (auto& p : points)
         p[2] = std::sin(p[0] / 6) + std::sin(p[1] / 18);  // longest toward north
-    const DataPoints data = prepare_points(points);
+    const ManyPoints data(points);
     const LeaveOneOut all(data, 16, 400, 0, nullptr);
     CurveFit fit;
     fit.curve = {.model = VariogramModel::kMatern52, .range = 40};

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/variogram/many_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "realmodel/base/elementary.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr std::size_t kPointsOfDrift = 20'000;
+
+}  // namespace
+
+IsotropicSpace::IsotropicSpace(const Anisotropy& anisotropy) {
+    const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
+    stretch_ = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
+    sin_ = elementary::sin(azimuth);
+    cos_ = elementary::cos(azimuth);
+}
+
+ManyPoints::ManyPoints(std::span<const std::array<double, 3>> points, bool are_apart,
+                       std::size_t most)
+    : points_(points), most_(most) {
+    require_countable(points.size(), "points");
+    if (are_apart) return;
+    const DataPoints data = prepare_points(points);
+    if (data.local.size() == points.size()) return;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (static_cast<std::size_t>(data.number_of[i]) == own_.size()) own_.push_back(points[i]);
+    }
+    points_ = own_;
+}
+
+double ManyPoints::value(std::size_t i) const {
+    if (!residuals_.empty()) return residuals_[i];
+    if (!trend_) return points_[i][2];
+    const DriftBasis::Coefficients row = trend_->basis.solve(trend_->frame.terms(local(i)));
+    return points_[i][2] - points_[0][2] - row.dot(trend_->coefficients);
+}
+
+void ManyPoints::take_drift_out(Drift drift) {
+    const DataPoints data = some(even_part(size(), kPointsOfDrift));
+    if (data.local.size() == size()) {
+        residuals_ = without_drift(data, drift);
+        return;
+    }
+    DriftFrame frame(data.local, drift);
+    const Eigen::MatrixXd terms = frame.terms(std::span<const Position>(data.local));
+    DriftBasis basis;
+    basis.make(terms, terms);
+    Eigen::VectorXd z(terms.rows());
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+        z(i) = data.values[i] - data.values[0];
+    DriftBasis::Coefficients coefficients = basis.project(z);
+    coefficients += basis.project(z - basis.expand(coefficients));
+    trend_ = Trend{frame, basis, coefficients};
+}
+
+std::vector<spatial::Neighbor> ManyPoints::nearest(const IsotropicSpace& space,
+                                                   std::span<const std::int32_t> asked,
+                                                   std::size_t count, int threads,
+                                                   const Progress* progress) const {
+    const Positions positions{size(), [&](std::size_t i) { return space(local(i)); }};
+    return nearest_of_some(positions, asked, count, threads, progress, most_);
+}
+
+double ManyPoints::diagonal(const IsotropicSpace& space) const {
+    spatial::PlanBox box = spatial::kNoBox;
+    for (std::size_t i = 0; i < size(); ++i) {
+        const auto [x, y] = space(local(i));
+        box = box.united({x, y, x, y});
+    }
+    return elementary::hypot(box.width(), box.height());
+}
+
+double ManyPoints::largest_value() const {
+    double largest = 0;
+    for (const auto& point : points_)
+        largest = std::max(largest, std::abs(point[2]));
+    return largest;
+}
+
+std::vector<std::int32_t> ManyPoints::kept(std::span<const spatial::Neighbor> near) const {
+    std::vector<std::int32_t> numbers;
+    if (size() <= most_) {
+        numbers.resize(size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        return numbers;
+    }
+    numbers.reserve(near.size());
+    for (const spatial::Neighbor& neighbor : near)
+        numbers.push_back(neighbor.point);
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    return numbers;
+}
+
+DataPoints ManyPoints::some(std::span<const std::int32_t> numbers) const {
+    DataPoints out;
+    out.origin = {points_[0][0], points_[0][1]};
+    out.local.reserve(numbers.size());
+    out.values.reserve(numbers.size());
+    for (const std::int32_t number : numbers) {
+        out.local.push_back(local(static_cast<std::size_t>(number)));
+        out.values.push_back(value(static_cast<std::size_t>(number)));
+    }
+    return out;
+}
+
+std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size,
+                         std::int32_t number) {
+    if (numbers.size() == size) return number;
+    return static_cast<std::int32_t>(std::lower_bound(numbers.begin(), numbers.end(), number) -
+                                     numbers.begin());
+}
+
+}  // namespace realmodel::interpolation

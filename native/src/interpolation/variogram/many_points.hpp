@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/drift_basis.hpp"
+#include "interpolation/neighbors/nearest_of_some.hpp"
+#include "realmodel/interpolation/variogram.hpp"
+
+namespace realmodel::interpolation {
+
+/// Positions rotated and stretched so that their plain distances are those under an anisotropy.
+class IsotropicSpace {
+public:
+    explicit IsotropicSpace(const Anisotropy& anisotropy);
+    Position operator()(const Position& local) const {
+        const auto& [x, y] = local;
+        return {sin_ * x + cos_ * y, stretch_ * (cos_ * x - sin_ * y)};
+    }
+
+private:
+    double sin_, cos_, stretch_;
+};
+
+/// The points that a variogram is fitted to, which stay where they are: they may be more than the
+/// memory holds.
+class ManyPoints {
+public:
+    /// @param points    they must outlive this object
+    /// @param are_apart no two lie at one position, and all are finite: nothing is looked for
+    /// @param most      of points that are kept in memory
+    /// @throws InputError as prepare_points
+    explicit ManyPoints(std::span<const std::array<double, 3>> points, bool are_apart = false,
+                        std::size_t most = kMostInMemory);
+    ManyPoints(const ManyPoints&) = delete;
+    ManyPoints& operator=(const ManyPoints&) = delete;
+
+    std::size_t size() const { return points_.size(); }
+    Position local(std::size_t i) const {
+        return {points_[i][0] - points_[0][0], points_[i][1] - points_[0][1]};
+    }
+    double value(std::size_t i) const;
+    /// From now on values are what the polynomial leaves that fits them, or a fixed, even part of
+    /// many of them, best.
+    void take_drift_out(Drift drift);
+
+    /// nearest_of_some of them, with distances in a space.
+    std::vector<spatial::Neighbor> nearest(const IsotropicSpace& space,
+                                           std::span<const std::int32_t> asked, std::size_t count,
+                                           int threads, const Progress* progress) const;
+    /// Of the box around them.
+    double diagonal(const IsotropicSpace& space) const;
+    double largest_value() const;
+
+    /// Numbers of points, ascending, each once, among them those of `near`: of few points all.
+    std::vector<std::int32_t> kept(std::span<const spatial::Neighbor> near) const;
+    /// Some points, in the order of their numbers here.
+    DataPoints some(std::span<const std::int32_t> numbers) const;
+
+private:
+    struct Trend {
+        DriftFrame frame;
+        DriftBasis basis;
+        DriftBasis::Coefficients coefficients;
+    };
+    std::vector<std::array<double, 3>> own_;  // where points were repeated
+    std::span<const std::array<double, 3>> points_;
+    std::size_t most_;
+    std::vector<double> residuals_;  // of few points with a drift
+    std::optional<Trend> trend_;     // of many
+};
+
+/// Where a number is among numbers that ManyPoints::kept gave of `size` points.
+std::int32_t index_among(std::span<const std::int32_t> numbers, std::size_t size,
+                         std::int32_t number);
+
+}  // namespace realmodel::interpolation
