@@ -290,7 +290,8 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     box = frame.grid.box(*name)
     built = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
     model, sides = built.model, built.borders
-    numbers, edges = sides["numbers"], BorderEdges.of(model, box)
+    numbers = sides["numbers"]
+    edges = BorderEdges.of(model, numbers)
     sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, edges.on(model, side))
@@ -323,11 +324,13 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
         neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
-    model = with_vertices_of(model, BorderEdges.of(model, box, faces), neighbors)
+    numbers, own = borders[name].numbers, len(model.vertices)
+    model = with_vertices_of(model, BorderEdges.of(model, numbers, faces), neighbors)
+    numbers = np.concatenate([numbers, np.arange(own, len(model.vertices), dtype=numbers.dtype)])
     report = model.validate(_places(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches, border = {}, BorderEdges.of(model, box, faces)
+    patches, border = {}, BorderEdges.of(model, numbers, faces)
     for side, *theirs in neighbors:
         edges = border.on(model, side)
         found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
