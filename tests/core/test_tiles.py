@@ -417,9 +417,9 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
     project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
     seen, real = [], LocalHeights.certain_heights
 
-    def certain_heights(self, work, points, nodes, *others):
+    def certain_heights(self, work, points, nodes, **others):
         seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, *others)
+        return real(self, work, points, nodes, **others)
 
     monkeypatch.setattr(LocalHeights, "certain_heights", certain_heights)
     tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)

@@ -31,7 +31,7 @@ PartCheck::PartCheck(const DataPoints& data, const PointsAround& around)
         place_on_border_.emplace_back(places[i], i);
     }
     std::sort(place_on_border_.begin(), place_on_border_.end());
-    const auto [x, y] = data.origin;
+    const double x = data.origin[0], y = data.origin[1];
     const double off = kOfOrigin * std::max(std::abs(x), std::abs(y));
     const auto local_box = [&](const std::array<double, 4>& box) {
         return spatial::PlanBox{box[0] - x, box[1] - y, box[2] - x, box[3] - y};
