@@ -49,9 +49,9 @@ def _write_ply(file: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
 
 def undivided(project: str, folder: str, threads: int) -> dict:
     """The model as a whole: read, built, validated, written."""
+    began, before = time.perf_counter(), time.process_time()
     from realmodel.core import build, load_project
 
-    began, before = time.perf_counter(), time.process_time()
     model = build(load_project(project), threads=threads)
     if not model.validate(_VALIDATED, threads=threads).passed:
         raise ValueError("the model is wrong")

@@ -5,6 +5,7 @@ from fractions import Fraction
 from math import inf, nextafter
 
 import numpy as np
+from realmodel.core.tiles import settling
 from realmodel.core.tiles.settling import BorderVertices, settled
 
 BOX = (0.0, 0.0, 4.0, 4.0)
@@ -27,8 +28,7 @@ def built(*places):
 
 
 def border(*places):
-    lines = built(*places)["border_exact"].decode().splitlines()
-    exact = {number: tuple(line.split()) for number, line in enumerate(lines)}
+    exact = dict(enumerate(built(*places)["border_exact"].splitlines()))
     return BorderVertices(np.arange(len(places)), built(*places)["border_nearest"], exact)
 
 
@@ -36,6 +36,16 @@ def test_what_is_apart_stays():
     own = border((0, 1, 5), (0, 2, 5), (0, 2, Fraction(16, 3)), (4, 4, 1))
     (at,) = settled(BOX, [own])
     assert np.array_equal(at, own.nearest)
+
+
+def test_what_is_apart_needs_no_fractions(monkeypatch):
+    """The same comes of them."""
+    west = border((4, 1, 5), (4, Fraction(1, 3), 5), (4, Fraction(1, 3), 7), (0, 2, 5), (4, 0, 1), (2, 4, 3))
+    east = border((4, Fraction(1, 3), 7), (4, 3, Fraction(5, 7)), (8, 2, 5), (4, 4, 2), (6, 4, 3))
+    quick = settled(BOX, [west, east])
+    monkeypatch.setattr(settling, "_are_apart", lambda *_: False)
+    for one, other in zip(quick, settled(BOX, [west, east]), strict=True):
+        assert np.array_equal(one, other, equal_nan=True)
 
 
 def test_equal_doubles_are_made_distinct_in_exact_order():

@@ -16,6 +16,7 @@ from ..core import BuildFailed, BuildWarning
 from ..core.atomic import Outputs
 from ..core.build_options import check_cells
 from ..core.errors import place_text
+from ..core.local_heights import PartHeights
 from ..core.mapped_arrays import MappedArrays, read_mapped, write_mapped
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
@@ -192,7 +193,8 @@ def _build(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
     box = frame.grid.box(*name)
     built = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
     model, sides = built.model, built.borders
-    numbers, edges = sides["numbers"], BorderEdges.of(model, box)
+    numbers = sides["numbers"]
+    edges = BorderEdges.of(model, numbers)
     sides["faces"] = np.unique(edges.face)
     for side, _ in _neighbors(frame, name, names):
         found = interfaces_on(model, edges.on(model, side))
@@ -205,8 +207,9 @@ def _build(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
         "built",
         name,
         warnings=[asdict(warning) for warning in model.warnings],
-        wrong=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
-        heights=[[*key, *of] for key, of in built.heights.items()],
+        below=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
+        above=[[*key, asdict(wrong)] for key, wrong in built.above.items()],
+        heights=[[*key, asdict(of)] for key, of in built.heights.items()],
     )
 
 
@@ -224,11 +227,13 @@ def _join(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
     for side, other in _neighbors(frame, name, names):
         keys = (f"{OPPOSITE[side.name]}_{key}" for key in ("on", "ends"))
         neighbors.append((side, Interfaces(*(sides[other][key] for key in keys)), places[other]))
-    model = with_vertices_of(model, BorderEdges.of(model, box, faces), neighbors)
+    numbers, own = borders[name].numbers, len(model.vertices)
+    model = with_vertices_of(model, BorderEdges.of(model, numbers, faces), neighbors)
+    numbers = np.concatenate([numbers, np.arange(own, len(model.vertices), dtype=numbers.dtype)])
     report = model.validate(places_of(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches, border = {}, BorderEdges.of(model, box, faces)
+    patches, border = {}, BorderEdges.of(model, numbers, faces)
     for side, *theirs in neighbors:
         edges = border.on(model, side)
         found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
@@ -295,8 +300,8 @@ def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
 def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarning]:
     """Those of all tiles; what they say of triangles and points as one."""
     items: dict[tuple, set] = {}
-    wrong: dict[tuple[int, int], WrongPoints] = {}
-    heights: dict[tuple[int, int], list[float]] = {}
+    wrong: dict[tuple[str, int, int], WrongPoints] = {}
+    heights: dict[tuple[int, int], PartHeights] = {}
     for name in names:
         record = store.told("built", name)
         for told in record["warnings"]:
@@ -304,21 +309,23 @@ def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarnin
             if told["kind"] != "no_area":
                 key = (*key, told["text"])
             items.setdefault(key, set()).update(told["items"])
-        for r, k, own in record["wrong"]:
-            own = WrongPoints(**own)
-            wrong[r, k] = wrong[r, k].joined(own) if (r, k) in wrong else own
-        for r, k, *of in record["heights"]:
-            heights.setdefault((r, k), []).extend(of)
+        for side in ("below", "above"):
+            _join_each(wrong, [((side, r, k), WrongPoints(**own)) for r, k, own in record[side]])
+        _join_each(heights, [((r, k), PartHeights(**own)) for r, k, own in record["heights"]])
     found = []
     for (r, k), of in sorted(heights.items()):
-        rock = frame.project.rocks[r]
-        for text in frame.local[r, k].runs_away(min(of), max(of)):
-            found.append(BuildWarning(text, "points", rock.name, rock.surfaces[k].name))
-    for (r, k), own in sorted(wrong.items()):
-        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], "below"))
+        found += frame.local[r, k].warnings(of, frame.project.rocks[r], k)
+    for (side, r, k), own in sorted(wrong.items()):
+        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], side))
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"
             text = [f"{len(numbers)} {what} without area left out"]
         found.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
     return found
+
+
+def _join_each(found: dict, parts: list[tuple]) -> None:
+    """Adds parts to what others had of the same."""
+    for key, part in parts:
+        found[key] = found[key].joined(part) if key in found else part

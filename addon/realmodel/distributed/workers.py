@@ -17,6 +17,9 @@ _ANY_PORT = "127.0.0.1:0"  # None would be Dask's usual port, and a warning wher
 _starts = threading.Lock()  # Dask imports what it needs when it starts, which two threads cannot do at once
 # What Dask measures of itself takes seven percent of a processor while workers are at work
 _QUIET = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s"}
+# Dask has the C library give back memory bit by bit, and as it is it gives back each large array: a tenth of
+# a processor, as the next array asks for it again. So it stays in one heap, of which the end is given back
+_HEAP = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 1 << 32, "MALLOC_TRIM_THRESHOLD_": 1 << 28}
 _LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
 
 
@@ -116,10 +119,9 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
     import dask
 
     with contextlib.ExitStack() as ends, concurrent.futures.ThreadPoolExecutor(1) as apart:
-        # Dask has the C library give back memory bit by bit, which takes a tenth more of a processor;
-        # a build gives back what it has taken when it ends
         environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
         environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
+        environment |= _HEAP
         ends.enter_context(dask.config.set({**_QUIET, "distributed.nanny.pre-spawn-environ": environment}))
 
         def start():

@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..mapped_arrays import ROWS_AT_ONCE, in_pieces
+
 _BASE = -2  # face_surface of the flat base
 
 
@@ -55,7 +57,7 @@ class Interfaces:
 
 @dataclass(frozen=True)
 class BorderEdges:
-    """What of a model is on its border, found in one pass over it. vertices (N,): all there, ascending.
+    """What of a model is on its border. vertices (N,): all there, ascending.
     face, at, first, second (E,): the edges of all faces between two of them: the face, the place of the
     first corner in face_vertices, and both vertices."""
 
@@ -66,16 +68,17 @@ class BorderEdges:
     second: np.ndarray
 
     @classmethod
-    def of(
-        cls, model, box: tuple[float, float, float, float], faces: np.ndarray | None = None
-    ) -> BorderEdges:
-        """faces: among which all are that have an edge there, ascending; None: not known."""
+    def of(cls, model, vertices: np.ndarray, faces: np.ndarray | None = None) -> BorderEdges:
+        """vertices: all on the border, ascending. faces: among which all are that have an edge there,
+        ascending; None: not known."""
         on = np.zeros(len(model.vertices), bool)
-        for side in sides_of(box):
-            on |= model.vertices[:, side.axis] == side.line
+        on[vertices] = True
         corners = model.face_vertices
         if faces is None:
-            at = np.flatnonzero(on[corners])
+            at = np.concatenate(
+                [np.flatnonzero(on[piece]) + n * ROWS_AT_ONCE for n, piece in enumerate(in_pieces(corners))]
+                or [np.empty(0, np.int64)]
+            )
             face = np.searchsorted(model.face_offsets, at, "right") - 1
         else:
             size = model.face_offsets[faces + 1] - model.face_offsets[faces]
@@ -84,7 +87,7 @@ class BorderEdges:
         following = np.where(at + 1 == model.face_offsets[face + 1], model.face_offsets[face], at + 1)
         kept = on[corners[following]]
         at, face, following = at[kept], face[kept], following[kept]
-        return cls(np.flatnonzero(on), face, at, corners[at], corners[following])
+        return cls(vertices, face, at, corners[at], corners[following])
 
     def on(self, model, side: Side) -> BorderEdges:
         """What is on one side; of the edges those that are not vertical."""
@@ -146,18 +149,34 @@ def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side,
         np.concatenate([getattr(each, name) for each in inserted])
         for name in ("face", "at", "count", "numbers")
     )
-    order = np.argsort(at)  # and so by face
     begin = np.cumsum(size) - size
-    numbers = numbers[_spread(begin[order], size[order])].astype(model.face_vertices.dtype)
-    after = np.repeat(at[order] + 1, size[order])
-    ends = np.concatenate([[0], face[order] + 1, [len(model.face_offsets)]])
-    more = np.concatenate([[0], np.cumsum(size[order])])
+    order = np.argsort(at)  # and so by face
+    face, at, size = face[order], at[order], size[order]
+    numbers = numbers[_spread(begin[order], size)].astype(model.face_vertices.dtype)
     return replace(
         model,
         vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
-        face_vertices=np.insert(model.face_vertices, after, numbers),
-        face_offsets=model.face_offsets + np.repeat(more, np.diff(ends)),
+        face_vertices=_with_inserted(model.face_vertices, at + 1, size, numbers),
+        face_offsets=_moved_on(model.face_offsets, face + 1, size),
     )
+
+
+def _with_inserted(array: np.ndarray, at: np.ndarray, count: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """An array with the first count[0] values before element at[0], the next before at[1], and so on."""
+    pieces, done, first = [], 0, 0
+    for place, size in zip(at.tolist(), count.tolist(), strict=True):
+        pieces += [array[done:place], values[first : first + size]]
+        done, first = place, first + size
+    return np.concatenate([*pieces, array[done:]])
+
+
+def _moved_on(offsets: np.ndarray, first: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """Offsets of which those from first[0] on are more by by[0], those from first[1] on by by[1] more."""
+    moved = offsets.copy()
+    ends = [*first[1:].tolist(), len(moved)]
+    for begin, end, more in zip(first.tolist(), ends, np.cumsum(by).tolist(), strict=True):
+        moved[begin:end] += more
+    return moved
 
 
 def _insertion(
@@ -175,25 +194,24 @@ def _insertion(
         theirs = places[np.unique(other.ends[other.on == number])]
         theirs = theirs[np.unique(theirs[:, side.along], return_index=True)[1]]  # and ascending
         own = on == number
-        theirs = theirs[~_among(theirs, model.vertices[ends[own].ravel()])]
+        there = _on_line(model.vertices[ends[own].ravel()], side)
+        theirs = theirs[~np.isin(_on_line(theirs, side), there)]
         start = np.searchsorted(theirs[:, side.along], along[own, 0], "right")
         stop = np.searchsorted(theirs[:, side.along], along[own, 1], "left")
         begin[own], count[own] = start + sum(map(len, points)), np.maximum(stop - start, 0)
         points.append(theirs)
     if not count.any():
         return None
-    added, numbers = _numbered(
-        model, edges.vertices, np.concatenate(points)[_spread(begin, count)], first_number
-    )
+    added = np.concatenate(points)[_spread(begin, count)]
+    added, numbers = _numbered(model, side, edges.vertices, added, first_number)
     first_new = np.cumsum(count) - count
     # of each edge of a face the new vertices in its direction
     place = np.searchsorted(pairs, _pairs(edges))
     place[place == len(pairs)] = 0
-    known = pairs[place] == _pairs(edges)
-    face, at, place = edges.face[known], edges.at[known], place[known]
-    backward = (
-        model.vertices[edges.first, side.along][known] > model.vertices[edges.second, side.along][known]
-    )
+    needed = (pairs[place] == _pairs(edges)) & (count[place] > 0)
+    face, at, place = edges.face[needed], edges.at[needed], place[needed]
+    ends = model.vertices[edges.first[needed], side.along], model.vertices[edges.second[needed], side.along]
+    backward = ends[0] > ends[1]
     size = count[place]
     inserted = _spread(first_new[place], size)
     step = np.arange(len(inserted)) - np.repeat(np.cumsum(size) - size, size)
@@ -203,21 +221,19 @@ def _insertion(
     return _Insertion(added, face, at, size, numbers[inserted])
 
 
-def _among(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """(N,) bool: which rows (N, 3) are among others."""
-    _, same = np.unique(np.concatenate([others, rows]), axis=0, return_inverse=True)
-    same = same.reshape(-1)
-    return np.isin(same[len(others) :], same[: len(others)])
+def _on_line(places: np.ndarray, side: Side) -> np.ndarray:
+    """(N,) complex128: places (N, 3) on the line of a side, each a number that sorts as they do."""
+    return places[:, side.along] + 1j * places[:, 2]
 
 
 def _numbered(
-    model, there: np.ndarray, added: np.ndarray, first_number: int
+    model, side: Side, there: np.ndarray, added: np.ndarray, first_number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Positions (N, 3) that the model has no vertex at yet, each once, and the vertex number of each given
     one: edges may meet in a vertex that one of them passes. there: the vertices on the side."""
     both = np.concatenate([model.vertices[there], added])
-    _, first, same = np.unique(both, axis=0, return_index=True, return_inverse=True)
-    first = first[same.reshape(-1)[len(there) :]]  # the first of the equal ones: one that is there
+    _, first, same = np.unique(_on_line(both, side), return_index=True, return_inverse=True)
+    first = first[same[len(there) :]]  # the first of the equal ones: one that is there
     new, number = np.unique(first[first >= len(there)], return_inverse=True)
     numbers = np.empty(len(added), np.int64)
     numbers[first < len(there)] = there[first[first < len(there)]]

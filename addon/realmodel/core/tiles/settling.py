@@ -25,12 +25,12 @@ _Exact = tuple[str, str, str]
 @dataclass(frozen=True)
 class BorderVertices:
     """The vertices of a tile on its border: their numbers (N,), ascending; the doubles nearest to where they
-    are, (N, 3); and the exact x, y and z: fractions in hexadecimal, equal where points are, in all tiles. Of
-    a tile those on the border of another are enough, by their places among the N."""
+    are, (N, 3); and the exact x, y and z in a line: fractions in hexadecimal, equal where points are, in all
+    tiles. Of a tile those on the border of another are enough, by their places among the N."""
 
     numbers: np.ndarray
     nearest: np.ndarray
-    exact: dict[int, _Exact]
+    exact: dict[int, bytes]
 
     @staticmethod
     def arrays_of(built: dict) -> dict[str, np.ndarray]:
@@ -48,7 +48,7 @@ class BorderVertices:
         needed = np.zeros(len(nearest), bool)
         for side in sides_of(box):
             needed |= _is_near(nearest, side, box)
-        exact = {place: _words(lines[place]) for place in np.flatnonzero(needed).tolist()}
+        exact = {place: lines[place] for place in np.flatnonzero(needed).tolist()}
         return cls(arrays["numbers"], nearest, exact)
 
 
@@ -56,15 +56,18 @@ def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     """Where vertices are that lie on the border of a tile. tiles: those of the tile, and of all that share
     its sides or corners. Returns (N, 3) float64 for each, NaN where a neighbor's is not on this border."""
     tiles = list(tiles)
+    if _are_apart(box, tiles):
+        return [_rounded(box, vertices) for vertices in tiles]
+    exact_places = [{number: _words(line) for number, line in each.exact.items()} for each in tiles]
     heights: dict[tuple[str, str], dict[str, float]] = {}
     on_sides = []
     for side in sides_of(box):
         axis = side.along
         along = {_text(end): end for end in (box[axis], box[axis + 2])}
-        on_side = [_on_side(vertices, side, box) for vertices in tiles]
-        for vertices, found in zip(tiles, on_side, strict=True):
+        on_side = [_on_side(*each, side, box) for each in zip(tiles, exact_places, strict=True)]
+        for vertices, places, found in zip(tiles, exact_places, on_side, strict=True):
             for number in found:
-                x, y, z = exact = vertices.exact[number]
+                x, y, z = exact = places[number]
                 heights.setdefault((x, y), {})[z] = float(vertices.nearest[number, 2])
                 along[exact[axis]] = float(vertices.nearest[number, axis])
         _separate(along)
@@ -74,23 +77,53 @@ def settled(box: Box, tiles: Iterable[BorderVertices]) -> list[np.ndarray]:
     positions = [np.full(vertices.nearest.shape, np.nan) for vertices in tiles]
     for side, along, on_side in on_sides:
         axis = side.along
-        for vertices, found, at in zip(tiles, on_side, positions, strict=True):
+        for places, found, at in zip(exact_places, on_side, positions, strict=True):
             for number in found:
-                exact = vertices.exact[number]
+                exact = places[number]
                 at[number, side.axis] = side.line
                 at[number, axis] = along[exact[axis]]
                 at[number, 2] = heights[exact[:2]][exact[2]]
     return positions
 
 
-def _on_side(vertices: BorderVertices, side: Side, box: Box) -> list[int]:
+def _are_apart(box: Box, tiles: list[BorderVertices]) -> bool:
+    """Whether no two different points round to the same doubles, nor to a corner of the box what is beside
+    it. As a vertex is exactly on a line of its tile, all that round to the border are then exactly there."""
+    lines = [line for vertices in tiles for line in vertices.exact.values()]
+    nearest = np.concatenate([vertices.nearest[list(vertices.exact)] for vertices in tiles])
+    points = set(lines)
+    corners = [(x, y) for x in (box[0], box[2]) for y in (box[1], box[3])]
+    plan = {line[: line.rindex(b" ")] for line in points}
+    plan.update(f"{_text(x)} {_text(y)}".encode() for x, y in corners)
+    return len(points) == _distinct(nearest) and len(plan) == _distinct(
+        np.concatenate([nearest[:, :2], corners])
+    )
+
+
+def _distinct(rows: np.ndarray) -> int:
+    """How many different rows (N, C) there are."""
+    rows = rows[np.lexsort(rows.T)]
+    return len(rows[:1]) + int((rows[1:] != rows[:-1]).any(axis=1).sum())
+
+
+def _rounded(box: Box, vertices: BorderVertices) -> np.ndarray:
+    """(N, 3): the nearest doubles of those on the border of a box, NaN elsewhere."""
+    at = np.full(vertices.nearest.shape, np.nan)
+    for side in sides_of(box):
+        near = _is_near(vertices.nearest, side, box)
+        at[near] = vertices.nearest[near]
+        at[near, side.axis] = side.line
+    return at
+
+
+def _on_side(vertices: BorderVertices, places: dict[int, _Exact], side: Side, box: Box) -> list[int]:
     """Which vertices are exactly on a side of a box, its ends included."""
     low, high = box[side.along], box[side.along + 2]
     near = vertices.nearest[:, side.along]
     line = _text(side.line)
 
     def is_there(number: int) -> bool:
-        exact = vertices.exact[number]
+        exact = places[number]
         if exact[side.axis] != line:
             return False
         return near[number] not in (low, high) or low <= _fraction(exact[side.along]) <= high
