@@ -287,6 +287,14 @@ def test_a_fault_that_ends_in_the_rock_is_refused_as_without_tiles(tmp_path):
         build_tiles(project, tmp_path / "t", (340, 340))
 
 
+def test_paraview_opens_all_of_them_at_once(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    tiled = build_tiles(sample("fault_blocks"), tmp_path / "t", (900, 900))
+    grid = pyvista.read(tmp_path / "t" / "model.pvtu")
+    cells = np.bincount(grid["block"], minlength=len(tiled.blocks))
+    assert cells.tolist() == [block.cells for block in tiled.blocks]
+
+
 def test_owners_and_seams():
     class Two:
         """Two cubes beside each other."""
