@@ -66,13 +66,15 @@ def build_faulted_tile(
     whole_numbers = _numbered_as_whole(model, whole, window)
     arrays = without_cells(whole_numbers, ~mine)
     labels = _labels(built, whole, window, mine)
-    of_tile = np.cumsum(mine) - 1
+    number = np.arange(int(mine.sum()))
     if frame.cell_kind == "blocks":
         arrays = one_cell_each(arrays, arrays["face_surface"] == _WALL)
-        first = np.full(len(arrays["cell_block"]), len(of_tile), np.int64)
-        np.minimum.at(first, arrays["cell"], np.arange(len(labels[0])))
+        number = arrays["cell"]
+        first = np.full(len(arrays["cell_block"]), len(number), np.int64)
+        np.minimum.at(first, number, np.arange(len(number)))
         labels = labels[0][first], *labels[1:]
-        of_tile = arrays["cell"][of_tile]
+    of_tile = np.full(len(mine), -1)
+    of_tile[mine] = number
     found = _model(frame, whole, window, arrays, labels)
     walls = np.where((found.face_surface == _WALL)[:, None], found.face_cells, np.int32(-1))
     part = native_module().cell_components(np.ascontiguousarray(walls), found.cell_block)
