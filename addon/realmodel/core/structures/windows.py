@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..algebra import norm
 from ..rock_input import RockInput
 from ..tiles.grid import TileGrid, tile_grid, triangles_by_tile
 from ..work import Work, native_module
@@ -235,7 +236,7 @@ class Windows:
         that is far away, all of them."""
         corners, is_continuation, kept = self._continued[number]
         space = np.array([[*around[:2], self._ends[0]], [*around[2:], self._ends[1]]])
-        away = 2 * float(np.linalg.norm(space[1] - space[0]))
+        away = 2 * norm(space[1] - space[0])
         low, high = self._extents[number]
         near = ((low <= space[1] + away) & (high >= space[0] - away)).all(axis=1)
         if number >= len(self.structures.faults) or not near.any():
