@@ -23,7 +23,7 @@ from pathlib import Path
 sys.path[:0] = {[str(ROOT / "addon"), str(Path(__file__).parent)]}
 from large_files import *
 from realmodel.core import PointFile, Surface
-from realmodel.core.mapped_arrays import MappedArrays
+from realmodel.core.mapped_arrays import MappedArrays, read_mapped
 from realmodel.core.readers import points as tables, read_point_file
 from realmodel.distributed.tile_inputs import _read
 from realmodel.core.surface_input import SurfaceInput
@@ -266,8 +266,8 @@ def divided(points, arrays, method):
     for name in boxes:
         (tiles / str(name)).mkdir(parents=True)
     write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
-    with np.load(tiles / "(0, 0)" / "0-0-near.npz") as near:
-        return found, settings, near["points"]
+    near = read_mapped(tiles / "(0, 0)" / "0-0-near.arrays")
+    return found, settings, near["points"]
 
 with MappedArrays(folder / "arrays") as arrays:
     points = arrays.gather(pieces(2_500_000), np.empty((0, 3)))

@@ -349,7 +349,7 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     with Outputs() as outputs, outputs.file(file.with_suffix(".vtu")) as out:
         write_vtu(mesh, out, lambda _share: None)
     store.write(store.file("patches", name), patches)
-    empty = not len(model.vertices)
+    low, high = _extent(model.vertices)
     store.done(
         "joined",
         name,
@@ -357,13 +357,19 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         cells=np.bincount(model.cell_block, minlength=len(model.blocks)).tolist(),
         faces=len(model.face_surface),
         vertices=len(model.vertices),
-        low=[0.0] * 3 if empty else model.vertices.min(axis=0).tolist(),
-        high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
+        low=low,
+        high=high,
         blocks=[asdict(block) for block in model.blocks],
     )
     del model, mesh  # what is mapped
     with suppress(OSError):  # on Windows as long as anything maps it; the folder goes at the end
         store.file("built", name).unlink()
+
+
+def _extent(vertices: np.ndarray) -> tuple[list[float], list[float]]:
+    """The lowest and highest coordinates, 0 where there is no vertex."""
+    axes = vertices.T if len(vertices) else np.zeros((3, 1))  # min(axis=0) would take ten times as long
+    return [float(axis.min()) for axis in axes], [float(axis.max()) for axis in axes]
 
 
 def _places(frame: Frame, box: Box) -> int:

@@ -18,7 +18,7 @@ from ..build_warning import BuildWarning
 from ..errors import BuildFailed, OutputFailed
 from ..exporters.npz import model_arrays, write_arrays
 from ..local_heights import LocalHeights, PartHeights
-from ..mapped_arrays import in_pieces
+from ..mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
@@ -175,11 +175,11 @@ def write_own_points(
 
 def _write(arrays: dict[str, np.ndarray], path: Path) -> None:
     with explained(path), path.open("wb") as file:
-        write_arrays(arrays, file)
+        write_mapped(arrays, file)
 
 
 def _part(rock: int, surface: int | str) -> str:
-    return f"{rock}-{surface}.npz"
+    return f"{rock}-{surface}.arrays"
 
 
 def _parts(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> tuple[dict, dict]:
@@ -206,7 +206,7 @@ def _read_part(folder: Path, rock: int, surface: int | str) -> Part:
         columns = 2 if surface == REGION else 3
         none = np.empty(0, np.int32)
         return Part(np.empty((0, columns)), np.empty((0, 3), np.int32), none, none)
-    arrays = read_arrays(path)
+    arrays = read_mapped(path)
     return Part(*(arrays[name] for name in Part.__dataclass_fields__))
 
 
@@ -226,7 +226,7 @@ def _interpolated(
     """parts: of the rock mass, this one with the plan alone."""
     local, plan, (r, k) = frame.local[key], parts[key[1]], key
     nodes = np.ascontiguousarray(plan.vertices[:, :2])
-    near = read_arrays(folder / _part(r, f"{k}-near")) if local.takes_points else {}
+    near = read_mapped(folder / _part(r, f"{k}-near")) if local.takes_points else {}
     points = near.get("points", np.empty((0, 3)))
     others = {n: part.vertices[:, 2] for n, part in parts.items() if n != REGION}
     z = near["z"] if "z" in near else local.heights(work, points, nodes, threads, others)
@@ -260,7 +260,7 @@ def _older_above(
     """The points of the older surface, in a file if there are some, above one that is to keep off it."""
     if not file.exists():
         return None
-    own = read_arrays(file)
+    own = read_mapped(file)
     beyond = own["points"][:, 2] - heights_at(work, shape, own["points"][:, :2], threads)
     return WrongPoints.of(own["points"], beyond, number, own["numbers"])
 
@@ -273,7 +273,7 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
         for k in range(len(rock.surfaces)):
             path = folder / _part(r, f"{k}-own")
             if (r, k) in frame.sought and path.exists():
-                own[k] = read_arrays(path)
+                own[k] = read_mapped(path)
         shapes = [parts[r, k] for k in range(len(rock.surfaces))]
         shapes = [(part.vertices, part.triangles) if len(part.triangles) else None for part in shapes]
         points = {k: arrays["points"] for k, arrays in own.items()}
