@@ -15,7 +15,6 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 from realmodel.core import (
-    Body,
     InputRefused,
     OutputFailed,
     Project,
@@ -32,7 +31,7 @@ from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, til
 from realmodel.core.tiles.windows import PointWindows
 from realmodel.core.work import native_module
 from realmodel.distributed import build as build_tiles
-from realmodel.distributed import tile_folder
+from realmodel.distributed import run_folder, tile_folder
 from realmodel.distributed.workers import Workers
 from sample_scripts import SAMPLES
 from stacks.generate import random_stack
@@ -706,11 +705,11 @@ def test_nothing_is_left_of_a_model_that_is_refused(tmp_path):
 def test_tiles_compare_positions_by_their_area(tmp_path):
     grid = tile_grid([hilly(10, 0.0, 1)[0]], (25, 50))
     frame = SimpleNamespace(grid=grid)
-    counts = [tile_folder._places(frame, grid.box(*name)) for name in grid]
+    counts = [run_folder.places_of(frame, grid.box(*name)) for name in grid]
     assert 4000 <= sum(counts) <= 4000 + len(counts)
     assert max(counts) < 1.4 * min(counts)
     grid = tile_grid([hilly(10, 0.0, 1)[0]], (2, 2))
-    assert tile_folder._places(SimpleNamespace(grid=grid), grid.box(1, 1)) == 100  # at least
+    assert run_folder.places_of(SimpleNamespace(grid=grid), grid.box(1, 1)) == 100  # at least
 
 
 def test_the_same_bytes_again(tmp_path):
@@ -744,17 +743,17 @@ def test_the_folder_of_another_model_is_refused(monkeypatch, tmp_path):
 
 def test_a_full_disk_stops_it_in_one_line(monkeypatch, tmp_path):
     project = ready()
-    real = tile_folder.write_vtu
+    real = run_folder.write_vtu
 
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(tile_folder, "write_vtu", full)
+    monkeypatch.setattr(run_folder, "write_vtu", full)
     with pytest.raises(OutputFailed, match="No space left on device; make room") as failed:
         build_tiles(project, tmp_path / "t", (60, 60))
     assert "\n" not in str(failed.value)
     assert not list((tmp_path / "t" / "tiles").iterdir())[1:]  # one .npz, its .vtu is missing
-    monkeypatch.setattr(tile_folder, "write_vtu", real)
+    monkeypatch.setattr(run_folder, "write_vtu", real)
     assert_same_blocks(build_tiles(project, tmp_path / "t", (60, 60)), build(project))
 
 
@@ -784,14 +783,6 @@ def test_the_index_opens_in_vtk(tmp_path):
     vertices = build(project).vertices
     low, high = np.array(grid.bounds).reshape(3, 2).T
     assert np.array_equal(low, vertices.min(axis=0)) and np.array_equal(high, vertices.max(axis=0))
-
-
-def test_faults_and_bodies_are_refused(tmp_path):
-    project = ready()
-    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-    project.bodies = [Body("b", vertices, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))]
-    with pytest.raises(UsageError, match="faults or bodies"):
-        build_tiles(project, tmp_path / "t", (30, 30))
 
 
 @pytest.mark.parametrize("size", [(0, 5), (5,), (5, -1), (math.inf, 5), "wide", (1e-9, 5)])

@@ -23,6 +23,7 @@ from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
+from ..structures.entries import Body, Fault
 from ..surface_heights import Triangulation, raise_to
 from ..work import Work, native_module, run
 from ..wrong_sides import WrongPoints, below_older, heights_at
@@ -76,7 +77,14 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
             for surface in entry.rock.surfaces
         ]
         rocks.append(Rock(entry.rock.name, surfaces, base_elevation=entry.rock.base_elevation))
-    return Project(project.name, rocks, project.library, units=project.units)
+    return Project(
+        project.name,
+        rocks,
+        project.library,
+        faults=[Fault(fault.name) for fault in project.faults],
+        bodies=[Body(body.name, property=body.property) for body in project.bodies],
+        units=project.units,
+    )
 
 
 def write_parts(
@@ -375,10 +383,12 @@ def _warnings(inputs: list[RockInput], built: dict, numbers: list[np.ndarray]) -
 
 
 def tile_arrays(model: Model) -> dict[str, np.ndarray]:
-    """A tile's model as arrays: those of others, and what clips its rock masses."""
+    """A tile's model as arrays: those of others, and what clips its rock masses. A tile of a model with
+    faults or bodies is a part of one, which nothing clips."""
     arrays = model_arrays(model)
     for r, entry in enumerate(model.rock_inputs):
-        arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
+        if not model.is_cut:
+            arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
     return arrays
 
 
@@ -414,6 +424,10 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
         blocks=blocks,
         surface_names=arrays["surface_names"].tolist(),
         project=project,
+        is_cut="region_vertices_0" not in arrays,
+        surface_kind=arrays["surface_kind"],
+        cell_compartment=arrays["cell_compartment"],
+        compartment_names=arrays["compartment_names"].tolist(),
     )
     inputs, number = [], 0
     for r, rock in enumerate(project.rocks):
@@ -427,7 +441,7 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
             RockInput(
                 replace(rock, surfaces=surfaces),
                 shapes,
-                (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
+                None if model.is_cut else (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
                 [None] * len(shapes),
                 [None] * len(shapes),
             )
