@@ -332,6 +332,7 @@ def assert_same_heights(tiled, whole):
 def of_all_kinds():
     """Surfaces whose heights follow from all points, from a few numbers, or from other surfaces."""
     far = scattered(60, 20, 30)
+    patch = on_a_grid((12, 9), (4, 5), (15, 12), 0.3, 60, 2, left_out=0.05)
     far[:, :2] = 30 + 0.4 * far[:, :2]  # there are nodes outside their hull, and far from them
     surfaces = [
         Surface("deep", method="constant", options={"value": -8.0}),
@@ -368,6 +369,10 @@ def of_all_kinds():
         Surface(
             "again", method="parallel", options={"to": "raster", "thickness": 2.0}, minimum_thickness=1.0
         ),
+        Surface("short", points=np.add(far, [0, 0, 14]), options={"extrapolate": "none", "variogram": GIVEN}),
+        Surface("cut", points=scattered(60, 4, 45), method="tin", options={"extrapolate": "none"}),
+        Surface("flat", points=np.add(far, [0, 0, 22]), method="plane", options={"extrapolate": "none"}),
+        Surface("patch", points=patch, method="grid", options={"extrapolate": "none"}),
     ]
     surfaces[3].minimum_thickness = 1.0
     return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
@@ -393,6 +398,19 @@ def test_heights_that_take_more_than_the_points_around(monkeypatch, tmp_path):
         *("constant", "plane", "parallel", "kriging", "universal_kriging", "spline", "idw", "grid")
     }
     assert {count for method, count in made - {None} if method in ("constant", "plane")} == {0}
+
+
+def test_a_surface_that_ends_before_the_region_begins(tmp_path):
+    """Is refused as in the undivided model, once no tile has any of it."""
+    points = scattered(60, 1) * [0.01, 0.01, 1] - [40, 40, 0]
+    surfaces = [Surface("away", points=points, options={"extrapolate": "none", "variogram": GIVEN})]
+    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=9.0, base_elevation=-30.0)])
+    with pytest.raises(InputRefused) as expected:
+        build(project)
+    assert "no triangle of the region's mesh" in str(expected.value)
+    with pytest.raises(InputRefused) as found:
+        build_tiles(project, tmp_path / "t", (40, 25))
+    assert str(found.value) == str(expected.value)
 
 
 def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
@@ -430,7 +448,7 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
 
 
 def test_surfaces_that_tiles_leave_to_the_lead():
-    """Those that end, and those that others need that are made as a whole."""
+    """Those of one system, those that need one that ends, and those that such ones need."""
     points = scattered(60, 1)
     surfaces = [
         Surface("ends", points=points, options={"extrapolate": "none"}),

@@ -139,6 +139,7 @@ def write_certain_heights(
     certain. boxes: around the nodes of each tile, of which PLAN is written."""
     part, wider = _part(rock, f"{surface}-near"), 1.0
     heights: dict[Name, np.ndarray] = {}
+    waiting: dict[Name, np.ndarray] = {}  # the nodes whose heights are not certain
     while boxes:
         names = list(boxes)
         windows = PointWindows(points, list(boxes.values()), local.needed, wider=wider)
@@ -148,14 +149,15 @@ def write_certain_heights(
                     near.add(names[box], piece[which])
             for number, name in enumerate(names):
                 nodes = _read_part(folder_of(name), rock, PLAN).vertices[:, :2]
-                z = heights.setdefault(name, np.full(len(nodes), np.nan))
-                open_ones = np.flatnonzero(np.isnan(z))
-                asked, window = np.ascontiguousarray(nodes[open_ones]), windows.window(number)
+                z = heights.setdefault(name, np.empty(len(nodes)))
+                left = waiting.setdefault(name, np.arange(len(nodes)))
+                asked, window = np.ascontiguousarray(nodes[left]), windows.window(number)
                 task = partial(
                     local.certain_heights, points=near.of(name), nodes=asked, window=window, threads=1
                 )
                 found, certain = run(task)
-                z[open_ones[certain]] = found[certain]
+                z[left[certain]] = found[certain]
+                waiting[name] = left[~certain]
                 if certain.all():
                     _write({"z": heights.pop(name)}, folder_of(name) / part)
                     del boxes[name]
@@ -238,7 +240,12 @@ def _interpolated(
     points = near.get("points", np.empty((0, 3)))
     others = {n: part.vertices[:, 2] for n, part in parts.items() if n != REGION}
     z = near["z"] if "z" in near else local.heights(work, points, nodes, threads, others)
-    found = PartHeights(float(z.min()), float(z.max()))
+    known = z[np.isfinite(z)]
+    found = PartHeights(
+        float(known.min(initial=np.inf)),
+        float(known.max(initial=-np.inf)),
+        int(np.isfinite(z)[plan.triangles].all(axis=1).sum()),
+    )
     own = ((nodes >= box[:2]) & (nodes < box[2:])).all(axis=1)  # each node in one tile
     if local.settings.get("radius") is not None:
         beyond = local.beyond_radius(work, points, np.ascontiguousarray(nodes[own]), threads)
@@ -259,7 +266,15 @@ def _interpolated(
                 worst=int(plan.of_vertices[worst]),
                 place=tuple(nodes[worst].tolist()),
             )
-    return Interpolated(replace(plan, vertices=np.column_stack([nodes, z])), found, above)
+    part = replace(plan, vertices=np.column_stack([nodes, z]))
+    return Interpolated(part if len(known) == len(z) else _where_known(part), found, above)
+
+
+def _where_known(part: Part) -> Part:
+    """The triangles all of whose vertices have a height."""
+    known = np.isfinite(part.vertices[:, 2])[part.triangles].all(axis=1)
+    rest = part_of((part.vertices, part.triangles), np.flatnonzero(known))
+    return replace(rest, numbers=part.numbers[known], of_vertices=part.of_vertices[rest.of_vertices])
 
 
 def _older_above(
