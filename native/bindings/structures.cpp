@@ -121,7 +121,7 @@ std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArr
 py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides>>& models,
                          const std::vector<StructureArrays>& structures,
                          const Array<std::uint8_t>& acts, int threads, Progress* control,
-                         const std::vector<ContinuedArrays>& continued) {
+                         const std::vector<ContinuedArrays>& continued, double largest) {
     std::vector<PartArrays> arrays;
     for (const auto& [model, sides] : models)
         arrays.emplace_back(model);
@@ -142,7 +142,7 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
         const py::gil_scoped_release release;
         joined = structures::join_models(parts, views,
                                          {acts.data(), static_cast<std::size_t>(acts.size())},
-                                         threads, control, beyond);
+                                         threads, control, beyond, largest);
     }
     py::dict result = complex_arrays(joined.complex);
     result["cell_part"] = to_array(std::move(joined.cell_part));
@@ -211,13 +211,14 @@ outside of a body, -1 below or inside, 0 where there is none beyond a fault that
 InputError (surface: the number of the structure) and Cancelled.)");
     module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
                py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
-               py::arg("continued") = std::vector<ContinuedArrays>(),
+               py::arg("continued") = std::vector<ContinuedArrays>(), py::arg("largest") = 0.0,
                R"(Models of the parts that faults and bodies leave, cut by them and joined.
 
 models: list of (dict as of structure_parts, sides: one a structure; 0: either). structures: as of
 structure_parts. acts: (S, B) uint8, whether a structure divides a block. continued: of each structure,
-as of continued_structures, or of some of its triangles; empty: it is continued here. Returns the arrays of a
-complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
+as of continued_structures, or of some of its triangles; empty: it is continued here. largest: the largest
+coordinate of the whole that these models are a piece of, which says how coarse rounding is; 0: theirs
+says. Returns the arrays of a complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
 model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
     module.def(
         "continued_structures", &continued_structures, py::arg("structures"), py::arg("box"),

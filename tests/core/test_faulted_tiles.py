@@ -201,6 +201,45 @@ def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path
     assert seen == [0] * len(tiled.tiles) == [0] * 16
 
 
+def jittered(n, number, faults, throw):
+    """A surface over the unit square with triangles of its own, displaced by planes."""
+    rng = np.random.default_rng(number)
+    vertices, triangles = lattice(n, lambda x, y: 0.1 * number + 0.03 * np.sin(7 * x + number), 1.0)
+    inside = ((vertices[:, :2] > 0) & (vertices[:, :2] < 1)).all(axis=1)
+    vertices[inside, :2] += rng.uniform(-0.3, 0.3, (int(inside.sum()), 2)) / n
+    for fault in faults:
+        a, b, c = fault.vertices[:3]
+        vertices[:, 2] += throw * ((vertices - a) @ np.cross(b - a, c - a) > 0)
+    return vertices, triangles
+
+
+def test_rounding_is_judged_alike_in_all_tiles(tmp_path, monkeypatch):
+    """Tiles in the southwest have smaller coordinates, and so finer ones."""
+    faults = []
+    for number, (x, lean, turned) in enumerate(
+        [(0.175, 0.3, False), (0.425, -0.2, False), (0.43, 0.1, True)]
+    ):
+        corners = np.array([[x - lean * z, y, z] for z, y in ((-2, -1), (-2, 2), (2, 2), (2, -1))], float)
+        if turned:
+            corners = corners[:, [1, 0, 2]]
+        faults.append(Fault(f"F{number}", corners, np.array([[0, 1, 2], [0, 2, 3]])))
+    surfaces = [Surface(f"S{k}", *jittered(40, k, faults, 0.02)) for k in range(8)]
+    project = Project("leaning", [Rock("rock", surfaces)], faults=faults)
+    asked, found = [], []
+    real = Windows.window
+
+    def look(self, work, tile, farther=0):
+        asked.append(farther)
+        return real(self, work, tile, farther)
+
+    monkeypatch.setattr(Windows, "window", look)
+    for size in (2.0, 0.501):
+        tiled = build_tiles(project, tmp_path / f"{size}", (size, size))
+        found.append({key for tile in tiled.tiles for key in cell_keys(tile.model())})
+    assert found[0] == found[1]
+    assert asked == [0] * 5
+
+
 def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
     project = faulted()
     whole, asked = build(project), []

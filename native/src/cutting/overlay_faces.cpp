@@ -18,7 +18,7 @@ using spatial::BoxTree;
 /// The faces that come near the surface: near the box of one of its triangles, and not all to one
 /// side of the triangle's plane.
 void SurfaceOverlay::find_active_faces() {
-    margin_ = rounding_of(surface_.vertices);
+    margin_ = std::max(margin_, rounding_of(surface_.vertices));
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
             margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));

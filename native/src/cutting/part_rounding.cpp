@@ -18,7 +18,7 @@ using spatial::Box;
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
                            const std::array<bool, 2>& touches, int threads,
-                           const Progress* progress, bool joins_models)
+                           const Progress* progress, bool joins_models, double least_rounding)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
@@ -26,7 +26,8 @@ PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_
       touches_(touches),
       threads_(threads),
       progress_(progress),
-      joins_models_(joins_models) {
+      joins_models_(joins_models),
+      least_rounding_(least_rounding) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)

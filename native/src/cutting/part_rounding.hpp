@@ -29,7 +29,7 @@ public:
     ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
                  std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches, int threads,
-                 const Progress* progress, bool joins_models = false);
+                 const Progress* progress, bool joins_models = false, double least_rounding = 0);
     void run();
 
 private:
@@ -113,6 +113,7 @@ private:
     int threads_;
     const Progress* progress_;
     bool joins_models_;
+    double least_rounding_;
 
     std::vector<Position> vertices_;      ///< of the model, as `at` gives them
     std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more

@@ -222,7 +222,7 @@ bool PartRounding::leaves_wall(NodeId from, NodeId to) const {
 /// Contracts edges of new nodes that are as short as rounding, one after another, where no part
 /// comes to touch itself for it: what two models have in common was rounded in each by itself.
 bool PartRounding::join_short_edges() {
-    const double allowed = rounding_of(vertices_);
+    const double allowed = std::max(rounding_of(vertices_), least_rounding_);
     constexpr std::size_t kPieces = 1 << 12;  // at a time
     std::vector<std::vector<std::array<NodeId, 2>>> found((pieces_.size() + kPieces - 1) / kPieces);
     parallel_ranges(

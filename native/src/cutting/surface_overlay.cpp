@@ -26,12 +26,13 @@ double computed_ulps(double x) {
 }  // namespace
 
 SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
-                               Progress* progress)
+                               Progress* progress, double least_rounding)
     : model_(model),
       surface_(surface),
       threads_(threads),
       progress_(progress),
-      arrangement_(points_) {
+      arrangement_(points_),
+      margin_(least_rounding) {
     find_active_faces();
     divide_active_faces();
     overlay_all();

@@ -24,8 +24,10 @@ using exact::SpacePointId;
 /// with that the model's cells may come to overlap by as much, which whoever uses this must bear.
 class SurfaceOverlay {
 public:
+    /// @param least_rounding  what coordinates may be off by at least, where the model is a piece
+    ///                        of one with larger coordinates
     SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
-                   Progress* progress);
+                   Progress* progress, double least_rounding = 0);
 
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
@@ -147,7 +149,7 @@ private:
     exact::SpacePoints points_;
     arrangement::TriangleArrangement arrangement_;
     std::unique_ptr<spatial::BoxTree> tree_;
-    double margin_ = 0;
+    double margin_;
     spatial::Box model_box_;
     std::vector<std::uint8_t> active_;
     std::vector<std::int32_t> active_faces_;

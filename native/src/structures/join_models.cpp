@@ -7,6 +7,7 @@
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/parallel_sort.hpp"
+#include "base/ulp.hpp"
 #include "cutting/chunked_complex.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
@@ -204,7 +205,8 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// where rounding went beyond them.
 std::optional<Joined> join(const Together& together, const StructureSurface& surface,
                            std::span<const PartModel> models, std::span<const Structure> structures,
-                           std::span<const std::uint8_t> acts, int threads, Progress* progress) {
+                           std::span<const std::uint8_t> acts, double least_rounding, int threads,
+                           Progress* progress) {
     const ComplexView all = together.view();
     const cutting::NearPart part(all, together.is_near, threads, progress);
     const ComplexView near = part.view();
@@ -212,7 +214,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
         model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
     begin(progress, 0.1, 0.15, "finding faces near structures");
-    SurfaceOverlay overlay(near, surface.surface, threads, progress);
+    SurfaceOverlay overlay(near, surface.surface, threads, progress, least_rounding);
     begin(progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, progress);
     const StructureSides sides(overlay, winding, surface, structures, progress);
@@ -224,7 +226,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     cutting::SurfaceParts made(overlay, winding, wanted, progress);
     begin(progress, 0.85, 0.92, "rounding what was cut");
     cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          threads, progress, true)
+                          threads, progress, true, least_rounding)
         .run();
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
@@ -278,7 +280,7 @@ std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> s
 
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
                    std::span<const std::uint8_t> acts, int threads, Progress* progress,
-                   std::span<const ContinuedStructure> continued) {
+                   std::span<const ContinuedStructure> continued, double largest) {
     Box rock;
     for (const PartModel& own : models) {
         cutting::check_model(own.model);
@@ -295,10 +297,11 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     }
     Together together(models, places, threads, progress);
     together.share_vertices(threads, progress);
-    if (auto joined = join(together, surface, models, structures, acts, threads, progress))
+    const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
+    if (auto joined = join(together, surface, models, structures, acts, least, threads, progress))
         return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
-    return *join(together, surface, models, structures, acts, threads, progress);
+    return *join(together, surface, models, structures, acts, least, threads, progress);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,

@@ -198,8 +198,11 @@ class PlanGrid:
         if not len(corners):
             return
         self.origin, self.last = self.low.min(axis=0), self.high.max(axis=0)
-        self.count = int(np.clip(int(np.sqrt(len(corners))), 1, 512))
         size = self.last - self.origin
+        # no cells that are much smaller than polygons: where many lie over each other there would be too many
+        usual = (self.high - self.low).mean(axis=0)
+        most = int(np.min(size[usual > 0] / usual[usual > 0], initial=512))
+        self.count = int(np.clip(int(np.sqrt(len(corners))), 1, max(1, most)))
         self.step = np.where(size > 0, size / self.count, 1.0)
         first, last = (self._cells(at) for at in (self.low, self.high))
         spans = last - first + 1

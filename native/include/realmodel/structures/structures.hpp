@@ -73,12 +73,14 @@ struct Joined {
 /// @param acts    S x B: whether a structure divides a block of the models
 /// @param continued  of each structure, as continued_structures has them; none: they are continued
 ///                   as far as these models reach
+/// @param largest  the largest coordinate of the whole that these models are a piece of, which says
+///                 how coarse rounding is; 0: theirs says
 /// @throws InputError  as parts_of does; kinds bad_model; ends_inside (a fault, and the place where
 ///                     it ends though the rock on both sides differs)
 /// @throws Cancelled
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
                    std::span<const std::uint8_t> acts, int threads, Progress* progress,
-                   std::span<const ContinuedStructure> continued = {});
+                   std::span<const ContinuedStructure> continued = {}, double largest = 0);
 
 /// The side of a structure that points are on: of a fault that of the triangle nearest to each,
 /// of a body by the number of times that a ray from there leaves it. A point on it is above, or
