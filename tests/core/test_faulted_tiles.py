@@ -188,8 +188,8 @@ def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path
     whole, seen = build(project, cells=cells), []
     real = faulted_folder._write_window
 
-    def look(windows, frame, store, name, cancel, farther):
-        real(windows, frame, store, name, cancel, farther)
+    def look(windows, store, name, cancel, farther):
+        real(windows, store, name, cancel, farther)
         seen.append(farther)
         window = faulted_folder._window(store.parts(name) / "window.pickle")
         used = sum(len(triangles) for _, triangles in window.inputs[0].surfaces)
@@ -206,7 +206,7 @@ def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
     whole, asked = build(project), []
     real, around = Windows.window, Windows._around
 
-    def narrow(self, work, box, farther=0):
+    def narrow(self, work, tile, farther=0):
         asked.append(farther)
         calls = []
 
@@ -216,7 +216,7 @@ def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
 
         with monkeypatch.context() as patch:
             patch.setattr(Windows, "_around", least)
-            return real(self, work, box, farther)
+            return real(self, work, tile, farther)
 
     monkeypatch.setattr(Windows, "window", narrow)
     tiled = build_tiles(project, tmp_path / "t", (340, 340))

@@ -71,7 +71,7 @@ def build_faulted(
         for name in asked:
             store.record("joined", name).unlink()
             farther = None if times == _ROUNDS - 1 else 2 ** (times + 1) - 1
-            _write_window(windows, frame, store, name, cancel, farther)
+            _write_window(windows, store, name, cancel, farther)
         waiting = list(asked)
     if windows.snapped is not None:
         warnings.append(BuildWarning(windows.snapped, "joined"))
@@ -102,15 +102,12 @@ def _digest(frame: Frame, windows: Windows) -> str:
 def _write_windows(windows: Windows, frame: Frame, store: Store, cancel) -> list[Name]:
     names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
     for name in names:
-        _write_window(windows, frame, store, name, cancel, 0)
+        _write_window(windows, store, name, cancel, 0)
     return names
 
 
-def _write_window(
-    windows: Windows, frame: Frame, store: Store, name: Name, cancel, farther: int | None
-) -> None:
-    box = frame.grid.box(*name)
-    window = run(lambda work: windows.window(work, box, farther), cancel=cancel)
+def _write_window(windows: Windows, store: Store, name: Name, cancel, farther: int | None) -> None:
+    window = run(lambda work: windows.window(work, name, farther), cancel=cancel)
     with Outputs() as outputs, outputs.file(store.parts(name) / _WINDOW) as file:
         pickle.dump(window, file, pickle.HIGHEST_PROTOCOL)
 

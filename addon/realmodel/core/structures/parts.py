@@ -140,6 +140,7 @@ class Structures:
             sides=np.ascontiguousarray(sides),
             low=low,
             high=high,
+            continued=self.continued and [self.continued[number] for number in numbers],
         )
         return few, first.astype(np.int32)
 

@@ -89,6 +89,7 @@ class Windows:
         self._continued = native_module().continued_structures(given, structures.box)
         corners = [triangles.reshape(-1, 3, 3) for triangles, _, _ in self._continued]
         self._extents = [extents(each) for each in corners]
+        self._sides: dict[int, np.ndarray] = {}  # of faults, at the middles of all tiles
 
     def _sheets(self) -> Iterator[Triangulation]:
         for entry in self.inputs:
@@ -137,17 +138,17 @@ class Windows:
                 high = np.maximum(high, plan.high[met].max(axis=0))
         return *low.tolist(), *high.tolist()
 
-    def window(self, work: Work, box: Box, farther: int | None = 0) -> Window:
-        """That of a tile, or of cells that reach beyond it. farther: by so many more rows of triangles; None:
-        all of them."""
-        safe = self._around(self._around(box))
+    def window(self, work: Work, tile: tuple[int, int], farther: int | None = 0) -> Window:
+        """That of a tile, by its column and row. farther: by so many more rows of triangles; None: all of
+        them."""
+        safe = self._around(self._around(self._grid.box(*tile)))
         if farther is None:
             safe = self._grid.whole
         for _ in range(farther or 0):
             safe = self._around(safe)
         taken = self._around(safe)
         around = self._around(taken)
-        present, fixed = self._structures_near(work, around)
+        present, fixed = self._structures_near(work, tile, around)
         structures, part = self._few(present, fixed, around)
         sheets: list[tuple[Triangulation, np.ndarray]] = []
         of_plan: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
@@ -160,15 +161,14 @@ class Windows:
         window.number_sheets()
         return window
 
-    def _structures_near(self, work: Work, box: Box) -> tuple[list[int], np.ndarray]:
-        """The numbers of the structures that come into a box, and (S,) int8 the side on which all of the box
-        is of the others: 0 where there is no such branch."""
+    def _structures_near(self, work: Work, tile: tuple[int, int], box: Box) -> tuple[list[int], np.ndarray]:
+        """The numbers of the structures that come into a box around a tile, and (S,) int8 the side on which
+        all of the box is of the others."""
         space = np.array([[*box[:2], self._ends[0]], [*box[2:], self._ends[1]]])
         margin = _BESIDE * (space[1] - space[0])
         low, high = space[0] - margin, space[1] + margin
-        middle = space.mean(axis=0)[None]
         structures = self.structures
-        shapes, number = structures.fault_shapes(), {f.name: n for n, f in enumerate(structures.faults)}
+        number = {fault.name: n for n, fault in enumerate(structures.faults)}
         present, fixed = [], np.zeros(len(structures), np.int8)
         for s, (least, most) in enumerate(self._extents):
             if s >= len(structures.faults):
@@ -178,7 +178,7 @@ class Windows:
                 near = ((least <= high) & (most >= low)).all(axis=1)
                 is_there = bool(near.any()) and _any_passes(self._continued[s][0][near], low, high)
                 if not is_there:
-                    fixed[s] = fault_sides(work, middle, shapes[s], self._threads)[0]
+                    fixed[s] = self._sides_of(work, s)[tile[1] * self._grid.columns + tile[0]]
             if is_there:
                 present.append(s)
         # what a fault is beyond one at which it ends, that one says
@@ -187,6 +187,16 @@ class Windows:
                 present += [number[name] for name in structures.faults[s].ends_at]
         present = sorted(set(present))
         return present, fixed
+
+    def _sides_of(self, work: Work, fault: int) -> np.ndarray:
+        """(N,) int8 on which side of a fault the middles of all tiles are, row by row."""
+        if fault not in self._sides:
+            x, y = ((lines[1:] + lines[:-1]) / 2 for lines in (self._grid.x, self._grid.y))
+            plan = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+            middles = np.column_stack([plan, np.full(len(plan), sum(self._ends) / 2)])
+            shape = self.structures.fault_shapes()[fault]
+            self._sides[fault] = fault_sides(work, middles, shape, self._threads)
+        return self._sides[fault]
 
     def _ends_first(self) -> list[int]:
         """The faults, each after those at which it ends."""
