@@ -245,7 +245,8 @@ SCATTERED = """
 from realmodel.core import BuildFailed
 from realmodel.core.local_heights import local_heights
 from realmodel.core.project import Surface
-from realmodel.core.tiles.tile_model import write_windows
+from realmodel.core.tiles.grid import tile_grid
+from realmodel.core.tiles.tile_model import PLAN, write_certain_heights, write_parts, write_windows
 from realmodel.core.work import run
 from realmodel.core.heights import heights
 import numpy as np
@@ -269,6 +270,21 @@ def divided(points, arrays, method):
     near = read_mapped(tiles / "(0, 0)" / "0-0-near.arrays")
     return found, settings, near["points"]
 
+def certain(points, arrays):
+    # heights by triangles, at the corners of a square in four tiles
+    settings = Surface("S", method="natural_neighbour", points=points[:9]).method_options()
+    extent = np.array([[0.0, 0], [1000, 1000]])
+    found, left, _ = run(lambda work: local_heights(work, points, extent, 4, *settings, 1, arrays))
+    corners = np.array([[500.0, 500, 0], [540, 500, 0], [540, 540, 0], [500, 540, 0]])
+    mesh = corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    grid, tiles = tile_grid([corners], (20, 20)), folder / "triangles"
+    for name in grid:
+        (tiles / str(name)).mkdir(parents=True)
+    boxes = write_parts(mesh, 0, PLAN, grid, lambda name: tiles / str(name))
+    write_certain_heights(left, 0, 0, found, boxes, lambda name: tiles / str(name))
+    near, plan = (read_mapped(tiles / "(0, 0)" / f"0-{name}.arrays") for name in ("0-near", "plan"))
+    return settings, np.ascontiguousarray(plan["vertices"][:, :2]), near["z"].tolist()
+
 with MappedArrays(folder / "arrays") as arrays:
     points = arrays.gather(pieces(2_500_000), np.empty((0, 3)))
     divided(points[:100_000], arrays, "kriging")  # the libraries are there then
@@ -280,16 +296,19 @@ with MappedArrays(folder / "arrays") as arrays:
     for method in ("spline", "kriging", "universal_kriging"):
         found, settings, near = divided(points, arrays, method)
         done.append([method, len(near), run(lambda work: found.heights(work, near, nodes, 1)).tolist()])
+    by_triangles, at, z = certain(points, arrays)
     try:
         run(lambda work: heights(work, points, nodes, *settings, 1))
         fits = True
-    except BuildFailed:  # not enough memory
+    except (BuildFailed, MemoryError):  # not enough memory
         fits = False
     resource.setrlimit(resource.RLIMIT_DATA, (-1, -1))
     whole = []
     for method, *_ in done:
         settings = Surface("S", method=method, points=points[:9]).method_options()
         whole.append(run(lambda work: heights(work, points, nodes, *settings, 1)).z.tolist())
+    done.append(["natural_neighbour", 1000, z])
+    whole.append(run(lambda work: heights(work, points, at, *by_triangles, 1)).z.tolist())
 print(json.dumps([done, fits, whole]))
 """
 
