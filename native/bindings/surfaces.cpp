@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hull_corners, outside_hull, tin, natural_neighbour, surface_heights, dsi.
+// hull_corners, hull_border, outside_hull, tin, natural_neighbour, and both of parts of points;
+// surface_heights, dsi.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
+#include <array>
 #include <utility>
 
 #include "realmodel/base/progress.hpp"
@@ -28,6 +31,16 @@ Array<double> hull_corners(const Array<double>& nodes) {
     return to_array(std::move(corners));
 }
 
+Array<std::int32_t> hull_border(const Array<double>& nodes) {
+    const auto given = rows<2>(nodes, "nodes");
+    std::vector<std::int32_t> border;
+    {
+        const py::gil_scoped_release unlocked;
+        border = interpolation::hull_border(given);
+    }
+    return to_array(std::move(border));
+}
+
 py::array outside_hull(const Array<double>& points, const Array<double>& nodes, int threads,
                        Progress* control) {
     const auto from = rows<3>(points, "points");
@@ -51,6 +64,23 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
         z = method(from, to, threads, control);
     }
     return to_array(std::move(z));
+}
+
+template <auto method>
+py::tuple on_part(const Array<double>& points, const Array<double>& nodes,
+                  const Array<double>& border, const std::array<double, 4>& all,
+                  const std::array<double, 4>& window, bool is_whole, int threads,
+                  Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const auto to = rows<2>(nodes, "nodes");
+    const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
+    interpolation::PartValues found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = method(from, to, around, threads, control);
+    }
+    return py::make_tuple(to_array(std::move(found.z)),
+                          to_array(std::move(found.certain)).attr("view")("bool"));
 }
 
 Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
@@ -98,6 +128,10 @@ void bind_surfaces(py::module_& module) {
     using py::arg;
     module.def("hull_corners", &hull_corners, arg("nodes"),
                R"(The corners (H, 2) of the convex hull of finite nodes (N, 2). Exact.)");
+    module.def("hull_border", &hull_border, arg("nodes"),
+               R"(The numbers (B,) of nodes (N, 2) on the border of their convex hull, no two equal.
+
+Counterclockwise; of nodes in one line all, from one end. Exact.)");
     module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"), arg("threads") = 0,
                arg("control") = py::none(),
                R"(The nodes (N, 2) outside the convex hull of points (P, 3) in plan: (N,) bool.)");
@@ -111,6 +145,23 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cance
     module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbors>,
                arg("points"), arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
+    module.def(
+        "tin_of_part", &on_part<interpolation::linear_on_part>, arg("points"), arg("nodes"),
+        arg("border"), arg("all"), arg("window"), arg("is_whole"), arg("threads") = 0,
+        arg("control") = py::none(),
+        R"(tin at nodes (N, 2) from a part of some points, in their order, the first of all before them.
+
+points    (P, 3) float64, no two at one place
+border    (B, 3): those of all points that hull_border gives, for coordinates from the first of all
+all       low x, low y, high x, high y of all points
+window    of the box of which the part has all points
+is_whole  whether these are all points
+
+Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)");
+    module.def("natural_neighbour_of_part", &on_part<interpolation::natural_neighbors_of_part>,
+               arg("points"), arg("nodes"), arg("border"), arg("all"), arg("window"),
+               arg("is_whole"), arg("threads") = 0, arg("control") = py::none(),
+               R"(natural_neighbour at nodes; arguments and result as tin_of_part.)");
     module.def(
         "surface_heights", &surface_heights, arg("vertices"), arg("triangles"), arg("nodes"),
         arg("threads") = 0, arg("control") = py::none(),

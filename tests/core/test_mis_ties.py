@@ -21,7 +21,11 @@ def as_they_are(points, is_once):
         z = points[numbers, 2]
         apart = np.ptp(z)
         if apart > tolerated or (apart == 0 and not is_once):
-            left |= {number: points[number, 2] for number in numbers}
+            seen = set()  # of equal ones the first
+            for number in numbers:
+                if not is_once or points[number, 2] not in seen:
+                    left[number] = points[number, 2]
+                seen.add(points[number, 2])
             continue
         left[numbers[0]] = z[0]
         if apart > 0:

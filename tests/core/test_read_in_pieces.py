@@ -21,7 +21,7 @@ from pathlib import Path
 sys.path[:0] = {[str(ROOT / "addon"), str(Path(__file__).parent)]}
 from large_files import *
 from realmodel.core import PointFile, Surface
-from realmodel.core.mapped_arrays import MappedArrays
+from realmodel.core.mapped_arrays import MappedArrays, read_mapped
 from realmodel.core.readers import points as tables, read_point_file
 from realmodel.distributed.tile_inputs import _read
 from realmodel.core.surface_input import SurfaceInput
@@ -151,7 +151,7 @@ def peak(scale):
         for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
-        found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
+        found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
         boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
         write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
         peak = tracemalloc.get_traced_memory()[1]
@@ -220,14 +220,14 @@ def pieces(count):
 def divided(points, arrays, method):
     settings = Surface("S", method=method, points=points[:9]).method_options()
     extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, *settings, 1, arrays))
+    found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
     tiles = folder / method
     boxes = {(0, 0): (500.0, 500, 510, 510), (1, 0): (510.0, 500, 520, 510)}
     for name in boxes:
         (tiles / str(name)).mkdir(parents=True)
     write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
-    with np.load(tiles / "(0, 0)" / "0-0-near.npz") as near:
-        return found, settings, near["points"]
+    near = read_mapped(tiles / "(0, 0)" / "0-0-near.arrays")
+    return found, settings, near["points"]
 
 with MappedArrays(folder / "arrays") as arrays:
     points = arrays.gather(pieces(2_500_000), np.empty((0, 3)))

@@ -26,7 +26,7 @@ from realmodel.core import (
     load_project,
     open_tiles,
 )
-from realmodel.core.local_heights import LocalHeights
+from realmodel.core.local_heights import LocalHeights, local_surfaces
 from realmodel.core.tiles import grid as tile_grids
 from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
 from realmodel.core.tiles.windows import PointWindows
@@ -305,9 +305,9 @@ def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
     """The heights of the undivided model to the last bit, from a part of the points."""
     project, seen, real = from_points(count), [], LocalHeights.heights
 
-    def heights(self, work, points, nodes, threads):
+    def heights(self, work, points, nodes, *others):
         seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, threads)
+        return real(self, work, points, nodes, *others)
 
     monkeypatch.setattr(LocalHeights, "heights", heights)
     tiled = build_tiles(project, tmp_path / "t", (20, 25))
@@ -316,7 +316,7 @@ def test_tiles_interpolate_from_the_points_around(monkeypatch, count, tmp_path):
     assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
     assert count == 9 or any(warning.kind == "wrong_side" for warning in tiled.warnings)
     of_tiles = [points for nodes, points in seen if nodes]
-    assert len(of_tiles) == 5 * len(tiled.tiles)
+    assert len(of_tiles) == 6 * len(tiled.tiles)
     assert count == 9 or np.mean(of_tiles) < 0.7 * count
     assert_same_heights(tiled, whole)
 
@@ -328,6 +328,125 @@ def assert_same_heights(tiled, whole):
         for k in range(len(whole.surface_names)):
             known = {tuple(place): z for *place, z in whole.surface(k)[0].tolist()}
             assert all(known[x, y] == z for x, y, z in model.surface(k)[0].tolist())
+
+
+def of_all_kinds():
+    """Surfaces whose heights follow from all points, from a few numbers, or from other surfaces."""
+    far = scattered(60, 20, 30)
+    far[:, :2] = 30 + 0.4 * far[:, :2]  # there are nodes outside their hull, and far from them
+    surfaces = [
+        Surface("deep", method="constant", options={"value": -8.0}),
+        Surface(
+            "mean", points=np.concatenate([scattered(60, 1, -6), scattered(6, 1, -6)]), method="constant"
+        ),
+        Surface("fitted", points=scattered(300, 2, -3), method="plane", minimum_thickness=0.5),
+        Surface(
+            "dipping", points=scattered(9, 3, 0), method="plane", options={"dip": 2.0, "dip_direction": 70.0}
+        ),
+        Surface("on top", method="parallel", options={"to": "smooth", "thickness": 0.25}),
+        Surface("smooth", points=scattered(60, 4, 3), method="dsi"),
+        Surface("given", method="parallel", options={"to": 9.5, "thickness": -1.0}, minimum_thickness=2.0),
+        Surface("all", points=scattered(90, 5, 8), method="kriging", options={"neighbours": 0}),
+        Surface("drift", points=scattered(60, 6, 11), method="universal_kriging", options={"neighbours": 0}),
+        Surface("bent", points=scattered(60, 7, 14), method="spline", options={"neighbours": 0}),
+        Surface("weighted", points=scattered(60, 8, 17), method="idw", options={"neighbours": 0}),
+        Surface(
+            "near", points=np.add(far, [0, 0, -9]), method="idw", options={"neighbours": 0, "radius": 12.5}
+        ),
+        Surface("nearer", points=np.add(far, [0, 0, -6]), options={"neighbours": 9, "radius": 9.0}),
+        Surface("eighths", points=scattered(2400, 9, 26), options={"octants": 1, "neighbours": 5}),
+        Surface("sectors", points=scattered(900, 10, 29), method="idw", options={"octants": 2}),
+        Surface(
+            "ends", points=np.add(far, [0, 0, 2]), options={"extrapolate": "nearest", "variogram": GIVEN}
+        ),
+        Surface("stops", points=np.add(far, [0, 0, 4]), method="spline", options={"extrapolate": "nearest"}),
+        Surface(
+            "raster",
+            points=on_a_grid((12, 9), (4, 5), (15, 12), 0.3, 36, 2, left_out=0.2),
+            method="grid",
+            options={"extrapolate": "nearest"},
+        ),
+        Surface(
+            "again", method="parallel", options={"to": "raster", "thickness": 2.0}, minimum_thickness=1.0
+        ),
+    ]
+    surfaces[3].minimum_thickness = 1.0
+    return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
+
+
+def test_heights_that_take_more_than_the_points_around(monkeypatch, tmp_path):
+    """By the tiles, with the heights of the undivided model to the last bit."""
+    project, made, real = of_all_kinds(), set(), LocalHeights.heights
+
+    def heights(self, work, points, nodes, *others):
+        made.add((self.method, len(points)) if len(nodes) else None)
+        return real(self, work, points, nodes, *others)
+
+    monkeypatch.setattr(LocalHeights, "heights", heights)
+    tiled, whole = build_tiles(project, tmp_path / "t", (40, 25)), build(project)
+    assert_same_heights(tiled, whole)
+    assert_same_blocks(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+    kinds = {warning.kind for warning in tiled.warnings}
+    assert {"minimum_thickness", "wrong_side", "points"} <= kinds
+    assert any("within the radius" in str(warning) for warning in tiled.warnings)
+    assert {method for method, _ in made - {None}} == {
+        *("constant", "plane", "parallel", "kriging", "universal_kriging", "spline", "idw", "grid")
+    }
+    assert {count for method, count in made - {None} if method in ("constant", "plane")} == {0}
+
+
+def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
+    """Those that are certain: of scattered points, on a lattice, where all circles are through four points,
+    with few points and far apart, in one line, and where there are nodes outside the hull."""
+    lattice = on_a_grid((34, 30), (4, 4), (-15, -12), 0, 8, 2)
+    aside = on_a_grid((40, 30), (1.5, 1.5), (25, 20), 0.3, 14, 3)
+    line = np.column_stack([np.linspace(0, 100, 30), np.linspace(10, 70, 30), np.linspace(30, 33, 30)])
+    nearest = {"extrapolate": "nearest"}
+    surfaces = [
+        Surface("natural", points=scattered(3000, 1), method="natural_neighbour"),
+        Surface("linear", points=scattered(3000, 2, 4), method="tin"),
+        Surface("lattice", points=lattice, method="natural_neighbour"),
+        Surface("cells", points=np.add(lattice, [0, 0, 3]), method="tin", minimum_thickness=0.5),
+        Surface("aside", points=aside, method="natural_neighbour"),
+        Surface("near", points=np.add(aside, [0, 0, 4]), method="natural_neighbour", options=nearest),
+        Surface("nearer", points=np.add(aside, [0, 0, 7]), method="tin", options=nearest),
+        Surface("few", points=scattered(12, 3, 25), method="natural_neighbour"),
+        Surface("in line", points=line, method="natural_neighbour"),
+    ]
+    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
+    seen, real = [], LocalHeights.certain_heights
+
+    def certain_heights(self, work, points, nodes, **others):
+        seen.append((len(nodes), len(points)))
+        return real(self, work, points, nodes, **others)
+
+    monkeypatch.setattr(LocalHeights, "certain_heights", certain_heights)
+    tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)
+    assert_same_heights(tiled, whole)
+    assert_same_blocks(tiled, whole)
+    assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))
+    nodes, points = np.array(seen).T
+    assert nodes @ points / nodes.sum() < 900  # of 3000, 1020 and 1200
+
+
+def test_surfaces_that_tiles_leave_to_the_lead():
+    """Those that end, and those that others need that are made as a whole."""
+    points = scattered(60, 1)
+    surfaces = [
+        Surface("ends", points=points, options={"extrapolate": "none"}),
+        Surface("on it", method="parallel", options={"to": "ends", "thickness": 1.0}),
+        Surface("bound", points=points),
+        Surface("smooth", points=points, method="dsi", options={"above": "bound"}),
+        Surface("free", points=points, minimum_thickness=1.0),
+        Surface("under", method="parallel", options={"to": "on it", "thickness": 1.0}),
+        Surface("shown", points=points, method="parallel", options={"to": "free"}),
+        Surface("last", points=points, minimum_thickness=1.0),
+    ]
+    rock = Rock("r", surfaces, region=OUTLINE, edge_length=4.0)
+    assert local_surfaces(rock) == set()
+    surfaces[6] = Surface("apart", points=points)
+    assert local_surfaces(rock) == {4, 6, 7}
 
 
 def on_a_grid(shape, steps, corner, turn, shift, seed, left_out=0.0):
@@ -355,9 +474,9 @@ def test_grids_are_interpolated_by_windows(monkeypatch, tmp_path):
     project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=3.0, base_elevation=-30.0)])
     seen, real = [], LocalHeights.heights
 
-    def heights(self, work, points, nodes, threads):
+    def heights(self, work, points, nodes, *others):
         seen.append((len(nodes), len(points)))
-        return real(self, work, points, nodes, threads)
+        return real(self, work, points, nodes, *others)
 
     monkeypatch.setattr(LocalHeights, "heights", heights)
     tiled, whole = build_tiles(project, tmp_path / "t", (20, 25)), build(project)
@@ -419,7 +538,7 @@ def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):
 
     monkeypatch.setattr(tile_folder, "prepared", prepared)
     tiled = build_tiles(project, tmp_path / "t", (30, 25))
-    assert found == [(0, chosen[0]), (1, chosen[1])]
+    assert found == list(enumerate(chosen))
     assert_same_blocks(tiled, whole)
     assert_same_heights(tiled, whole)
     assert sorted(map(str, tiled.warnings)) == sorted(map(str, whole.warnings))

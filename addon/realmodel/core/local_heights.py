@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces of which each height follows from the points nearest to it: parts of them are interpolated apart,
-from the points around them, and have the same heights to the last bit."""
+"""Surfaces of which a part of the nodes is interpolated apart, from the points around them or from a few
+numbers, and has the same heights to the last bit."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .build_warning import BuildWarning
 from .errors import InputRefused
 from .heights import from_neighbours
-from .heights.interpolation import Task, run_method
+from .heights.extrapolation import hull_border, hull_corners, outside_hull, replace_extrapolated
+from .heights.interpolation import Result, Task, run_method
+from .heights.plain import Plane, fitted_plane, mean_height
 from .heights.regular_grid import (
     RegularGrid,
     bilinear,
@@ -23,73 +27,184 @@ from .mapped_arrays import MappedArrays, in_memory
 from .methods import METHODS
 from .mis_ties import each_place_once, without_mis_ties
 from .project import Rock, Surface
-from .surface_heights import needed_surfaces
+from .surface_heights import named_surfaces, needed_surfaces, raised_above
 from .work import Work, native_module
 
+Box = tuple[float, float, float, float]  # low x, low y, high x, high y
 _MOST = 1e150  # as data_points.cpp
+_NEIGHBORS_OF_TRIANGLES = 32  # points around a place in the first window where triangles are looked for
+_LOOKED_AT = 64  # as neighbor_search.cpp: times the points wanted, until octants may stay empty
 
 
 @dataclass(frozen=True)
 class LocalHeights:
-    """What the parts of a surface have in common. needed: how many of the points nearest to a node count.
-    lowest, highest: of the points. known: for kriging the variogram of all points; spacing: for splines their
-    mean spacing; grid: which one they are."""
+    """What the parts of a surface have in common. nodes: how many there are of all. needed: how many of the
+    points nearest to a node count, and those within `reach` of it. lowest, highest: of the points.
+
+    known: for kriging the variogram of all points; spacing: for splines their mean spacing; grid: which one
+    they are; fit: what takes no points. hull: the corners of their hull, where heights beyond it are others.
+    border: for triangles of points, those on the border of their hull, and the box around all. over: the
+    number of the surface that it is parallel to, or a height. least: the thickness that it keeps above the
+    surface before it.
+    """
 
     method: str
     settings: dict
-    needed: int
-    known: from_neighbours.Structure | None
-    lowest: float
-    highest: float
+    nodes: int
+    needed: int = 0
+    lowest: float = 0.0
+    highest: float = 0.0
+    reach: float = 0.0
+    known: from_neighbours.Structure | None = None
     spacing: float = 0.0
     grid: RegularGrid | None = None
+    fit: Plane | float | None = None
+    hull: np.ndarray | None = None
+    border: tuple[np.ndarray, Box] | None = None
+    over: int | float | None = None
+    least: float | None = None
 
-    def heights(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
+    @property
+    def takes_points(self) -> bool:
+        return self.needed > 0
+
+    def heights(
+        self,
+        work: Work,
+        points: np.ndarray,
+        nodes: np.ndarray,
+        threads: int,
+        others: Mapping[int, np.ndarray] | None = None,
+    ) -> np.ndarray:
         """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
-        first of them and the others in their order, with the `needed` nearest to each node."""
-        task = Task(work, points, nodes, self.settings, threads)
-        if self.known is not None:
-            return from_neighbours.krige(task, self.known).z
-        if self.grid is not None:
-            return bilinear(task, self.grid).z
-        if self.method == "spline":
-            return from_neighbours.thin_plate(task, self.spacing).z
-        return run_method(self.method, task).z
+        first of them and the others in their order, with the `needed` nearest to each node. others: the
+        heights at the nodes of other surfaces, by their numbers. Not raised above the surface before."""
+        task = self._task(work, points, nodes, threads)
+        if self.over is not None:
+            below = others[self.over] if isinstance(self.over, int) else np.full(len(nodes), self.over)
+            return below + self.settings["thickness"]
+        return self._extrapolated(task, self._result(task)).z
 
-    def runs_away(self, lowest: float, highest: float) -> list[str]:
-        """As run.runs_away, of the lowest and highest of all heights."""
+    def certain_heights(
+        self, work: Work, points: np.ndarray, nodes: np.ndarray, window: Box, threads: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """`heights` where there is a border, from all points in a window, the first of all before them; and
+        (N,) bool, where they are certain. The others need a larger window."""
+        border, box = self.border
+        is_whole = all(window[k] <= box[k] and box[k + 2] <= window[k + 2] for k in (0, 1))
+        of_part = getattr(native_module(), f"{self.method}_of_part")
+        task = self._task(work, points, nodes, threads)
+        z, certain = task.run(of_part, points, nodes, border, box, window, is_whole)
+        return self._extrapolated(task, Result(z)).z, certain
+
+    def _extrapolated(self, task: Task, result: Result) -> Result:
+        if self.settings.get("extrapolate") != "nearest":
+            return result
+        outside = result.outside
+        if outside is None:
+            outside = outside_hull(replace(task, points=self.hull))
+        return replace_extrapolated(task, result, outside)
+
+    def _task(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> Task:
+        return Task(work, points, nodes, self.settings, threads)
+
+    def _result(self, task: Task) -> Result:
+        if self.known is not None:
+            return from_neighbours.krige(task, self.known)
+        if self.grid is not None:
+            return bilinear(task, self.grid)
+        if isinstance(self.fit, Plane):
+            return self.fit.at(task.nodes)
+        if self.fit is not None:
+            return Result(np.full(len(task.nodes), self.fit))
+        if self.method == "spline":
+            return from_neighbours.thin_plate(task, self.spacing)
+        return run_method(self.method, task)
+
+    def beyond_radius(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
+        """(N,) bool: the nodes that have no point within the radius."""
+        return from_neighbours.beyond_radius(self._task(work, points, nodes, threads))
+
+    def warnings(self, found: PartHeights, rock: Rock, number: int) -> list[BuildWarning]:
+        """What there is to tell of all nodes."""
+        name = rock.surfaces[number].name
         points = np.array([[0, 0, self.lowest], [0, 0, self.highest]])
-        return runs_away(points, np.array([lowest, highest]), self.method)
+        texts = from_neighbours.without_near_points(found.alone, self.nodes)
+        texts += runs_away(points, np.array([found.lowest, found.highest]), self.method)
+        warnings = [BuildWarning(text, "points", rock.name, name) for text in texts]
+        if found.raised:
+            warnings.append(
+                raised_above(rock, number, found.raised, self.nodes, self.least, found.by, found.place)
+            )
+        return warnings
+
+
+@dataclass(frozen=True)
+class PartHeights:
+    """Of the heights of a part of a surface: the lowest and highest before some were raised. Of those nodes
+    that are counted here: how many have no point within the radius; how many were raised, the farthest by how
+    much, which one this is and where."""
+
+    lowest: float
+    highest: float
+    alone: int = 0
+    raised: int = 0
+    by: float = 0.0
+    worst: int = 0
+    place: tuple[float, float] = (0.0, 0.0)
+
+    def joined(self, other: PartHeights) -> PartHeights:
+        """Both."""
+        worst = min((self, other), key=lambda each: (-each.by, each.worst))
+        return replace(
+            worst,
+            lowest=min(self.lowest, other.lowest),
+            highest=max(self.highest, other.highest),
+            alone=self.alone + other.alone,
+            raised=self.raised + other.raised,
+        )
 
 
 def local_surfaces(rock: Rock) -> set[int]:
-    """The numbers of the surfaces of a rock mass that are such, and that no other surface has to know."""
+    """The numbers of the surfaces of a rock mass that are such. Those that they need, and those that others
+    need, are not among them unless these have heights wherever they are asked for."""
     found = {number for number, surface in enumerate(rock.surfaces) if _is_local(surface)}
-    others = set(range(len(rock.surfaces))) - found
-    while others:
-        needed = {each for number in others for each in needed_surfaces(rock, number)}
-        others = needed & found
-        found -= others
-    return found
+    while True:
+        others = set(range(len(rock.surfaces))) - found
+        asked = {each for number in others for each in needed_surfaces(rock, number)}
+        complete = found | {number for number in others if _is_everywhere(rock.surfaces[number])}
+        lacking = {number for number in found if not complete.issuperset(needed_surfaces(rock, number))}
+        if not found & (asked | lacking):
+            return found
+        found -= asked | lacking
 
 
 def _is_local(surface: Surface) -> bool:
-    if not surface.interpolated or surface.minimum_thickness is not None or not len(surface.points):
+    if not surface.interpolated:
         return False
     method, settings = surface.method_options()
-    return (
-        METHODS[method].is_local
-        and (method == "grid" or settings.get("neighbours", 0) != 0)
-        and settings.get("octants", 0) == 0
-        and not settings.get("radius")
-        and settings["extrapolate"] == "method"
-    )
+    if METHODS[method].needs_points(settings) and not len(surface.points):
+        return False
+    if method == "parallel":
+        return settings["thickness"] is not None
+    extrapolated = ("method",) if method == "plane" else ("method", "nearest", None)
+    is_local = METHODS[method].is_local or METHODS[method].is_triangulated
+    return is_local and settings.get("extrapolate") in extrapolated
+
+
+def _is_everywhere(surface: Surface) -> bool:
+    """Whether a surface that is made as a whole has a height at each node of the region's mesh."""
+    if not surface.interpolated:
+        return False
+    method, settings = surface.method_options()
+    return method != "parallel" and settings.get("extrapolate") != "none"
 
 
 def local_heights(
     work: Work,
     points: np.ndarray,
     extent: np.ndarray,
+    nodes: int,
     method: str,
     settings: dict,
     threads: int,
@@ -111,30 +226,71 @@ def local_heights(
                 counted, _ = without_mis_ties(given, room, gather)
                 grid = find_grid(counted)
                 require_one_height(counted, grid, room=room)
-            elif not are_apart or not _are_usable(points):
+            elif _compares_points(method) and not (are_apart and _are_usable(points)):
                 native.mean_spacing(without_mis_ties(given)[0])  # it refuses them
         told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
-        task = Task(work, points, np.empty((0, 2)), settings, threads)
-        known, spacing = None, 0.0
-        needed = 1 if method == "grid" else settings["neighbours"]  # where the grid lacks a node
-        if "kriging" in method:
-            known = from_neighbours.structure(task, are_apart=True)
-            needed = known.neighbours
-            told += known.warnings
-            known = replace(known, warnings=())
-        elif method == "spline":
-            spacing = native.mean_spacing(points, are_apart=True)
-        found = LocalHeights(method, settings, needed, known, *_range(points[:, 2]), spacing, grid)
-        found.heights(work, np.array(points[:1]), task.nodes, threads)  # of no nodes: it checks the settings
+        found = LocalHeights(method, settings, nodes, grid=grid)
+        if len(points):
+            found = replace(found, lowest=float(points[:, 2].min()), highest=float(points[:, 2].max()))
+        found, of_method = _fitted(found, Task(work, points, np.empty((0, 2)), settings, threads))
+        told += of_method
+        if settings.get("extrapolate") == "nearest":
+            found = replace(found, needed=max(found.needed, 1), hull=hull_corners(points))
+        if found.takes_points:  # of no nodes: it checks the settings
+            found.heights(work, np.array(points[:1]), np.empty((0, 2)), threads)
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    return found, points, told
+    return found, points if found.takes_points else np.empty((0, 3)), told
+
+
+def _fitted(found: LocalHeights, task: Task) -> tuple[LocalHeights, tuple[str, ...]]:
+    """With what the method finds from all points, and what there is to tell of that."""
+    method, settings = found.method, found.settings
+    if method == "grid":
+        return replace(found, needed=1), ()  # where the grid lacks a node
+    if method == "constant":
+        value = settings["value"]
+        return replace(found, fit=mean_height(task.points) if value is None else value), ()
+    if method == "plane":
+        return replace(found, fit=fitted_plane(task.points, settings)), ()
+    if METHODS[method].is_triangulated:
+        border = hull_border(task.points)
+        if len(native_module().hull_corners(np.ascontiguousarray(border[:, :2] - border[0, :2]))) < 3:
+            return replace(found, needed=len(task.points)), ()  # in one line
+        low, high = task.points[:, :2].min(axis=0), task.points[:, :2].max(axis=0)
+        box = (*low.tolist(), *high.tolist())
+        return replace(found, needed=_NEIGHBORS_OF_TRIANGLES, border=(border, box)), ()
+    if method == "parallel":
+        to = settings["to"]
+        return (replace(found, over=float(to)), ()) if isinstance(to, float) else (found, ())
+    told: tuple[str, ...] = ()
+    neighbours = settings["neighbours"]
+    if "kriging" in method:
+        known = from_neighbours.structure(task, are_apart=True)
+        neighbours, told = known.neighbours, known.warnings
+        found = replace(found, known=replace(known, warnings=()))
+    elif method == "spline":
+        found = replace(found, spacing=native_module().mean_spacing(task.points, are_apart=True))
+    octants, radius = settings["octants"], settings["radius"]
+    if not neighbours and not octants and radius is not None:
+        return replace(found, needed=1, reach=radius), told
+    limit = min(neighbours or len(task.points), 8 * octants or len(task.points))
+    return replace(found, needed=_LOOKED_AT * limit + 1 if 0 < octants < limit else limit), told
+
+
+def linked(local: LocalHeights, rock: Rock, number: int) -> LocalHeights:
+    """With the other surfaces that a surface of a rock mass needs."""
+    to = local.settings.get("to")
+    if isinstance(to, str):
+        local = replace(local, over=named_surfaces(rock, number)[to])
+    return replace(local, least=rock.surfaces[number].minimum_thickness)
+
+
+def _compares_points(method: str) -> bool:
+    """Whether a method refuses points at one place of which heights differ."""
+    return METHODS[method].is_triangulated or "neighbours" in METHODS[method].options
 
 
 def _are_usable(points: np.ndarray) -> bool:
     """Whether native code takes them: it squares coordinates."""
     return all(points[:, axis].min() > -_MOST and points[:, axis].max() < _MOST for axis in range(3))
-
-
-def _range(z: np.ndarray) -> tuple[float, float]:
-    return float(z.min()), float(z.max())

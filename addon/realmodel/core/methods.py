@@ -31,7 +31,8 @@ class Method:
 
     instead_of_points: the option that tells what points would, where there is one. on_mesh: whether it needs
     the triangles of the nodes. leaves_one_out: it can tell each point from the others at once. is_local: it
-    gives on a part of the nodes what it gives on all, and is cheap. spreads_thickness: `parallel` may use it.
+    gives on a part of the nodes what it gives on all, and is cheap. is_triangulated: it works on the
+    triangulation of the points. spreads_thickness: `parallel` may use it.
     has_shape: its surface has a shape of its own, for which one or two points are too few. tamed_by: what to
     do where its heights run away from those of the points.
     """
@@ -44,6 +45,7 @@ class Method:
     on_mesh: bool = False
     leaves_one_out: bool = False
     is_local: bool = False
+    is_triangulated: bool = False
     spreads_thickness: bool = False
     has_shape: bool = True
     tamed_by: str | None = None
@@ -292,10 +294,15 @@ METHODS: dict[str, Method] = {
         "Mean of the surrounding points, weighted by the area of their Voronoi cells",
         "from_triangulation.natural_neighbour",
         _EXTRAPOLATE,
+        is_triangulated=True,
         spreads_thickness=True,
     ),
     "tin": Method(
-        "TIN", "Linear in the Delaunay triangles of the points", "from_triangulation.linear", _EXTRAPOLATE
+        "TIN",
+        "Linear in the Delaunay triangles of the points",
+        "from_triangulation.linear",
+        _EXTRAPOLATE,
+        is_triangulated=True,
     ),
     "grid": Method(
         "Grid",

@@ -29,7 +29,7 @@ def without_mis_ties(
 
 
 def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.ndarray, str | None, bool]:
-    """without_mis_ties, and of points that repeat another only the first; whether no two have one place now:
+    """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
     found = _Places(points, room, is_once=True)
     return found.kept(gather), found.told(), not found.has_contradictions
@@ -56,6 +56,10 @@ class _Places:
         merged = ~contradict if is_once else tolerated
         keep = ~merged[place]
         keep[first[merged]] = True
+        if is_once and contradict.any():
+            among = np.flatnonzero(keep)
+            keep[among] = False
+            keep[among[np.unique(rows[among] + 0.0, axis=0, return_index=True)[1]]] = True
         self._keeps[numbers] = keep
         self.has_contradictions |= bool(contradict.any())
         if not tolerated.any():

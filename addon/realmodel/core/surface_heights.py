@@ -145,7 +145,7 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     """The shape, raised to the minimum thickness above the older surface, and what to tell: where it was
     raised."""
     rock = entry.rock
-    surface, older = rock.surfaces[number], rock.surfaces[number - 1]
+    surface = rock.surfaces[number]
     vertices, triangles = shape
     older_vertices, _ = entry.surfaces[number - 1]
     if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
@@ -153,15 +153,32 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     else:
         least = heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
         least += surface.minimum_thickness
-    lift = np.where(np.isfinite(least), least - vertices[:, 2], 0.0)
-    raised = lift > 0
-    if not raised.any():
+    raised, lift = raise_to(vertices[:, 2], least)
+    if raised is None:
         return shape, []
     worst = int(lift.argmax())
-    text = (
-        f"raised at {int(raised.sum())} of {len(vertices)} nodes to stay {surface.minimum_thickness:g} above "
-        f"'{older.name}', by up to {lift[worst]:.4g} at {place_text(vertices[worst, :2])}"
+    place = tuple(vertices[worst, :2].tolist())
+    told = raised_above(
+        rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
     )
-    vertices = vertices.copy()
-    vertices[raised, 2] = least[raised]
-    return (vertices, triangles), [BuildWarning(text, "minimum_thickness", rock.name, surface.name)]
+    return (np.column_stack([vertices[:, :2], raised]), triangles), [told]
+
+
+def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
+    """Heights (N,) raised to the least ones where these are known, None where all are high enough; and by how
+    much each was."""
+    lift = np.where(np.isfinite(least), least - z, 0.0)
+    lift[~(lift > 0)] = 0.0
+    return (np.where(lift > 0, least, z) if lift.any() else None), lift
+
+
+def raised_above(
+    rock: Rock, number: int, count: int, nodes: int, thickness: float, by, place
+) -> BuildWarning:
+    """What to tell of a surface that was raised at some of its nodes to keep its thickness above the one
+    before: by how much at most, and where."""
+    text = (
+        f"raised at {count} of {nodes} nodes to stay {thickness:g} above "
+        f"'{rock.surfaces[number - 1].name}', by up to {by:.4g} at {place_text(place)}"
+    )
+    return BuildWarning(text, "minimum_thickness", rock.name, rock.surfaces[number].name)

@@ -23,6 +23,7 @@ from ..core.errors import place_text
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
+from ..core.local_heights import PartHeights
 from ..core.mapped_arrays import MappedArrays, read_mapped, write_mapped
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles import TiledModel
@@ -303,8 +304,9 @@ def _build(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         "built",
         name,
         warnings=[asdict(warning) for warning in model.warnings],
-        wrong=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
-        heights=[[*key, *of] for key, of in built.heights.items()],
+        below=[[*key, asdict(wrong)] for key, wrong in built.wrong.items()],
+        above=[[*key, asdict(wrong)] for key, wrong in built.above.items()],
+        heights=[[*key, asdict(of)] for key, of in built.heights.items()],
     )
 
 
@@ -347,7 +349,7 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
     with Outputs() as outputs, outputs.file(file.with_suffix(".vtu")) as out:
         write_vtu(mesh, out, lambda _share: None)
     store.write(store.file("patches", name), patches)
-    empty = not len(model.vertices)
+    low, high = _extent(model.vertices)
     store.done(
         "joined",
         name,
@@ -355,13 +357,19 @@ def _join(shared: tuple[_Store, Frame, frozenset], name: Name) -> None:
         cells=np.bincount(model.cell_block, minlength=len(model.blocks)).tolist(),
         faces=len(model.face_surface),
         vertices=len(model.vertices),
-        low=[0.0] * 3 if empty else model.vertices.min(axis=0).tolist(),
-        high=[0.0] * 3 if empty else model.vertices.max(axis=0).tolist(),
+        low=low,
+        high=high,
         blocks=[asdict(block) for block in model.blocks],
     )
     del model, mesh  # what is mapped
     with suppress(OSError):  # on Windows as long as anything maps it; the folder goes at the end
         store.file("built", name).unlink()
+
+
+def _extent(vertices: np.ndarray) -> tuple[list[float], list[float]]:
+    """The lowest and highest coordinates, 0 where there is no vertex."""
+    axes = vertices.T if len(vertices) else np.zeros((3, 1))  # min(axis=0) would take ten times as long
+    return [float(axis.min()) for axis in axes], [float(axis.max()) for axis in axes]
 
 
 def _places(frame: Frame, box: Box) -> int:
@@ -471,8 +479,8 @@ def _entry(name: Name, record: dict) -> TileEntry:
 def _warnings(frame: Frame, store: _Store, names: list[Name]) -> list[BuildWarning]:
     """Those of all tiles; what they say of triangles and points as one."""
     items: dict[tuple, set] = {}
-    wrong: dict[tuple[int, int], WrongPoints] = {}
-    heights: dict[tuple[int, int], list[float]] = {}
+    wrong: dict[tuple[str, int, int], WrongPoints] = {}
+    heights: dict[tuple[int, int], PartHeights] = {}
     for name in names:
         record = store.told("built", name)
         for told in record["warnings"]:
@@ -480,24 +488,26 @@ def _warnings(frame: Frame, store: _Store, names: list[Name]) -> list[BuildWarni
             if told["kind"] != "no_area":
                 key = (*key, told["text"])
             items.setdefault(key, set()).update(told["items"])
-        for r, k, own in record["wrong"]:
-            own = WrongPoints(**own)
-            wrong[r, k] = wrong[r, k].joined(own) if (r, k) in wrong else own
-        for r, k, *of in record["heights"]:
-            heights.setdefault((r, k), []).extend(of)
+        for side in ("below", "above"):
+            _join_each(wrong, [((side, r, k), WrongPoints(**own)) for r, k, own in record[side]])
+        _join_each(heights, [((r, k), PartHeights(**own)) for r, k, own in record["heights"]])
     found = []
     for (r, k), of in sorted(heights.items()):
-        rock = frame.project.rocks[r]
-        for text in frame.local[r, k].runs_away(min(of), max(of)):
-            found.append(BuildWarning(text, "points", rock.name, rock.surfaces[k].name))
-    for (r, k), own in sorted(wrong.items()):
-        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], "below"))
+        found += frame.local[r, k].warnings(of, frame.project.rocks[r], k)
+    for (side, r, k), own in sorted(wrong.items()):
+        found.append(own.warning(frame.project.rocks[r], k, frame.sought[r, k], side))
     for (kind, rock, surface, *text), numbers in items.items():
         if kind == "no_area":
             what = "triangle" if len(numbers) == 1 else "triangles"
             text = [f"{len(numbers)} {what} without area left out"]
         found.append(BuildWarning(text[0], kind, rock, surface, tuple(sorted(numbers))))
     return found
+
+
+def _join_each(found: dict, parts: list[tuple]) -> None:
+    """Adds parts to what others had of the same."""
+    for key, part in parts:
+        found[key] = found[key].joined(part) if key in found else part
 
 
 def write_index(store: _Store, pieces: list[str]) -> None:

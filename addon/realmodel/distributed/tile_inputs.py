@@ -15,10 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
-from ..core.local_heights import LocalHeights, local_heights, local_surfaces
+from ..core.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.mapped_arrays import MappedArrays
 from ..core.project import surface_item
 from ..core.rock_input import RockInput
+from ..core.surface_heights import interpolation_order
 from ..core.surface_input import ReadSurface, SurfaceInput
 from ..core.tiles.grid import TileGrid, tile_grid
 from ..core.tiles.settling import Box
@@ -28,6 +29,7 @@ from ..core.tiles.tile_model import (
     Frame,
     Name,
     without_shapes,
+    write_certain_heights,
     write_own_points,
     write_parts,
     write_windows,
@@ -36,6 +38,7 @@ from ..core.work import Work, native_module, run
 from ..core.wrong_sides import kept_off
 from .workers import Workers
 
+_TILES_AT_ONCE = 16  # of which a worker makes the heights of a surface
 _MADE = 0.9  # of the time: surfaces have their heights
 
 
@@ -96,8 +99,9 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
     for r, entry in enumerate(inputs):
         numbers = flat(entry.rock)
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
-        for k, (found, points, told) in sorted(fitted.items()):
-            local[r, k], near[r, k] = found, points
+        for k in (k for k in interpolation_order(entry.rock) if k in fitted):
+            found, near[r, k], told = fitted[k]
+            local[r, k] = linked(found, entry.rock, k)
             warnings += [
                 BuildWarning(text, "points", entry.rock.name, entry.rock.surfaces[k].name) for text in told
             ]
@@ -105,7 +109,7 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
             own |= {
                 (r, k): surface.points
                 for k, surface in enumerate(entry.rock.surfaces)
-                if surface.interpolated and k > 0 and len(surface.points)
+                if surface.interpolated and len(surface.points) and (k > 0 or 1 in kept_off(entry.rock))
             }
     frame = Frame(
         without_shapes(project, inputs),
@@ -136,7 +140,7 @@ def _fitted(
         surface = entry.rock.surfaces[k]
         points = arrays.place(arrays.keep(surface.points))
         stub = replace(surface, points=None)
-        tasks.append((k, entry.rock.name, stub, points, extent, *surface.method_options()))
+        tasks.append((k, entry.rock.name, stub, points, extent, len(nodes), *surface.method_options()))
     found = {}
     for (k, *_), (local, points, told) in workers.in_any_order(_fit, arrays.folder, tasks, cancel, here=True):
         found[k] = local, arrays.opened(points), told
@@ -145,12 +149,12 @@ def _fitted(
 
 def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, list[str]]:
     """On a worker: what a surface has once for all tiles."""
-    _, rock, surface, points, extent, method, settings = task
+    _, rock, surface, points, extent, nodes, method, settings = task
     arrays = MappedArrays(folder)
 
     def fitted(work: Work):
         given = np.ascontiguousarray(arrays.opened(points))
-        found, left, told = local_heights(work, given, extent, method, settings, 1, arrays)
+        found, left, told = local_heights(work, given, extent, nodes, method, settings, 1, arrays)
         return found, points if left is given else arrays.place(left), told
 
     try:
@@ -263,9 +267,13 @@ def divided(
             met.update(there)
         if k == PLAN:
             boxes[r] = there
-    tasks = [
-        (r, k, arrays.place(points), frame.local[r, k], boxes[r]) for (r, k), points in found.near.items()
-    ]
+    tasks = []
+    for (r, k), points in found.near.items():
+        local, names = frame.local[r, k], list(boxes[r])
+        at_once = _TILES_AT_ONCE if local.border is not None else max(len(names), 1)
+        for first in range(0, len(names), at_once):
+            some = {name: boxes[r][name] for name in names[first : first + at_once]}
+            tasks.append((r, k, arrays.place(points), local, some))
     tasks += [(r, k, arrays.place(arrays.keep(points)), None, None) for (r, k), points in found.own.items()]
     for _ in workers.in_any_order(_divide_points, shared, tasks, cancel, here=True):
         pass
@@ -285,5 +293,7 @@ def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: 
     points = MappedArrays(folder).opened(place)
     if boxes is None:
         write_own_points(points, rock, surface, grid, folder_of)
-    else:
+    elif local.border is not None:
+        write_certain_heights(points, rock, surface, local, boxes, folder_of)
+    elif local.takes_points:
         write_windows(points, rock, surface, local, boxes, folder_of)

@@ -2,9 +2,12 @@
 #include "validation/vertex_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <compare>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -30,22 +33,45 @@ std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
     return hash * 0xBF58476D1CE4E5B9u;
 }
 
-/// The builder's own vertices ascend, and so are distinct; others are compared by a hash of their
-/// positions.
-bool ascends(const ComplexView& model, int threads, const Progress* progress) {
-    std::atomic<bool> broken{false};
+/// How many vertices ascend before one does not.
+std::size_t count_ascending(const ComplexView& model, int threads, const Progress* progress) {
+    std::atomic<std::size_t> ascending{model.vertex_count()};
     in_chunks(model.vertex_count(), threads, progress,
               [&](std::size_t begin, std::size_t end, Findings&) {
-                  if (broken.load(std::memory_order_relaxed)) return;
                   for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
                       if (model.vertex(static_cast<std::int32_t>(v - 1)) <
                           model.vertex(static_cast<std::int32_t>(v)))
                           continue;
-                      broken.store(true, std::memory_order_relaxed);
+                      std::size_t least = ascending.load();
+                      while (v < least && !ascending.compare_exchange_weak(least, v)) {
+                      }
                       return;
                   }
               });
-    return !broken;
+    return ascending;
+}
+
+/// Whether all vertices are distinct, as the builder's own are, which ascend, and few others behind
+/// them. Where they are not in this order it says no: then they are compared by a hash of their
+/// positions.
+bool are_distinct_in_order(const ComplexView& model, int threads, const Progress* progress) {
+    constexpr std::size_t kFew = 64;  // at most one in so many behind
+    const std::size_t ascending = count_ascending(model, threads, progress);
+    std::vector<std::array<double, 3>> behind;
+    if (model.vertex_count() - ascending > ascending / kFew) return false;
+    for (std::size_t v = ascending; v < model.vertex_count(); ++v) {
+        behind.push_back(model.vertex(static_cast<std::int32_t>(v)));
+        if (!std::ranges::all_of(behind.back(), [](double c) { return std::isfinite(c); }))
+            return false;
+    }
+    std::ranges::sort(behind);
+    if (std::ranges::adjacent_find(behind) != behind.end()) return false;
+    const auto numbers = std::views::iota(std::size_t{0}, ascending);
+    return std::ranges::none_of(behind, [&](const auto& place) {
+        return std::ranges::binary_search(numbers, place, {}, [&](std::size_t v) {
+            return model.vertex(static_cast<std::int32_t>(v));
+        });
+    });
 }
 
 /// A vertex with the hash of its position.
@@ -90,7 +116,7 @@ std::vector<EqualPair> equal_pairs(const ComplexView& model, std::span<HashedVer
 }
 
 Findings check_distinct(const ComplexView& model, int threads, const Progress* progress) {
-    if (ascends(model, threads, progress)) return {};
+    if (are_distinct_in_order(model, threads, progress)) return {};
     auto buckets = position_buckets(model, threads, progress);
     std::vector<std::vector<EqualPair>> pairs(buckets.size());
     parallel_chunks(buckets.size(), threads, progress,

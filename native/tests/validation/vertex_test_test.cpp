@@ -49,6 +49,23 @@ TEST(VertexTest, AVertexInThePlaceOfAnotherIsNamedWithIt) {
               Texts{"vertex 2 has the coordinates of vertex 1"});
 }
 
+/// As those that a tile takes over from its neighbors.
+TEST(VertexTest, FewVerticesMayStandBehindThoseThatAscend) {
+    std::vector<std::array<double, 3>> vertices;
+    for (int i = 0; i < 300; ++i)
+        vertices.push_back({0.5 * i, 1, 2});
+    vertices.push_back({7.25, 1, 2});
+    vertices.push_back({3.25, 1, 2});
+    EXPECT_EQ(about_vertices(vertices), Texts{});
+    auto again = vertices;
+    again.push_back({3.25, 1, 2});
+    EXPECT_EQ(about_vertices(again), Texts{"vertex 302 has the coordinates of vertex 301"});
+    again.back()[0] = 4;
+    EXPECT_EQ(about_vertices(again), Texts{"vertex 302 has the coordinates of vertex 8"});
+    again.back()[0] = std::nan("");
+    EXPECT_EQ(about_vertices(again), Texts{});
+}
+
 TEST(VertexTest, BothZerosAreOnePlace) {
     EXPECT_EQ(about_vertices({{0, -0.0, 1}, {5, 5, 5}, {-0.0, 0, 1}}),
               Texts{"vertex 2 has the coordinates of vertex 0"});

@@ -68,13 +68,15 @@ def krige(task: Task, known: Structure | None = None) -> Result:
     }
     if task.left_out:
         z, variance, alone = task.run(native.krige_left_out, task.points, **arguments)
+        warnings += without_near_points(alone, len(z))
     else:
-        z, variance, alone = task.run(native.krige, task.points, task.nodes, **arguments)
-    warnings += _without_near_points(alone, len(z))
+        z, variance, _ = task.run(native.krige, task.points, task.nodes, **arguments)
+        warnings += _beyond_radius(task)
     return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
 
 
-def _without_near_points(alone: int, nodes: int) -> list[str]:
+def without_near_points(alone: int, nodes: int) -> list[str]:
+    """What there is to tell of so many nodes that have no point within the radius."""
     if not alone:
         return []
     return [
@@ -83,13 +85,16 @@ def _without_near_points(alone: int, nodes: int) -> list[str]:
     ]
 
 
-def _beyond_radius(task: Task) -> list[str]:
-    """What there is to tell of nodes that have no point within the radius."""
-    radius = task.settings["radius"]
+def beyond_radius(task: Task) -> np.ndarray:
+    """(N,) bool: the nodes that have no point within the radius."""
+    radius = task.settings.get("radius")
     if radius is None or not len(task.nodes):
-        return []
-    distance = task.run(native_module().nearest_distance, task.points, task.nodes)
-    return _without_near_points(int((distance > radius).sum()), len(task.nodes))
+        return np.zeros(len(task.nodes), bool)
+    return task.run(native_module().nearest_distance, task.points, task.nodes) > radius
+
+
+def _beyond_radius(task: Task) -> list[str]:
+    return without_near_points(int(beyond_radius(task).sum()), len(task.nodes))
 
 
 def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:

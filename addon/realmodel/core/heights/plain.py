@@ -7,12 +7,15 @@ Calculated without NumPy's linear algebra, which gives other last digits on othe
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from ..elementary import atan2, cos, sin
 from ..errors import InputRefused
+from ..mapped_arrays import in_pieces
 from ..methods import checked_options
 from .interpolation import Result, Task, run_method
 from .surface_reference import heights_of
@@ -23,14 +26,23 @@ _IN_LINE = 1e-6
 _IN_ONE_PLACE = 1e-60
 
 
+def _total(pieces: Iterable[np.ndarray]) -> float:
+    """The sum of numbers that come piece by piece, rounded once: their order does not matter."""
+    return math.fsum(chain.from_iterable(piece.tolist() for piece in pieces))
+
+
 def constant(task: Task) -> Result:
     """`value`, or the mean height of the points."""
     value = task.settings["value"]
     if value is None:
-        places = np.unique(task.points, axis=0)
-        base = places[0, 2]
-        value = base + float((places[:, 2] - base).mean())
+        value = mean_height(np.unique(task.points, axis=0))
     return Result(np.full(len(task.nodes), value))
+
+
+def mean_height(points: np.ndarray) -> float:
+    """Of points (P, 3), no two equal, which may be in a file."""
+    base = float(points[:, 2].min())
+    return base + _total(piece[:, 2] - base for piece in in_pieces(points)) / len(points)
 
 
 def plane(task: Task) -> Result:
@@ -38,39 +50,57 @@ def plane(task: Task) -> Result:
 
     The variance is that of regression, s^2 (1 + f^T (F^T F)^-1 f), where points are more than it takes.
     """
-    points = np.unique(task.points, axis=0)
-    base = points[0, 2]
-    center = points[0, :2] + (points[:, :2] - points[0, :2]).mean(axis=0)
-    plan, z = points[:, :2] - center, points[:, 2] - base
-    nodes = task.nodes - center
-    dip = task.settings["dip"]
-    if dip is not None:
-        azimuth = math.radians(task.settings["dip_direction"])
-        down = math.radians(dip)
-        steepest = -sin(down) / cos(down)
-        dipping = _along(plan, azimuth), _along(nodes, azimuth)
-        return _with_variance(
-            z - steepest * dipping[0], [_ones(plan)], steepest * dipping[1] + base, [_ones(nodes)]
-        )
-    x, y = plan.T
-    azimuth = 0.5 * atan2(2 * (x * y).sum(), (y * y).sum() - (x * x).sum())  # in which they spread most
-    azimuths = azimuth, azimuth + math.pi / 2
-    spread = [math.sqrt(np.square(_along(plan, each)).sum()) for each in azimuths]
-    shown = [
-        each
-        for each, size in zip(azimuths, spread, strict=True)
-        if size > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
-    ]
-    return _with_variance(
-        z,
-        [_ones(plan), *(_along(plan, each) / spread[0] for each in shown)],
-        np.full(len(nodes), base),
-        [_ones(nodes), *(_along(nodes, each) / spread[0] for each in shown)],
-    )
+    return fitted_plane(np.unique(task.points, axis=0), task.settings).at(task.nodes)
 
 
-def _ones(places: np.ndarray) -> np.ndarray:
-    return np.ones(len(places))
+@dataclass(frozen=True)
+class Plane:
+    """steepest: a slope that is given, toward the azimuth `dipping`. azimuths: in which others were fitted,
+    to distances in `unit`. steps: of each term how much of each one before it is taken out, and its size then
+    (modified Gram-Schmidt); coefficients: of them. square: of a residual, where it is known."""
+
+    center: np.ndarray
+    base: float
+    dipping: float
+    steepest: float
+    azimuths: tuple[float, ...] = ()
+    unit: float = 1.0
+    steps: tuple[tuple[tuple[float, ...], float], ...] = ()
+    coefficients: tuple[float, ...] = ()
+    square: float | None = None
+
+    def at(self, nodes: np.ndarray) -> Result:
+        plan = nodes - self.center
+        heights, leverage = self.given(plan) + self.base, np.zeros(len(nodes))
+        for coefficient, term in zip(self.coefficients, self.terms(plan), strict=True):
+            heights = heights + coefficient * term
+            leverage += np.square(term)
+        return Result(heights, None if self.square is None else self.square * (1 + leverage))
+
+    def given(self, plan: np.ndarray) -> np.ndarray:
+        return self.steepest * _along(plan, self.dipping)
+
+    def plain_term(self, plan: np.ndarray, number: int) -> np.ndarray:
+        return np.ones(len(plan)) if number == 0 else _along(plan, self.azimuths[number - 1]) / self.unit
+
+    def terms(self, plan: np.ndarray) -> list[np.ndarray]:
+        """Those of which the steps are known, orthonormal over all points."""
+        done: list[np.ndarray] = []
+        for number, (shares, size) in enumerate(self.steps):
+            done.append(_without(self.plain_term(plan, number), shares, done) / size)
+        return done
+
+    def residuals(self, plan: np.ndarray, z: np.ndarray) -> np.ndarray:
+        z = z - self.given(plan)
+        for coefficient, term in zip(self.coefficients, self.terms(plan), strict=False):
+            z = z - coefficient * term
+        return z
+
+
+def _without(term: np.ndarray, shares: Iterable[float], others: list[np.ndarray]) -> np.ndarray:
+    for share, other in zip(shares, others, strict=False):
+        term = term - share * other
+    return term
 
 
 def _along(plan: np.ndarray, azimuth: float) -> np.ndarray:
@@ -78,28 +108,55 @@ def _along(plan: np.ndarray, azimuth: float) -> np.ndarray:
     return sin(azimuth) * plan[:, 0] + cos(azimuth) * plan[:, 1]
 
 
-def _with_variance(z, terms, start, terms_at_nodes) -> Result:
-    """start + the terms that fit z best, with the variance of regression.
+def fitted_plane(points: np.ndarray, settings: dict) -> Plane:
+    """To points (P, 3), no two equal, which may be in a file: by sums over pieces."""
+    low, base = points[:, :2].min(axis=0), float(points[:, 2].min())
+    mean = [_total(piece[:, k] - low[k] for piece in in_pieces(points)) / len(points) for k in (0, 1)]
+    center = low + np.array(mean)
 
-    The terms are made orthonormal one by one (modified Gram-Schmidt), those at nodes along with them.
-    """
-    heights, residual, leverage = start, z, np.zeros(len(start))
-    done: list[tuple[np.ndarray, np.ndarray]] = []
-    for term, at_nodes in zip(terms, terms_at_nodes, strict=True):
-        for before, before_at_nodes in done:
-            share = (before * term).sum()
-            term, at_nodes = term - share * before, at_nodes - share * before_at_nodes
-        size = math.sqrt(np.square(term).sum())
-        term, at_nodes = term / size, at_nodes / size
-        done.append((term, at_nodes))
-        coefficient = (term * residual).sum()
-        residual = residual - coefficient * term
-        heights = heights + coefficient * at_nodes
-        leverage += np.square(at_nodes)
-    free = len(z) - len(terms)
+    def pieces() -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        for piece in in_pieces(points):
+            yield piece[:, :2] - center, piece[:, 2] - base
+
+    found = _directed(center, base, settings, lambda: (plan for plan, _ in pieces()))
+
+    def left(number: int, shares: list[float]) -> Iterator[tuple[np.ndarray, list[np.ndarray]]]:
+        """What is left of a term, piece by piece, and those before it."""
+        for plan, _ in pieces():
+            done = found.terms(plan)
+            yield _without(found.plain_term(plan, number), shares, done), done
+
+    for number in range(1 + len(found.azimuths)):
+        shares: list[float] = []
+        for before in range(number):
+            shares.append(_total(done[before] * term for term, done in left(number, shares)))
+        size = math.sqrt(_total(np.square(term) for term, _ in left(number, shares)))
+        longer = replace(found, steps=(*found.steps, (tuple(shares), size)))
+        coefficient = _total(longer.terms(plan)[number] * found.residuals(plan, z) for plan, z in pieces())
+        found = replace(longer, coefficients=(*found.coefficients, coefficient))
+    free = len(points) - len(found.steps)
     if free <= 0:
-        return Result(heights)
-    return Result(heights, np.square(residual).sum() / free * (1 + leverage))
+        return found
+    squares = (np.square(found.residuals(plan, z)) for plan, z in pieces())
+    return replace(found, square=_total(squares) / free)
+
+
+def _directed(center: np.ndarray, base: float, settings: dict, plans) -> Plane:
+    """A plane with the directions in which its slope is given, or to be fitted. plans: gives the pieces."""
+    dip = settings["dip"]
+    if dip is not None:
+        down = math.radians(dip)
+        return Plane(center, base, math.radians(settings["dip_direction"]), -sin(down) / cos(down))
+    xx, xy, yy = (_total(plan[:, a] * plan[:, b] for plan in plans()) for a, b in ((0, 0), (0, 1), (1, 1)))
+    azimuth = 0.5 * atan2(2 * xy, yy - xx)  # in which they spread most
+    azimuths = azimuth, azimuth + math.pi / 2
+    spread = [math.sqrt(_total(np.square(_along(plan, each)) for plan in plans())) for each in azimuths]
+    shown = (
+        each
+        for each, size in zip(azimuths, spread, strict=True)
+        if size > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
+    )
+    return Plane(center, base, 0.0, 0.0, tuple(shown), spread[0])
 
 
 def parallel(task: Task) -> Result:

@@ -107,11 +107,12 @@ def _line_near(values: list[np.ndarray], wanted: float, reach: float) -> float:
 @dataclass(frozen=True)
 class Part:
     """What of a mesh a tile needs: vertices (V, 2 or 3), triangles (T, 3) int32, and the number that each of
-    these has in the mesh, (T,) int32."""
+    these has in the mesh, (T,) int32, and each vertex, (V,)."""
 
     vertices: np.ndarray
     triangles: np.ndarray
     numbers: np.ndarray
+    of_vertices: np.ndarray
 
 
 def triangles_by_tile(mesh: Triangulation, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
@@ -169,7 +170,7 @@ def part_of(mesh: Triangulation, numbers: np.ndarray) -> Part:
     """Some triangles of a mesh, (T,) int32."""
     vertices, triangles = mesh
     used, corners = np.unique(triangles[numbers], return_inverse=True)
-    return Part(np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers)
+    return Part(np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers, used)
 
 
 def clipped_region(region: Triangulation, box: tuple[float, float, float, float]) -> Triangulation:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,15 +17,15 @@ from ..blocks import Block
 from ..build_warning import BuildWarning
 from ..errors import BuildFailed, OutputFailed
 from ..exporters.npz import model_arrays, write_arrays
-from ..local_heights import LocalHeights
-from ..mapped_arrays import in_pieces
+from ..local_heights import LocalHeights, PartHeights
+from ..mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
-from ..surface_heights import Triangulation
-from ..work import Work, native_module
-from ..wrong_sides import WrongPoints, below_older
+from ..surface_heights import Triangulation, raise_to
+from ..work import Work, native_module, run
+from ..wrong_sides import WrongPoints, below_older, heights_at
 from .grid import (
     Part,
     TileGrid,
@@ -41,14 +42,15 @@ from .windows import PointWindows
 Name = tuple[int, int]  # column and row of a tile
 REGION = "region"  # in the place of a surface's number
 PLAN = "plan"  # of the surfaces that tiles interpolate
+_WIDER = 3.0  # times as wide is the next window around a tile
 
 
 @dataclass(frozen=True)
 class Frame:
     """What all tiles of a model share. project: without shapes; cell_kind as of Model; clips: for each rock
     mass whether its region clips its surfaces, beside the tile. local: the surfaces that tiles interpolate,
-    by rock mass and number; sought: those of which they look for points on wrong sides, each with how many
-    points it has; off: for each rock mass wrong_sides.kept_off."""
+    by rock mass and number, each after those that it needs; sought: those of which they look for points on
+    wrong sides, each with how many points it has; off: for each rock mass wrong_sides.kept_off."""
 
     project: Project
     cell_kind: str
@@ -108,13 +110,48 @@ def write_windows(
     """Writes the points (P, 3) that each tile interpolates a surface from. boxes: around the nodes of each
     tile."""
     part, names = _part(rock, f"{surface}-near"), list(boxes)
-    windows = PointWindows(points, list(boxes.values()), local.needed, local.grid)
+    windows = PointWindows(points, list(boxes.values()), local.needed, local.grid, local.reach)
     with TileLists(folder_of, part, np.empty((0, 3))) as near:
         for number, piece in enumerate(in_pieces(points)):
             for box, which in windows.of(piece, number == 0):
                 near.add(names[box], piece[which])
         for name in near.tiles:
             _write({"points": near.of(name)}, folder_of(name) / part)
+
+
+def write_certain_heights(
+    points: np.ndarray,
+    rock: int,
+    surface: int,
+    local: LocalHeights,
+    boxes: dict[Name, Box],
+    folder_of: Callable[[Name], Path],
+) -> None:
+    """Writes the heights that each tile has of a surface with a border, from windows that grow until they are
+    certain. boxes: around the nodes of each tile, of which PLAN is written."""
+    part, wider = _part(rock, f"{surface}-near"), 1.0
+    heights: dict[Name, np.ndarray] = {}
+    while boxes:
+        names = list(boxes)
+        windows = PointWindows(points, list(boxes.values()), local.needed, wider=wider)
+        with TileLists(folder_of, part, np.empty((0, 3))) as near:
+            for number, piece in enumerate(in_pieces(points)):
+                for box, which in windows.of(piece, number == 0):
+                    near.add(names[box], piece[which])
+            for number, name in enumerate(names):
+                nodes = _read_part(folder_of(name), rock, PLAN).vertices[:, :2]
+                z = heights.setdefault(name, np.full(len(nodes), np.nan))
+                open_ones = np.flatnonzero(np.isnan(z))
+                asked, window = np.ascontiguousarray(nodes[open_ones]), windows.window(number)
+                task = partial(
+                    local.certain_heights, points=near.of(name), nodes=asked, window=window, threads=1
+                )
+                found, certain = run(task)
+                z[open_ones[certain]] = found[certain]
+                if certain.all():
+                    _write({"z": heights.pop(name)}, folder_of(name) / part)
+                    del boxes[name]
+        wider *= _WIDER
 
 
 def write_own_points(
@@ -138,45 +175,94 @@ def write_own_points(
 
 def _write(arrays: dict[str, np.ndarray], path: Path) -> None:
     with explained(path), path.open("wb") as file:
-        write_arrays(arrays, file)
+        write_mapped(arrays, file)
 
 
 def _part(rock: int, surface: int | str) -> str:
-    return f"{rock}-{surface}.npz"
+    return f"{rock}-{surface}.arrays"
 
 
-def _parts(work: Work, frame: Frame, folder: Path, threads: int) -> dict[tuple, Part]:
-    parts = {}
+def _parts(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> tuple[dict, dict]:
+    """What the tile has of each surface and REGION, by rock mass and number; and of the surfaces that it
+    interpolates Interpolated."""
+    parts, made = {}, {}
     for r, rock in enumerate(frame.project.rocks):
-        plan = None
         for k in (*range(len(rock.surfaces)), *([REGION] if frame.clips[r] else [])):
             if (r, k) not in frame.local:
                 parts[r, k] = _read_part(folder, r, k)
-                continue
-            plan = _read_part(folder, r, PLAN) if plan is None else plan
-            parts[r, k] = _interpolated(
-                work, frame.local[r, k], plan, folder / _part(r, f"{k}-near"), threads
-            )
-    return parts
+    plans = {r: _read_part(folder, r, PLAN) for r in {r for r, _ in frame.local}}
+    for r, k in frame.local:
+        parts[r, k] = plans[r]
+        if len(plans[r].vertices):
+            of_rock = {number: part for (rock, number), part in parts.items() if rock == r}
+            made[r, k] = _interpolated(work, frame, (r, k), of_rock, box, folder, threads)
+            parts[r, k] = made[r, k].part
+    return parts, made
 
 
 def _read_part(folder: Path, rock: int, surface: int | str) -> Part:
     path = folder / _part(rock, surface)
     if not path.exists():
         columns = 2 if surface == REGION else 3
-        return Part(np.empty((0, columns)), np.empty((0, 3), np.int32), np.empty(0, np.int32))
-    arrays = read_arrays(path)
+        none = np.empty(0, np.int32)
+        return Part(np.empty((0, columns)), np.empty((0, 3), np.int32), none, none)
+    arrays = read_mapped(path)
     return Part(*(arrays[name] for name in Part.__dataclass_fields__))
 
 
-def _interpolated(work: Work, local: LocalHeights, plan: Part, points: Path, threads: int) -> Part:
-    """The part of a surface of which the plan is given. points: the file of those around."""
-    if not len(plan.vertices):
-        return plan
-    vertices = plan.vertices.copy()
-    nodes = np.ascontiguousarray(vertices[:, :2])
-    vertices[:, 2] = local.heights(work, read_arrays(points)["points"], nodes, threads)
-    return replace(plan, vertices=vertices)
+@dataclass(frozen=True)
+class Interpolated:
+    """A part of a surface that a tile interpolated, and its heights. above: the WrongPoints of the surface
+    before, from which it is kept off."""
+
+    part: Part
+    heights: PartHeights
+    above: WrongPoints | None
+
+
+def _interpolated(
+    work: Work, frame: Frame, key: tuple[int, int], parts: dict, box: Box, folder: Path, threads: int
+) -> Interpolated:
+    """parts: of the rock mass, this one with the plan alone."""
+    local, plan, (r, k) = frame.local[key], parts[key[1]], key
+    nodes = np.ascontiguousarray(plan.vertices[:, :2])
+    near = read_mapped(folder / _part(r, f"{k}-near")) if local.takes_points else {}
+    points = near.get("points", np.empty((0, 3)))
+    others = {n: part.vertices[:, 2] for n, part in parts.items() if n != REGION}
+    z = near["z"] if "z" in near else local.heights(work, points, nodes, threads, others)
+    found = PartHeights(float(z.min()), float(z.max()))
+    own = ((nodes >= box[:2]) & (nodes < box[2:])).all(axis=1)  # each node in one tile
+    if local.settings.get("radius") is not None:
+        beyond = local.beyond_radius(work, points, np.ascontiguousarray(nodes[own]), threads)
+        found = replace(found, alone=int(beyond.sum()))
+    above = None
+    if local.least is not None:
+        shape = np.column_stack([nodes, z]), plan.triangles
+        above = _older_above(work, shape, folder / _part(r, f"{k - 1}-own"), k, threads)
+        raised, lift = raise_to(z, others[k - 1] + local.least)
+        lift = np.where(own, lift, 0.0)
+        z = z if raised is None else raised
+        if lift.any():
+            worst = int(lift.argmax())
+            found = replace(
+                found,
+                raised=int((lift > 0).sum()),
+                by=float(lift[worst]),
+                worst=int(plan.of_vertices[worst]),
+                place=tuple(nodes[worst].tolist()),
+            )
+    return Interpolated(replace(plan, vertices=np.column_stack([nodes, z])), found, above)
+
+
+def _older_above(
+    work: Work, shape: Triangulation, file: Path, number: int, threads: int
+) -> WrongPoints | None:
+    """The points of the older surface, in a file if there are some, above one that is to keep off it."""
+    if not file.exists():
+        return None
+    own = read_mapped(file)
+    beyond = own["points"][:, 2] - heights_at(work, shape, own["points"][:, :2], threads)
+    return WrongPoints.of(own["points"], beyond, number, own["numbers"])
 
 
 def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: int) -> dict:
@@ -187,7 +273,7 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
         for k in range(len(rock.surfaces)):
             path = folder / _part(r, f"{k}-own")
             if (r, k) in frame.sought and path.exists():
-                own[k] = read_arrays(path)
+                own[k] = read_mapped(path)
         shapes = [parts[r, k] for k in range(len(rock.surfaces))]
         shapes = [(part.vertices, part.triangles) if len(part.triangles) else None for part in shapes]
         points = {k: arrays["points"] for k, arrays in own.items()}
@@ -201,18 +287,20 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
 
 @dataclass(frozen=True)
 class BuiltTile:
-    """model: with borders as they come. borders: its BorderVertices as arrays. wrong: WrongPoints, and
-    heights: the lowest and highest, of surfaces that were interpolated, by rock mass and number."""
+    """model: with borders as they come. borders: its BorderVertices as arrays. By rock mass and number of
+    their surface: wrong, WrongPoints below others; above, those above the next younger one; heights, of those
+    that were interpolated here."""
 
     model: Model
     borders: dict[str, np.ndarray]
     wrong: dict[tuple[int, int], WrongPoints]
-    heights: dict[tuple[int, int], tuple[float, float]]
+    above: dict[tuple[int, int], WrongPoints]
+    heights: dict[tuple[int, int], PartHeights]
 
 
 def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> BuiltTile:
     """folder: with the files that are written here."""
-    parts = _parts(work, frame, folder, threads)
+    parts, made = _parts(work, frame, box, folder, threads)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]
@@ -243,13 +331,10 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     timings = {"intersect": time.perf_counter() - began}
     model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
     model.warnings = _warnings(inputs, built, numbers)
-    heights = {
-        key: (float(parts[key].vertices[:, 2].min()), float(parts[key].vertices[:, 2].max()))
-        for key in frame.local
-        if len(parts[key].vertices)
-    }
     wrong = _wrong_points(work, frame, parts, folder, threads)
-    return BuiltTile(model, BorderVertices.arrays_of(built), wrong, heights)
+    above = {(r, k - 1): each.above for (r, k), each in made.items() if each.above is not None}
+    heights = {key: each.heights for key, each in made.items()}
+    return BuiltTile(model, BorderVertices.arrays_of(built), wrong, above, heights)
 
 
 class _NumberedError(Exception):

@@ -18,11 +18,17 @@ _SLACK = 1 + 1e-6  # for rounding
 
 class PointWindows:
     """Of some boxes the points among which are the `needed` nearest to any place in a box, all of one
-    distance, and one more; those of the cells of `grid` that places in it lie in; and the first of all. No
-    two points have one place."""
+    distance, and one more; those within `least` of it; those of the cells of `grid` that places in it lie in;
+    and the first of all. No two points have one place. wider: so many times as far around the boxes."""
 
     def __init__(
-        self, points: np.ndarray, boxes: Sequence[Box], needed: int, grid: RegularGrid | None = None
+        self,
+        points: np.ndarray,
+        boxes: Sequence[Box],
+        needed: int,
+        grid: RegularGrid | None = None,
+        least: float = 0.0,
+        wider: float = 1.0,
     ):
         """points: (P, 2 or more), which may be in a file."""
         self._windows = np.array(boxes).reshape(-1, 4)
@@ -30,12 +36,16 @@ class PointWindows:
             self._windows[:] = -np.inf, -np.inf, np.inf, np.inf
         elif len(boxes):
             cells = _Cells(points, boxes)
-            reach = np.array([[cells.reach(box, needed + 1)] for box in boxes])
-            self._windows += reach * [-1, -1, 1, 1]
+            reach = np.array([[max(cells.reach(box, needed + 1), least * _SLACK)] for box in boxes])
+            self._windows += wider * reach * [-1, -1, 1, 1]
             if grid is not None:
                 of_cells = np.array([grid.box_of_cells(box) for box in boxes])
                 self._windows[:, :2] = np.minimum(self._windows[:, :2], of_cells[:, :2])
                 self._windows[:, 2:] = np.maximum(self._windows[:, 2:], of_cells[:, 2:])
+
+    def window(self, box: int) -> Box:
+        """All points in it, its border included, are those of a box."""
+        return tuple(self._windows[box].tolist())
 
     def of(self, piece: np.ndarray, is_first: bool) -> Iterator[tuple[int, np.ndarray]]:
         """The numbers of boxes that have some of a piece of the points, and which, ascending. is_first: the

@@ -30,6 +30,11 @@ private:
     std::vector<Position> lower_, upper_;
 };
 
+/// The numbers of the positions on the border of the convex hull of some, no two of which are
+/// equal, counterclockwise from the lexicographically least; of positions in one line all, from
+/// one end. Exact.
+std::vector<std::int32_t> hull_border(std::span<const std::array<double, 2>> positions);
+
 /// 1 for each node outside the convex hull of the points, else 0.
 /// @throws InputError kind "not_finite"
 /// @throws Cancelled

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,5 +33,32 @@ std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
                                       std::span<const std::array<double, 2>> nodes, int threads,
                                       Progress* progress = nullptr);
+
+/// What a part of some points has to know of all of them: those on the border of their hull
+/// (hull_border) and the box around them; the box of which the part has all points, and whether
+/// these are all there are. The first of all is the first of the part.
+struct PointsAround {
+    std::span<const std::array<double, 3>> border;
+    std::array<double, 4> all, window;  ///< low x, low y, high x, high y
+    bool is_whole = false;
+};
+
+/// certain: 1 for the nodes of which the part's points give the value that all points give, to the
+/// last bit; the others need a larger window.
+struct PartValues {
+    std::vector<double> z;
+    std::vector<std::uint8_t> certain;
+};
+
+/// Values at nodes from a part of some points, of which no two lie at one position and which keep
+/// their order. A value is certain where the circles that it follows from lie in the window, but
+/// for what of them is outside the hull of all: no other point can be in them.
+PartValues linear_on_part(std::span<const std::array<double, 3>> points,
+                          std::span<const std::array<double, 2>> nodes, const PointsAround& around,
+                          int threads, Progress* progress = nullptr);
+PartValues natural_neighbors_of_part(std::span<const std::array<double, 3>> points,
+                                     std::span<const std::array<double, 2>> nodes,
+                                     const PointsAround& around, int threads,
+                                     Progress* progress = nullptr);
 
 }  // namespace realmodel::interpolation

@@ -15,7 +15,7 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = 64;  // right sides solved together: matrix products are fast
+constexpr std::size_t kNodesAtOnce = UniqueNeighborhood::kNodesAtOnce;
 constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some tens of ms
 
 /// One system after another: neighbors in octants or within a radius, or more than the lanes take.

@@ -38,7 +38,9 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
 
 void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scratch) const {
     Eigen::MatrixXd& u = scratch.u;
-    u.resize(count_, static_cast<Eigen::Index>(end - begin));
+    // Always of one width, and columns at one alignment: sums are added in the same order then,
+    // whichever nodes are estimated together.
+    u.setZero(count_, kNodesAtOnce);
     for (std::size_t i = begin; i < end; ++i) {
         const Position node = task_.node(i);
         const auto column = static_cast<Eigen::Index>(i - begin);
@@ -55,7 +57,8 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
             task_.set(i, {task_.data.values[nearest.point], 0});
             continue;
         }
-        const auto column = u.col(static_cast<Eigen::Index>(i - begin));
+        Eigen::VectorXd& column = scratch.column;
+        column = u.col(static_cast<Eigen::Index>(i - begin));
         task_.set(i, universal_kriging(base_, column.squaredNorm(), column.dot(t_), basis_,
                                        frame_.terms(node), basis_.project(column), qt_));
     }

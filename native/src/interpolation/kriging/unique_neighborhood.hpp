@@ -21,14 +21,18 @@ public:
     /// What one thread works with.
     struct Scratch {
         Eigen::MatrixXd u;
+        Eigen::VectorXd column;
         std::vector<spatial::Neighbor> near;
         NeighborKriging others;
     };
     Scratch scratch() const {
-        return {{}, {}, NeighborKriging(task_.data, task_.covariance, task_.options.drift)};
+        return {{}, {}, {}, NeighborKriging(task_.data, task_.covariance, task_.options.drift)};
     }
 
-    /// Estimates the nodes begin .. end - 1 of the task at once.
+    /// Right sides solved together: matrix products are fast.
+    static constexpr Eigen::Index kNodesAtOnce = 64;
+
+    /// Estimates the nodes begin .. end - 1 of the task at once, at most kNodesAtOnce.
     void krige(std::size_t begin, std::size_t end, Scratch& scratch) const;
 
     /// Estimates the points begin .. end - 1, each from the others.

@@ -2,6 +2,7 @@
 #include "realmodel/interpolation/convex_hull.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
@@ -46,6 +47,36 @@ std::vector<Position> ConvexHull::corners() const {
     for (std::size_t i = 1; i + 1 < upper_.size(); ++i)
         out.push_back(upper_[i]);
     return out;
+}
+
+std::vector<std::int32_t> hull_border(std::span<const Position> positions) {
+    std::vector<std::int32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto at = [&](std::int32_t i) { return positions[static_cast<std::size_t>(i)]; };
+    std::sort(order.begin(), order.end(),
+              [&](std::int32_t a, std::int32_t b) { return at(a) < at(b); });
+    if (order.size() < 3) return order;
+    const auto turn = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+        return exact::orient2d(at(a), at(b), at(c));
+    };
+    const auto is_in_line = [&](std::int32_t i) {
+        return turn(order.front(), order.back(), i) == 0;
+    };
+    if (std::all_of(order.begin(), order.end(), is_in_line)) return order;
+    std::vector<std::int32_t> border;
+    const auto add_chain = [&](auto first, auto last) {
+        const std::size_t begin = border.size();
+        for (; first != last; ++first) {
+            while (border.size() > begin + 1 &&
+                   turn(border[border.size() - 2], border.back(), *first) < 0)
+                border.pop_back();
+            border.push_back(*first);
+        }
+        border.pop_back();  // where the other chain begins
+    };
+    add_chain(order.begin(), order.end());
+    add_chain(order.rbegin(), order.rend());
+    return border;
 }
 
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,

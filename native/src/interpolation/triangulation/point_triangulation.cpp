@@ -58,10 +58,19 @@ PointTriangulation::Face PointTriangulation::near(const Position& position,
     return vertices_[found[0].point]->face();
 }
 
+std::array<std::int32_t, 3> PointTriangulation::corners(Face face) const {
+    std::array<std::int32_t, 3> out{};
+    for (int k = 0; k < 3; ++k)
+        out[k] = face->vertex(k)->info();
+    std::rotate(out.begin(), std::min_element(out.begin(), out.end()), out.end());
+    return out;
+}
+
 double PointTriangulation::linear(const Position& position, Face face) const {
     std::array<double, 3> x{}, y{}, z{};
+    const std::array<std::int32_t, 3> points = corners(face);
     for (int k = 0; k < 3; ++k) {
-        const auto point = face->vertex(k)->info();
+        const auto point = points[k];
         x[k] = data_.local[point][0] - position[0];
         y[k] = data_.local[point][1] - position[1];
         z[k] = data_.values[point];
@@ -83,20 +92,21 @@ double PointTriangulation::linear(const Position& position, Face face) const {
     return z[0] + wb * (z[1] - z[0]) + wc * (z[2] - z[0]);
 }
 
-double PointTriangulation::at_border(const Position& position) const {
+double HullBorder::nearest_value(const Position& position) const {
     double least = std::numeric_limits<double>::infinity(), value = 0;
-    for (const auto& [first, second] : border_) {
-        const auto a = first, b = second;
-        const Position& from = data_.local[a];
-        const double ux = data_.local[b][0] - from[0], uy = data_.local[b][1] - from[1];
+    const Edge* nearest = nullptr;
+    for (const Edge& edge : edges_) {
+        const Position& from = edge.from;
+        const double ux = edge.to[0] - from[0], uy = edge.to[1] - from[1];
         const double vx = position[0] - from[0], vy = position[1] - from[1];
         const double length = ux * ux + uy * uy;
         const double t = length > 0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0;
         const double dx = vx - t * ux, dy = vy - t * uy, squared = dx * dx + dy * dy;
-        if (!(squared < least)) continue;
+        const bool is_first = squared == least && nearest != nullptr && from < nearest->from;
+        if (!(squared < least) && !is_first) continue;
         least = squared;
-        value =
-            t == 1 ? data_.values[b] : data_.values[a] + t * (data_.values[b] - data_.values[a]);
+        nearest = &edge;
+        value = t == 1 ? edge.to_value : edge.from_value + t * (edge.to_value - edge.from_value);
     }
     return value;
 }

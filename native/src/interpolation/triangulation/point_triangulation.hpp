@@ -15,6 +15,25 @@
 
 namespace realmodel::interpolation {
 
+/// The border of the hull of data points.
+class HullBorder {
+public:
+    /// Edges counterclockwise, in any order.
+    void add(const Position& from, double from_value, const Position& to, double to_value) {
+        edges_.push_back({from, to, from_value, to_value});
+    }
+    /// Value at the nearest place of the border; of places equally near that of the edge that
+    /// begins at the lexicographically least position.
+    double nearest_value(const Position& position) const;
+
+private:
+    struct Edge {
+        Position from, to;
+        double from_value, to_value;
+    };
+    std::vector<Edge> edges_;
+};
+
 /// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers
 /// of their points. Several threads may ask at once.
 class PointTriangulation {
@@ -34,21 +53,25 @@ public:
     /// line.
     Face near(const Position& position, std::vector<spatial::Neighbor>& found) const;
 
+    /// The corners of a triangle counterclockwise from the one with the least number: it does not
+    /// matter then in which order points were inserted.
+    std::array<std::int32_t, 3> corners(Face face) const;
+
     /// Value at a position inside `face`, linear between its corners.
     double linear(const Position& position, Face face) const;
 
-    /// Value at the nearest position of the hull's border.
-    double at_border(const Position& position) const;
+    const HullBorder& border() const { return border_; }
 
 private:
-    void add_border(std::int32_t a, std::int32_t b) { border_.push_back({a, b}); }
+    void add_border(std::int32_t a, std::int32_t b) {
+        border_.add(data_.local[a], data_.values[a], data_.local[b], data_.values[b]);
+    }
 
     const DataPoints& data_;
     spatial::NearestPoints tree_;
     Delaunay delaunay_;
     std::vector<Delaunay::Vertex_handle> vertices_;  // by point
-    std::vector<std::array<std::int32_t, 2>>
-        border_;  // edges of the hull; of points in one line all
+    HullBorder border_;                              // of points in one line all edges
 };
 
 }  // namespace realmodel::interpolation

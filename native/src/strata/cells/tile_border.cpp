@@ -111,12 +111,14 @@ TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& fac
                         vertex.is_on[axis] && at[axis] == plan_vertices.position[p][axis];
                 }
                 if (!vertex.is_on[0] && !vertex.is_on[1]) continue;
+                const std::array rounded{nearest(at[0]), nearest(at[1])};
+                const std::array text{at[0].get_str(16), at[1].get_str(16)};
                 for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
                     const mpq_class z = places.height(planes[i][rank], point);
                     found[begin / kTogether].push_back(
                         {conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
-                         {nearest(at[0]), nearest(at[1]), nearest(z)},
-                         {at[0].get_str(16), at[1].get_str(16), z.get_str(16)}});
+                         {rounded[0], rounded[1], nearest(z)},
+                         {text[0], text[1], z.get_str(16)}});
                 }
             }
         });
