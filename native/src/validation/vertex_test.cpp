@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <compare>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -61,16 +60,21 @@ bool are_distinct_in_order(const ComplexView& model, int threads, const Progress
     if (model.vertex_count() - ascending > ascending / kFew) return false;
     for (std::size_t v = ascending; v < model.vertex_count(); ++v) {
         behind.push_back(model.vertex(static_cast<std::int32_t>(v)));
-        if (!std::ranges::all_of(behind.back(), [](double c) { return std::isfinite(c); }))
-            return false;
+        for (const double coordinate : behind.back()) {
+            if (!std::isfinite(coordinate)) return false;
+        }
     }
-    std::ranges::sort(behind);
-    if (std::ranges::adjacent_find(behind) != behind.end()) return false;
-    const auto numbers = std::views::iota(std::size_t{0}, ascending);
-    return std::ranges::none_of(behind, [&](const auto& place) {
-        return std::ranges::binary_search(numbers, place, {}, [&](std::size_t v) {
-            return model.vertex(static_cast<std::int32_t>(v));
-        });
+    std::sort(behind.begin(), behind.end());
+    if (std::adjacent_find(behind.begin(), behind.end()) != behind.end()) return false;
+    return std::none_of(behind.begin(), behind.end(), [&](const auto& place) {
+        std::size_t low = 0, high = ascending;
+        while (low < high) {
+            const std::size_t middle = low + (high - low) / 2;
+            const auto there = model.vertex(static_cast<std::int32_t>(middle));
+            if (there == place) return true;
+            (there < place ? low : high) = there < place ? middle + 1 : middle;
+        }
+        return false;
     });
 }
 
