@@ -82,7 +82,7 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
                            int threads, Progress* control,
                            const std::vector<std::vector<std::size_t>>& emptied,
                            const std::vector<std::vector<std::uint8_t>>& fills,
-                           const std::optional<WantedArrays>& wanted) {
+                           const std::optional<WantedArrays>& wanted, bool is_local) {
     const CellKind kind = kind_of(cells);
     const std::optional<strata::WantedSpace> space = space_of(wanted, kind);
     auto input = views_of(rocks);
@@ -104,8 +104,8 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex =
-            strata::build_rock_masses(input, threads, control, kind, space ? &*space : nullptr);
+        complex = strata::build_rock_masses(input, threads, control, kind,
+                                            space ? &*space : nullptr, is_local);
     }
     return to_dict(std::move(complex));
 }
@@ -163,12 +163,34 @@ py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, P
     return py::make_tuple(result, joined.warning->text);
 }
 
+py::object snap_plan(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
+    const auto input = views_of(rocks);
+    strata::SnappedPlan snapped;
+    {
+        const py::gil_scoped_release release;
+        snapped = strata::snap_plan(input, threads, control);
+    }
+    auto& meshes = snapped.meshes;
+    if (meshes.empty()) return py::none();
+    std::size_t next = 0;
+    py::list result;
+    for (const auto& [surfaces, region, base_elevation, rules] : rocks) {
+        py::list vertices;
+        for (std::size_t k = 0; k < surfaces.size(); ++k)
+            vertices.append(to_array(std::move(meshes[next++]), 3));
+        py::object in_plan = py::none();
+        if (region) in_plan = to_array(std::move(meshes[next++]), 2);
+        result.append(py::make_tuple(vertices, in_plan));
+    }
+    return py::make_tuple(result, snapped.warning.text);
+}
+
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      const std::optional<SurfaceArrays>& region,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
-                             {}, {}, std::nullopt);
+                             {}, {}, std::nullopt, false);
 }
 
 py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
@@ -199,7 +221,7 @@ void bind_strata(py::module_& module) {
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
                py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
-               py::arg("wanted") = std::nullopt,
+               py::arg("wanted") = std::nullopt, py::arg("is_local") = false,
                R"(All blocks of rock masses, which may share borders but no area in plan.
 
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
@@ -213,7 +235,8 @@ surface before the last of these 1 where it is the top of a body: then what is b
 surface stays, but for places at which a body was there first; none: nothing stays; wanted: None, or
 (low (3,), step (3,), cells (nx, ny, nz) uint8), the least corner of a grid, the size of a cell and of
 each whether it is wanted: columns that lie nowhere in these may be left out (nz: 64 at most; what is
-above or below the grid is wanted, beside it is as in the nearest cells). Surfaces are counted
+above or below the grid is wanted, beside it is as in the nearest cells). is_local: of columns, edges
+have all vertices that lie on them, so that what is somewhere follows from what is near. Surfaces are counted
 through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
@@ -234,6 +257,13 @@ equal where points are, in all tiles.)");
 
 Returns None where that is nothing; else (rocks as they were given, with new arrays, and the text of
 the warning). Triangles that are not divided keep their numbers. Raises InputError and Cancelled.)");
+    module.def(
+        "snap_plan", &snap_plan, py::arg("rocks"), py::arg("threads") = 0,
+        py::arg("control") = nullptr,
+        R"(The vertices of rock masses with plan coordinates that differ by rounding alone made one.
+
+Returns None where there are no such coordinates; else (for each rock mass, vertices of its surfaces and of
+its region or None; the text of the warning). Raises Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
                py::arg("threads") = 0, py::arg("control") = nullptr,

@@ -77,9 +77,51 @@ py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArray
                           to_array(std::move(high)));
 }
 
+/// triangles (K, 3, 3), is_continuation (K,), kept
+using ContinuedArrays = std::tuple<Array<double>, Array<std::uint8_t>, structures::Sides>;
+
+Array<double> corners_array(const std::vector<std::array<std::array<double, 3>, 3>>& triangles) {
+    Array<double> array({triangles.size(), std::size_t{3}, std::size_t{3}});
+    double* out = array.mutable_data();
+    for (const auto& triangle : triangles) {
+        for (const auto& corner : triangle)
+            out = std::copy(corner.begin(), corner.end(), out);
+    }
+    return array;
+}
+
+structures::ContinuedStructure continued_of(const ContinuedArrays& arrays) {
+    const auto& [corners, is_continuation, kept] = arrays;
+    if (corners.size() != 9 * is_continuation.size())
+        throw py::value_error("continued: nine coordinates for each triangle");
+    structures::ContinuedStructure own;
+    own.triangles.resize(static_cast<std::size_t>(is_continuation.size()));
+    const double* in = corners.data();
+    for (auto& triangle : own.triangles) {
+        for (auto& corner : triangle) {
+            std::copy(in, in + 3, corner.begin());
+            in += 3;
+        }
+    }
+    own.is_continuation.assign(is_continuation.data(),
+                               is_continuation.data() + is_continuation.size());
+    own.kept = kept;
+    return own;
+}
+
+std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArrays>& structures,
+                                                  const std::array<std::array<double, 3>, 2>& box) {
+    std::vector<ContinuedArrays> arrays;
+    for (auto& own : structures::continued_structures(views_of(structures), box))
+        arrays.emplace_back(corners_array(own.triangles), to_array(std::move(own.is_continuation)),
+                            std::move(own.kept));
+    return arrays;
+}
+
 py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides>>& models,
                          const std::vector<StructureArrays>& structures,
-                         const Array<std::uint8_t>& acts, int threads, Progress* control) {
+                         const Array<std::uint8_t>& acts, int threads, Progress* control,
+                         const std::vector<ContinuedArrays>& continued) {
     std::vector<PartArrays> arrays;
     for (const auto& [model, sides] : models)
         arrays.emplace_back(model);
@@ -90,11 +132,17 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
         parts.push_back({arrays[m].complex, models[m].second});
     }
     const auto views = views_of(structures);
+    std::vector<structures::ContinuedStructure> beyond;
+    for (const ContinuedArrays& own : continued)
+        beyond.push_back(continued_of(own));
+    if (!beyond.empty() && beyond.size() != views.size())
+        throw py::value_error("continued: one for each structure");
     structures::Joined joined;
     {
         const py::gil_scoped_release release;
-        joined = structures::join_models(
-            parts, views, {acts.data(), static_cast<std::size_t>(acts.size())}, threads, control);
+        joined = structures::join_models(parts, views,
+                                         {acts.data(), static_cast<std::size_t>(acts.size())},
+                                         threads, control, beyond);
     }
     py::dict result = complex_arrays(joined.complex);
     result["cell_part"] = to_array(std::move(joined.cell_part));
@@ -145,14 +193,7 @@ Array<double> structure_continuation(const std::vector<StructureArrays>& faults,
                                      const std::array<std::array<double, 3>, 2>& box) {
     const auto views = views_of(faults);
     if (views.empty()) throw py::value_error("faults: none is given");
-    const auto found = structures::continuation_of(views, box);
-    Array<double> array({found.size(), std::size_t{3}, std::size_t{3}});
-    double* out = array.mutable_data();
-    for (const auto& triangle : found) {
-        for (const auto& corner : triangle)
-            out = std::copy(corner.begin(), corner.end(), out);
-    }
-    return array;
+    return corners_array(structures::continuation_of(views, box));
 }
 
 }  // namespace
@@ -170,12 +211,21 @@ outside of a body, -1 below or inside, 0 where there is none beyond a fault that
 InputError (surface: the number of the structure) and Cancelled.)");
     module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
                py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("continued") = std::vector<ContinuedArrays>(),
                R"(Models of the parts that faults and bodies leave, cut by them and joined.
 
 models: list of (dict as of structure_parts, sides: one a structure; 0: either). structures: as of
-structure_parts. acts: (S, B) uint8, whether a structure divides a block. Returns the arrays of a
+structure_parts. acts: (S, B) uint8, whether a structure divides a block. continued: of each structure,
+as of continued_structures, or of some of its triangles; empty: it is continued here. Returns the arrays of a
 complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
 model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
+    module.def(
+        "continued_structures", &continued_structures, py::arg("structures"), py::arg("box"),
+        R"(Faults and bodies with what continues them beyond their borders, as join_structured has it.
+
+structures: as of structure_parts. box: two corners of a box around the rock. Returns of each
+(triangles (K, 3, 3) float64; is_continuation (K,) uint8; kept: the side of each fault that a fault ends
+at on which it is). Raises InputError.)");
     module.def(
         "structure_sides", &structure_sides, py::arg("structures"), py::arg("points"),
         py::arg("threads") = 0, py::arg("control") = nullptr,

@@ -24,13 +24,15 @@ class NoWorkers(Workers):
         return super().in_any_order(*arguments, **{**options, "here": True})
 
 
-class Tiles(PanelCase):
+class TilesCase(PanelCase):
+    sample, size = "two_layers", (60, 60)
+
     def setUp(self):
         super().setUp()
         nobody = contextlib.nullcontext(NoWorkers())
         with mock.patch.object(tile_folder, "workers_of", lambda *_: nobody):
-            project = load_project(SAMPLES / "two_layers" / "project.toml")
-            self.tiled = build(project, self.folder / "tiles", (60, 60))
+            project = load_project(SAMPLES / self.sample / "project.toml")
+            self.tiled = build(project, self.folder / "tiles", self.size)
         self.path = str(self.folder / "tiles" / "tiles.toml")
 
     def objects(self):
@@ -42,6 +44,8 @@ class Tiles(PanelCase):
         a, b, c = np.array([v.co for v in item.data.vertices])[corners].transpose(1, 0, 2)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
+
+class Tiles(TilesCase):
     def test_all_of_it_is_coarse(self):
         ops.tiles_read(filepath=self.path, squares=20)
         found = {item.name: item for item in self.objects()}
@@ -89,3 +93,22 @@ class Tiles(PanelCase):
         self.refused(ops.tiles_read, "from the zero of the scene", filepath=self.path)
         self.assertEqual(self.objects(), [])
         self.assertEqual(len(bpy.data.collections), 0)
+
+
+class TilesWithFaults(TilesCase):
+    sample, size = "fault_blocks", (1100, 900)
+
+    def test_chosen_tiles_are_as_they_are(self):
+        ops.tiles_read(filepath=self.path, what="TILES", columns=9, rows=9)
+        for block in self.tiled.blocks:
+            parts = [item for item in self.objects() if item[scene.BLOCK] == block.name]
+            self.assertGreater(len(parts), 1)
+            volume = sum(self.volume(item) for item in parts)
+            self.assertAlmostEqual(volume / block.volume, 1.0, places=3)
+
+    def test_all_of_it_is_coarse(self):
+        ops.tiles_read(filepath=self.path, squares=30)
+        found = {item.name: item for item in self.objects()}
+        self.assertEqual(set(found), {block.name for block in self.tiled.blocks})
+        for block in self.tiled.blocks:
+            self.assertAlmostEqual(self.volume(found[block.name]) / block.volume, 1.0, delta=0.25)

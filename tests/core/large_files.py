@@ -210,7 +210,34 @@ def _stl_binary(vertices, triangles, path):
     path.write_bytes(b"made".ljust(80) + struct.pack("<I", len(triangles)) + facet.tobytes())
 
 
-TEXT_MESHES = {"m.off": _off, "m.obj": _obj, "m.ts": _tsurf, "text.stl": _stl_text, "text.ply": _ply_text}
+def _dxf(vertices, triangles, file):
+    file.write("999\nmade\n0\nSECTION\n2\nENTITIES\n")
+    corner = "".join(f"{10 + k}\n%.2f\n{20 + k}\n%.2f\n{30 + k}\n%.2f\n" for k in range(3))
+    fourth = "13\n%.2f\n23\n%.2f\n33\n%.2f"
+    corners = vertices[triangles[:, [0, 1, 2, 2]]].reshape(-1, 12)
+    np.savetxt(file, corners, fmt=f"0\n3DFACE\n8\nA\n{corner}{fourth}")
+    file.write("0\nENDSEC\n0\nEOF\n")
+
+
+def _landxml(vertices, triangles, file):
+    file.write('<?xml version="1.0"?>\n<LandXML xmlns="a"><Surfaces><Surface name="top"><Pnts>\n')
+    numbered = np.column_stack([np.arange(1, len(vertices) + 1), vertices[:, [1, 0, 2]]])
+    np.savetxt(file, numbered, fmt='<P id="%d">%.2f %.2f %.2f</P>')
+    file.write("</Pnts><Faces>\n")
+    np.savetxt(file, triangles + 1, fmt="<F>%d %d %d</F>")
+    file.write("</Faces></Surface></Surfaces></LandXML>\n")
+
+
+TEXT_MESHES = {
+    "m.off": _off,
+    "m.obj": _obj,
+    "m.ts": _tsurf,
+    "m.dxf": _dxf,
+    "m.xml": _landxml,
+    "text.stl": _stl_text,
+    "text.ply": _ply_text,
+}
+BY_PLACE = ("m.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
 BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary}
 MESHES = {**TEXT_MESHES, **BINARY_MESHES}
 

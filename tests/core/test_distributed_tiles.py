@@ -39,6 +39,39 @@ def test_a_killed_worker_does_not_stop_it(client, tmp_path):
     assert_whole(tiled)
 
 
+FAULTED = ROOT / "blend_samples" / "rift_basin" / "project.toml"
+
+
+def faulted(folder, client, **options):
+    from realmodel.distributed import build as build_tiles
+
+    return build_tiles(load_project(FAULTED), folder, (2600, 3000), client, **options)
+
+
+def assert_whole_with_faults(tiled):
+    for one, other in zip(tiled.blocks, build(load_project(FAULTED)).blocks, strict=True):
+        assert (one.cells, one.components) == (other.cells, other.components)
+        assert abs(one.volume - other.volume) <= 1e-12 * other.volume
+    assert tiled.unequal == 0
+
+
+def test_a_killed_worker_does_not_stop_a_model_with_faults(client, tmp_path):
+    with one_killed(client, tmp_path, "t/run/joined-*.json"):
+        tiled = faulted(tmp_path / "t", client)
+    assert len(tiled.tiles) > 4
+    assert_whole_with_faults(tiled)
+
+
+def test_a_stopped_run_with_faults_goes_on(client, tmp_path):
+    with pytest.raises(Cancelled):
+        faulted(tmp_path / "t", client, cancel=lambda: bool(list(tmp_path.glob("t/run/joined-*.json"))))
+    before = {file: file.stat().st_mtime_ns for file in tmp_path.glob("t/tiles/*.vtu")}
+    assert before and not (tmp_path / "t" / "tiles.toml").exists()
+    done = {file for file in before if (tmp_path / "t" / "run" / f"joined-{file.stem}.json").exists()}
+    assert_whole_with_faults(faulted(tmp_path / "t", client))
+    assert all(file.stat().st_mtime_ns == before[file] for file in done)
+
+
 def test_a_stopped_run_goes_on_in_another_cluster(client, tmp_path):
     with pytest.raises(Cancelled):
         run(tmp_path / "t", client, cancel=lambda: bool(list(tmp_path.glob("t/run/built-*.json"))))

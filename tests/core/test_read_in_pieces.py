@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files read piece by piece: the same values wherever they are kept, in memory that does not grow."""
 
+import errno
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
-from large_files import FORMATS, MESHES, write_mesh, write_points
-from realmodel.core import InputRefused, MeshFile, PointFile
+from large_files import BY_PLACE, FORMATS, MESHES, write_mesh, write_points
+from realmodel.core import InputRefused, MeshFile, OutputFailed, PointFile
 from realmodel.core.mapped_arrays import MappedArrays
 from realmodel.core.readers import read_mesh, read_point_file
 from realmodel.core.readers.text import FileBytes, encoding_of, pieces_of, text_content
@@ -61,7 +63,7 @@ def test_points_are_the_same_in_a_file(tmp_path, name):
 def test_a_mesh_is_the_same_in_a_file(tmp_path, name):
     file, vertices, triangles = write_mesh(name, 300, 310, tmp_path)
     mesh = read_mesh(file)
-    if name.endswith(".stl"):  # vertices in the order of their coordinates
+    if name in BY_PLACE:
         assert np.array_equal(np.unique(vertices, axis=0), mesh.vertices)
         assert np.array_equal(mesh.vertices[mesh.triangles], vertices[triangles])
     else:
@@ -75,6 +77,44 @@ def test_a_mesh_is_the_same_in_a_file(tmp_path, name):
             assert isinstance(one, np.memmap) and one.dtype == other.dtype
             assert one.tobytes() == other.tobytes()
         assert kept.in_model(given, "m", arrays.gather)[0].tobytes() == in_model.tobytes()
+
+
+def test_larger_faces_among_those_of_a_drawing(tmp_path):
+    """Triangles, and faces of four corners, whose corners lie across the ends of pieces."""
+    _, vertices, triangles = write_mesh("m.off", 260, 270, tmp_path)
+    text = ["0\nSECTION\n2\nENTITIES"]
+    expected = []
+    for number, (a, b, c) in enumerate(vertices[triangles].tolist()):
+        corners = [a, b, c] if number % 7 else [a, b, c, [a[0], c[1], number / 4]]
+        given = [*corners, corners[-1]][:4]
+        values = (
+            f"{10 * (axis + 1) + k}\n{place[axis]}" for k, place in enumerate(given) for axis in range(3)
+        )
+        text += ["0\n3DFACE", *values]
+        expected += [[corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1)]
+    file = tmp_path / "m.dxf"
+    file.write_text("\n".join([*text, "0\nENDSEC\n0\nEOF\n"]))
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        mesh, kept = read_mesh(file), read_mesh(file, rows=arrays.rows)
+        assert mesh.vertices[mesh.triangles].tolist() == expected
+        assert np.array_equal(mesh.vertices, np.unique(mesh.vertices, axis=0))
+        for name in ("vertices", "triangles", "face_of_triangle"):
+            assert getattr(kept, name).tobytes() == getattr(mesh, name).tobytes()
+        assert mesh.face_of_triangle[:4].tolist() == [0, 0, 1, 2]
+
+
+def test_names_of_points_that_are_no_numbers(write):
+    """And numbers that are written in several ways: these are names, too."""
+    points = {"a b": "0 0 1", "01": "0 10 1", "1": "10 0 1", "7": "10 10 2", "4": "5 5 9", "x": "0 3 3"}
+    pnts = "".join(f'<P id="{name}">{place}</P>' for name, place in points.items())
+    faces = "<F>01 1 7</F><F i='1'>no such</F><F>4 x 1 9</F>"
+    text = f"<LandXML><Surfaces><Surface name='s'><Pnts>{pnts}</Pnts>{faces}</Surface></Surfaces></LandXML>"
+    mesh = read_mesh(write("m.xml", text))
+    assert mesh.triangles.tolist() == [[1, 2, 3], [4, 5, 2]]
+    assert mesh.vertices[1].tolist() == [10, 0, 1]
+    for missing in ("2", "001", "0", "8"):
+        with pytest.raises(InputRefused, match=f"surface 's': '1 7 {missing}' cannot be read"):
+            read_mesh(write("m.xml", text.replace("<F>01 1 7<", f"<F>1 7 {missing}<")))
 
 
 def test_larger_faces_late_in_a_mesh(tmp_path):
@@ -262,6 +302,26 @@ def test_points_are_divided_in_less_memory_than_they_take(tmp_path):
     assert not fits
     for (method, near, heights), expected in zip(done, whole, strict=True):
         assert 500 < near < 10_000 and heights == expected, method
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="a system that cannot reserve room")
+def test_room_on_a_full_disk(monkeypatch, tmp_path):
+    """Is told when the room is made, not when it is written to; disks that reserve nothing do no harm."""
+
+    def refused(number):
+        def reserve(*_):
+            raise OSError(number, os.strerror(number))
+
+        return reserve
+
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        monkeypatch.setattr(os, "posix_fallocate", refused(errno.ENOSPC))
+        with pytest.raises(OutputFailed, match="No space left on device; make room"):
+            arrays.room((5, 2), float)
+        monkeypatch.setattr(os, "posix_fallocate", refused(errno.EOPNOTSUPP))
+        found = arrays.room((5, 2), float)
+        found[3] = 7
+        assert found.sum() == 14
 
 
 def test_a_file_as_bytes(tmp_path):

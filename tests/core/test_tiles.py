@@ -15,7 +15,6 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 from realmodel.core import (
-    Body,
     InputRefused,
     OutputFailed,
     Project,
@@ -32,7 +31,7 @@ from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, til
 from realmodel.core.tiles.windows import PointWindows
 from realmodel.core.work import native_module
 from realmodel.distributed import build as build_tiles
-from realmodel.distributed import tile_folder
+from realmodel.distributed import run_folder, tile_folder
 from realmodel.distributed.workers import Workers
 from sample_scripts import SAMPLES
 from stacks.generate import random_stack
@@ -333,6 +332,7 @@ def assert_same_heights(tiled, whole):
 def of_all_kinds():
     """Surfaces whose heights follow from all points, from a few numbers, or from other surfaces."""
     far = scattered(60, 20, 30)
+    patch = on_a_grid((12, 9), (4, 5), (15, 12), 0.3, 60, 2, left_out=0.05)
     far[:, :2] = 30 + 0.4 * far[:, :2]  # there are nodes outside their hull, and far from them
     surfaces = [
         Surface("deep", method="constant", options={"value": -8.0}),
@@ -369,6 +369,10 @@ def of_all_kinds():
         Surface(
             "again", method="parallel", options={"to": "raster", "thickness": 2.0}, minimum_thickness=1.0
         ),
+        Surface("short", points=np.add(far, [0, 0, 14]), options={"extrapolate": "none", "variogram": GIVEN}),
+        Surface("cut", points=scattered(60, 4, 45), method="tin", options={"extrapolate": "none"}),
+        Surface("flat", points=np.add(far, [0, 0, 22]), method="plane", options={"extrapolate": "none"}),
+        Surface("patch", points=patch, method="grid", options={"extrapolate": "none"}),
     ]
     surfaces[3].minimum_thickness = 1.0
     return Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=4.0, base_elevation=-30.0)])
@@ -394,6 +398,19 @@ def test_heights_that_take_more_than_the_points_around(monkeypatch, tmp_path):
         *("constant", "plane", "parallel", "kriging", "universal_kriging", "spline", "idw", "grid")
     }
     assert {count for method, count in made - {None} if method in ("constant", "plane")} == {0}
+
+
+def test_a_surface_that_ends_before_the_region_begins(tmp_path):
+    """Is refused as in the undivided model, once no tile has any of it."""
+    points = scattered(60, 1) * [0.01, 0.01, 1] - [40, 40, 0]
+    surfaces = [Surface("away", points=points, options={"extrapolate": "none", "variogram": GIVEN})]
+    project = Project("p", [Rock("r", surfaces, region=OUTLINE, edge_length=9.0, base_elevation=-30.0)])
+    with pytest.raises(InputRefused) as expected:
+        build(project)
+    assert "no triangle of the region's mesh" in str(expected.value)
+    with pytest.raises(InputRefused) as found:
+        build_tiles(project, tmp_path / "t", (40, 25))
+    assert str(found.value) == str(expected.value)
 
 
 def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
@@ -431,7 +448,7 @@ def test_triangles_of_points_by_windows(monkeypatch, tmp_path):
 
 
 def test_surfaces_that_tiles_leave_to_the_lead():
-    """Those that end, and those that others need that are made as a whole."""
+    """Those of one system, those that need one that ends, and those that such ones need."""
     points = scattered(60, 1)
     surfaces = [
         Surface("ends", points=points, options={"extrapolate": "none"}),
@@ -688,11 +705,11 @@ def test_nothing_is_left_of_a_model_that_is_refused(tmp_path):
 def test_tiles_compare_positions_by_their_area(tmp_path):
     grid = tile_grid([hilly(10, 0.0, 1)[0]], (25, 50))
     frame = SimpleNamespace(grid=grid)
-    counts = [tile_folder._places(frame, grid.box(*name)) for name in grid]
+    counts = [run_folder.places_of(frame, grid.box(*name)) for name in grid]
     assert 4000 <= sum(counts) <= 4000 + len(counts)
     assert max(counts) < 1.4 * min(counts)
     grid = tile_grid([hilly(10, 0.0, 1)[0]], (2, 2))
-    assert tile_folder._places(SimpleNamespace(grid=grid), grid.box(1, 1)) == 100  # at least
+    assert run_folder.places_of(SimpleNamespace(grid=grid), grid.box(1, 1)) == 100  # at least
 
 
 def test_the_same_bytes_again(tmp_path):
@@ -726,17 +743,17 @@ def test_the_folder_of_another_model_is_refused(monkeypatch, tmp_path):
 
 def test_a_full_disk_stops_it_in_one_line(monkeypatch, tmp_path):
     project = ready()
-    real = tile_folder.write_vtu
+    real = run_folder.write_vtu
 
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(tile_folder, "write_vtu", full)
+    monkeypatch.setattr(run_folder, "write_vtu", full)
     with pytest.raises(OutputFailed, match="No space left on device; make room") as failed:
         build_tiles(project, tmp_path / "t", (60, 60))
     assert "\n" not in str(failed.value)
     assert not list((tmp_path / "t" / "tiles").iterdir())[1:]  # one .npz, its .vtu is missing
-    monkeypatch.setattr(tile_folder, "write_vtu", real)
+    monkeypatch.setattr(run_folder, "write_vtu", real)
     assert_same_blocks(build_tiles(project, tmp_path / "t", (60, 60)), build(project))
 
 
@@ -766,14 +783,6 @@ def test_the_index_opens_in_vtk(tmp_path):
     vertices = build(project).vertices
     low, high = np.array(grid.bounds).reshape(3, 2).T
     assert np.array_equal(low, vertices.min(axis=0)) and np.array_equal(high, vertices.max(axis=0))
-
-
-def test_faults_and_bodies_are_refused(tmp_path):
-    project = ready()
-    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-    project.bodies = [Body("b", vertices, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))]
-    with pytest.raises(UsageError, match="faults or bodies"):
-        build_tiles(project, tmp_path / "t", (30, 30))
 
 
 @pytest.mark.parametrize("size", [(0, 5), (5,), (5, -1), (math.inf, 5), "wide", (1e-9, 5)])

@@ -98,7 +98,7 @@ def assemble(
         arrays = _arrays(inputs, built, structures)
         component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
         work.step(0.8)
-        blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component, structures)
+        blocks = list_blocks(inputs, built["volumes"], arrays["cell_block"], component, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
         kinds = [0] * len(names)
         if structures is not None:
@@ -151,7 +151,7 @@ def _first_block(entry: RockInput) -> int:
     return 0 if entry.rock.base_elevation is not None else 1
 
 
-def _blocks(
+def list_blocks(
     inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray, structures
 ) -> list[Block]:
     total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)

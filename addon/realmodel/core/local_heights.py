@@ -26,8 +26,8 @@ from .heights.run import elsewhere, few_points, runs_away
 from .mapped_arrays import MappedArrays, in_memory
 from .methods import METHODS
 from .mis_ties import each_place_once, without_mis_ties
-from .project import Rock, Surface
-from .surface_heights import named_surfaces, needed_surfaces, raised_above
+from .project import Rock, Surface, surface_item
+from .surface_heights import named_surfaces, needed_surfaces, no_triangle_known, raised_above
 from .work import Work, native_module
 
 Box = tuple[float, float, float, float]  # low x, low y, high x, high y
@@ -77,8 +77,9 @@ class LocalHeights:
         others: Mapping[int, np.ndarray] | None = None,
     ) -> np.ndarray:
         """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
-        first of them and the others in their order, with the `needed` nearest to each node. others: the
-        heights at the nodes of other surfaces, by their numbers. Not raised above the surface before."""
+        first of them and the others in their order, with the `needed` nearest to each node; NaN where the
+        surface ends. others: the heights at the nodes of other surfaces, by their numbers. Not raised above
+        the surface before."""
         task = self._task(work, points, nodes, threads)
         if self.over is not None:
             below = others[self.over] if isinstance(self.over, int) else np.full(len(nodes), self.over)
@@ -98,7 +99,7 @@ class LocalHeights:
         return self._extrapolated(task, Result(z)).z, certain
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
-        if self.settings.get("extrapolate") != "nearest":
+        if self.hull is None and result.outside is None:
             return result
         outside = result.outside
         if outside is None:
@@ -126,7 +127,10 @@ class LocalHeights:
         return from_neighbours.beyond_radius(self._task(work, points, nodes, threads))
 
     def warnings(self, found: PartHeights, rock: Rock, number: int) -> list[BuildWarning]:
-        """What there is to tell of all nodes."""
+        """What there is to tell of all nodes. Raises InputRefused where no triangle is left."""
+        if not found.triangles:
+            file, line = rock.surfaces[number].shape_source()
+            raise no_triangle_known().within(surface_item(rock, rock.surfaces[number]), file=file, line=line)
         name = rock.surfaces[number].name
         points = np.array([[0, 0, self.lowest], [0, 0, self.highest]])
         texts = from_neighbours.without_near_points(found.alone, self.nodes)
@@ -141,12 +145,13 @@ class LocalHeights:
 
 @dataclass(frozen=True)
 class PartHeights:
-    """Of the heights of a part of a surface: the lowest and highest before some were raised. Of those nodes
-    that are counted here: how many have no point within the radius; how many were raised, the farthest by how
-    much, which one this is and where."""
+    """Of the heights of a part of a surface: the lowest and highest before some were raised; how many
+    triangles there are. Of those nodes that are counted here: how many have no point within the radius; how
+    many were raised, the farthest by how much, which one this is and where."""
 
     lowest: float
     highest: float
+    triangles: int
     alone: int = 0
     raised: int = 0
     by: float = 0.0
@@ -160,6 +165,7 @@ class PartHeights:
             worst,
             lowest=min(self.lowest, other.lowest),
             highest=max(self.highest, other.highest),
+            triangles=self.triangles + other.triangles,
             alone=self.alone + other.alone,
             raised=self.raised + other.raised,
         )
@@ -172,7 +178,8 @@ def local_surfaces(rock: Rock) -> set[int]:
     while True:
         others = set(range(len(rock.surfaces))) - found
         asked = {each for number in others for each in needed_surfaces(rock, number)}
-        complete = found | {number for number in others if _is_everywhere(rock.surfaces[number])}
+        complete = {number for number in found if not _ends(rock.surfaces[number])}
+        complete |= {number for number in others if _is_everywhere(rock.surfaces[number])}
         lacking = {number for number in found if not complete.issuperset(needed_surfaces(rock, number))}
         if not found & (asked | lacking):
             return found
@@ -187,17 +194,21 @@ def _is_local(surface: Surface) -> bool:
         return False
     if method == "parallel":
         return settings["thickness"] is not None
-    extrapolated = ("method",) if method == "plane" else ("method", "nearest", None)
-    is_local = METHODS[method].is_local or METHODS[method].is_triangulated
-    return is_local and settings.get("extrapolate") in extrapolated
+    if method == "plane" and settings["extrapolate"] == "nearest":  # points that contradict count only there
+        return False
+    if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left
+        return False
+    return METHODS[method].is_local or METHODS[method].is_triangulated
+
+
+def _ends(surface: Surface) -> bool:
+    """Whether a surface ends where its points do."""
+    return surface.method_options()[1].get("extrapolate") == "none"
 
 
 def _is_everywhere(surface: Surface) -> bool:
     """Whether a surface that is made as a whole has a height at each node of the region's mesh."""
-    if not surface.interpolated:
-        return False
-    method, settings = surface.method_options()
-    return method != "parallel" and settings.get("extrapolate") != "none"
+    return surface.interpolated and surface.method_options()[0] != "parallel" and not _ends(surface)
 
 
 def local_heights(
@@ -234,8 +245,8 @@ def local_heights(
             found = replace(found, lowest=float(points[:, 2].min()), highest=float(points[:, 2].max()))
         found, of_method = _fitted(found, Task(work, points, np.empty((0, 2)), settings, threads))
         told += of_method
-        if settings.get("extrapolate") == "nearest":
-            found = replace(found, needed=max(found.needed, 1), hull=hull_corners(points))
+        if settings.get("extrapolate") in ("nearest", "none") and method != "grid":
+            found = replace(found, hull=hull_corners(points))
         if found.takes_points:  # of no nodes: it checks the settings
             found.heights(work, np.array(points[:1]), np.empty((0, 2)), threads)
     except native.InputError as error:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import secrets
@@ -116,9 +117,7 @@ class MappedArrays:
         file = self._new_file()
         with _told_of(file):
             array = np.lib.format.open_memmap(file, "w+", dtype, shape)
-            if hasattr(os, "posix_fallocate") and array.nbytes:  # a disk that is full tells it now
-                with file.open("r+b") as opened:
-                    os.posix_fallocate(opened.fileno(), 0, file.stat().st_size)
+            _reserve(file)
             return array
 
     def _new_file(self) -> Path:
@@ -180,6 +179,19 @@ def _told_of(file: Path) -> Iterator[None]:
     except OSError as error:
         text = f"{file}: {error.strerror or error}; make room, or choose another folder"
         raise OutputFailed(text) from error
+
+
+def _reserve(file: Path) -> None:
+    """Takes the room of a file on the disk, so that a full one tells it now: where it is written in memory
+    nobody can be told. Systems and disks that cannot do that are left alone."""
+    if not hasattr(os, "posix_fallocate"):
+        return
+    with file.open("r+b") as opened:
+        try:
+            os.posix_fallocate(opened.fileno(), 0, file.stat().st_size)
+        except OSError as error:
+            if error.errno not in (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP):
+                raise
 
 
 def _header(dtype: np.dtype, shape: tuple[int, ...]) -> bytes:

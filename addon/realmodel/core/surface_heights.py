@@ -132,13 +132,17 @@ def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Tria
         return np.column_stack([nodes, z]), triangles
     kept = triangles[known[triangles].all(axis=1)]
     if not len(kept):
-        raise InputRefused(
-            "no triangle of the region's mesh has heights at all its nodes",
-            advice='extrapolate = "method" or "nearest" gives heights beyond the points',
-        )
+        raise no_triangle_known()
     used = used_vertices(nodes, kept)
     number = np.cumsum(used, dtype=np.int32) - 1
     return np.column_stack([nodes[used], z[used]]), number[kept]
+
+
+def no_triangle_known() -> InputRefused:
+    return InputRefused(
+        "no triangle of the region's mesh has heights at all its nodes",
+        advice='extrapolate = "method" or "nearest" gives heights beyond the points',
+    )
 
 
 def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):

@@ -265,13 +265,15 @@ def _native_model(model) -> dict:
 
 def _bases(model) -> np.ndarray:
     """(B,) float64 the base elevation that each block may stand on, NaN for none; (0,), not known, where a
-    body stands on several."""
+    body stands on several, or in a tile on any."""
     bases = [np.nan if rock.base_elevation is None else rock.base_elevation for rock in model.project.rocks]
     oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
     found = []
     for block in model.blocks:
         rocks = [block.rock] if block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
+            if model.structures is None:
+                return np.empty(0)
             rocks = model.structures.times[block.surface - oldest[-1] - len(model.structures.faults)]
         stands = {bases[rock] for rock in rocks} - {np.nan}
         if len(stands) > 1:

@@ -194,7 +194,18 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
     faces_ = faces_of(
         model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, threads,
         progress);
+    // in the model's order: what is decided by numbers does not depend on which faces come first
     std::vector<NodeId> own_vertex(model.vertex_count(), -1);
+    for (const std::int32_t face : faces_) {
+        for (const NodeId v : model.face(index(face)))
+            own_vertex[index(v)] = 0;
+    }
+    for (std::size_t v = 0; v < own_vertex.size(); ++v) {
+        if (own_vertex[v] < 0) continue;
+        own_vertex[v] = static_cast<NodeId>(vertices_.size());
+        vertices_.push_back(model.vertex(static_cast<NodeId>(v)));
+        vertices_of_.push_back(static_cast<NodeId>(v));
+    }
     for (const std::int32_t face : faces_) {
         const auto f = index(face);
         std::array<std::int32_t, 2> own{-1, -1};
@@ -204,11 +215,6 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
-            if (own_vertex[index(v)] < 0) {
-                own_vertex[index(v)] = static_cast<NodeId>(vertices_.size());
-                vertices_.push_back(model.vertex(v));
-                vertices_of_.push_back(v);
-            }
             face_vertices_.push_back(own_vertex[index(v)]);
         }
         face_offsets_.push_back(static_cast<std::int64_t>(face_vertices_.size()));

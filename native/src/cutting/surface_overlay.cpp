@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"
 #include "exact/orient2d.hpp"
 
@@ -266,6 +267,7 @@ void SurfaceOverlay::name_nodes() {
         }
         loops_.nodes[i] = node;
     }
+    sort_new_nodes();
     for (std::size_t i = 0; i < parts_.beside.size(); ++i) {
         loops_.add_loop(parts_.beside[i]);
         loops_.end_region();
@@ -273,6 +275,27 @@ void SurfaceOverlay::name_nodes() {
     parts_.beside = {};
     // edges and sides number regions and then faces in one row
     checked_number(size() + model_.face_count(), "faces and their parts");
+}
+
+/// Numbers the new nodes in the order of their places: whatever else there is elsewhere, what is
+/// decided by numbers is decided alike.
+void SurfaceOverlay::sort_new_nodes() {
+    const auto first = static_cast<NodeId>(model_.vertex_count());
+    std::vector<std::pair<Position, NodeId>> order;
+    for (std::size_t i = 0; i < new_positions_.size(); ++i)
+        order.push_back({new_positions_[i], static_cast<NodeId>(i)});
+    parallel_sort(order, std::less<>(), threads_, progress_);
+    std::vector<NodeId> number(order.size());
+    std::vector<SpacePointId> exact(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        new_positions_[i] = order[i].first;
+        exact[i] = exact_of_new_[index(order[i].second)];
+        number[index(order[i].second)] = first + static_cast<NodeId>(i);
+    }
+    exact_of_new_ = std::move(exact);
+    for (NodeId& node : loops_.nodes) {
+        if (node >= first) node = number[index(node - first)];
+    }
 }
 
 SpacePointId SurfaceOverlay::exact(NodeId node) {

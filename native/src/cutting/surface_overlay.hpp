@@ -137,6 +137,7 @@ private:
     void add_triangles();
     void overlay_all();
     void name_nodes();
+    void sort_new_nodes();
 
     const ComplexView& model_;
     const CutterSurface& surface_;

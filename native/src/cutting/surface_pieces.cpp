@@ -87,6 +87,8 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<N
             positions.push_back(overlay.position(p));
             own.push_back({p, view(positions.back())});
         }
+        // the same polygons wherever the loop begins
+        std::ranges::rotate(own, std::ranges::min_element(own, {}, &LoopCorner::node));
     }
     std::vector<NodeId> sorted(loops[0].begin(), loops[0].end());
     std::sort(sorted.begin(), sorted.end());

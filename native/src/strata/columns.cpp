@@ -128,6 +128,7 @@ BuiltCells build_columns(Site& site, int threads, Progress* progress) {
     site.geometry.expect_lines(4 * site.geometry.point_count());
     Construction construction;
     construction.may_lack_nodes = site.wanted.has_value();
+    construction.is_local = site.is_local;
     RockFootprints footprints;
     double start = kInputDone;
     for (EnteredRock& rock : site.rocks) {

@@ -120,13 +120,33 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
     return {std::move(result), std::move(built.border)};
 }
 
+/// The vertices of all meshes, those of a region last in its rock mass.
+std::vector<std::vector<double>> snapped(std::span<const StackInput> rocks,
+                                         const PlanSnapping& snapping) {
+    std::vector<std::vector<double>> meshes;
+    const auto add = [&](std::span<const double> vertices, std::size_t columns) {
+        auto& mesh = meshes.emplace_back(vertices.begin(), vertices.end());
+        for (std::size_t row = 0; row + 1 < mesh.size(); row += columns) {
+            mesh[row] = snapping.x(mesh[row]);
+            mesh[row + 1] = snapping.y(mesh[row + 1]);
+        }
+    };
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& surface : rock.surfaces)
+            add(surface.vertices, 3);
+        if (rock.region) add(rock.region->vertices, 2);
+    }
+    return meshes;
+}
+
 }  // namespace
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
-                              CellKind cells, const WantedSpace* wanted) {
+                              CellKind cells, const WantedSpace* wanted, bool is_local) {
     const page_store::Keeper keeper;
     const Entered entered = enter_joined(rocks, threads, progress);
     if (wanted != nullptr) entered.site->wanted.emplace(*wanted);
+    entered.site->is_local = is_local;
     return build_site(*entered.site, entered.warnings, cells, threads, progress).complex;
 }
 
@@ -163,22 +183,25 @@ JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Pro
             result.meshes.push_back({joined.vertices[m], joined.triangles[m]});
         return result;
     }
-    const auto add = [&](std::span<const double> vertices, std::span<const std::int32_t> triangles,
-                         std::size_t columns) {
+    auto vertices = snapped(rocks, entered.snapping);
+    std::size_t next = 0;
+    const auto add = [&](std::span<const std::int32_t> triangles) {
         auto& mesh = result.meshes.emplace_back();
-        mesh.vertices.assign(vertices.begin(), vertices.end());
+        mesh.vertices = std::move(vertices[next++]);
         mesh.triangles.assign(triangles.begin(), triangles.end());
-        for (std::size_t row = 0; row + 1 < mesh.vertices.size(); row += columns) {
-            mesh.vertices[row] = entered.snapping.x(mesh.vertices[row]);
-            mesh.vertices[row + 1] = entered.snapping.y(mesh.vertices[row + 1]);
-        }
     };
     for (const StackInput& rock : rocks) {
         for (const SurfaceView& surface : rock.surfaces)
-            add(surface.vertices, surface.triangles, 3);
-        if (rock.region) add(rock.region->vertices, rock.region->triangles, 2);
+            add(surface.triangles);
+        if (rock.region) add(rock.region->triangles);
     }
     return result;
+}
+
+SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads, Progress* progress) {
+    const PlanSnapping snapping = find_snapping(rocks, threads, progress);
+    if (snapping.empty()) return {};
+    return {snapped(rocks, snapping), joined_by_rounding(snapping, {})};
 }
 
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress, CellKind cells) {

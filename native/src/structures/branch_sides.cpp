@@ -8,6 +8,7 @@
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/nearest_side.hpp"
 #include "cutting/triangulate.hpp"
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {
 
@@ -117,6 +118,14 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
         (nearest(middle) == cutting::kBelow ? found.below : found.above) += area;
     }
     return found;
+}
+
+std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std::int32_t other) {
+    const BranchSides found = branch_sides(surface, branch, other);
+    if (std::min(found.above, found.below) == 0 && !found.meets)
+        throw InputError("does_not_meet", "the fault does not meet a fault that it is to end at",
+                         branch, {other});
+    return found.below > found.above ? cutting::kBelow : cutting::kAbove;
 }
 
 }  // namespace realmodel::structures

@@ -15,4 +15,8 @@ struct BranchSides {
 /// the rock and away from it.
 BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, std::int32_t other);
 
+/// On which side of the other one the larger part of its area lies.
+/// @throws InputError kind does_not_meet
+std::int8_t kept_side(const StructureSurface& surface, std::int32_t branch, std::int32_t other);
+
 }  // namespace realmodel::structures

@@ -277,13 +277,15 @@ std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> s
 }
 
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
-                   std::span<const std::uint8_t> acts, int threads, Progress* progress) {
+                   std::span<const std::uint8_t> acts, int threads, Progress* progress,
+                   std::span<const ContinuedStructure> continued) {
     Box rock;
     for (const PartModel& own : models) {
         cutting::check_model(own.model);
         rock.include(box_of(own.model));
     }
-    const StructureSurface surface = structure_surface(structures, rock);
+    const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
+                                                       : structure_surface(structures, continued);
     const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(progress, 0, 0.1, "leaving out what is in other parts");
     std::vector<std::vector<Place>> places;

@@ -220,13 +220,12 @@ bool StructureSides::is_beyond(std::int32_t s, std::size_t part) const {
 
 /// Of a fault that ends at others: on which side of each the larger part of its area lies.
 void StructureSides::find_kept_sides(std::int32_t s) {
-    for (const std::int32_t other : structures_[index(s)].ends_at) {
-        const BranchSides found = branch_sides(surface_, s, other);
-        if (std::min(found.above, found.below) == 0 && !found.meets)
-            throw InputError("does_not_meet",
-                             "the fault does not meet a fault that it is to end at", s, {other});
-        kept_[index(s)].push_back(found.below > found.above ? kBelow : kAbove);
+    if (!surface_.kept.empty()) {
+        kept_[index(s)] = surface_.kept[index(s)];
+        return;
     }
+    for (const std::int32_t other : structures_[index(s)].ends_at)
+        kept_[index(s)].push_back(kept_side(surface_, s, other));
 }
 
 /// Takes what is known of a part to all that can be reached from it.

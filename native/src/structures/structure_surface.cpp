@@ -11,6 +11,7 @@
 #include "base/disjoint_sets.hpp"
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
+#include "structures/branch_sides.hpp"
 #include "structures/mean_plane.hpp"
 
 namespace realmodel::structures {
@@ -335,6 +336,38 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
     return *std::move(found);
 }
 
+/// Puts triangles of structures together, one structure after another.
+class SurfaceOfTriangles {
+public:
+    void begin(bool is_closed) { all_.single.emplace_back().is_closed = is_closed; }
+    void add(const std::array<Position, 3>& corners, bool is_continuation) {
+        const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
+        if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
+        all_.surface.triangles.push_back(t);
+        all_.structure.push_back(static_cast<std::int32_t>(all_.single.size()) - 1);
+        all_.is_continuation.push_back(is_continuation ? 1 : 0);
+        CutterSurface& single = all_.single.back();
+        std::array<NodeId, 3> own{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            own[i] = static_cast<NodeId>(single.vertices.size());
+            single.vertices.push_back(all_.surface.vertices[index(t[i])]);
+        }
+        single.triangles.push_back(own);
+    }
+    StructureSurface surface() && { return std::move(all_); }
+
+private:
+    NodeId node(const Position& p) {
+        const auto [found, is_new] =
+            number_.try_emplace(p, static_cast<NodeId>(all_.surface.vertices.size()));
+        if (is_new) all_.surface.vertices.push_back(p);
+        return found->second;
+    }
+
+    StructureSurface all_;
+    std::map<Position, NodeId> number_;
+};
+
 /// @param count  of structures, those that are taken
 /// @param continues_all  whether those are continued, too, that divide the rock by themselves
 StructureSurface surface_of(std::span<const Structure> structures, std::size_t count,
@@ -348,43 +381,20 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
     }
     const Position extent = minus(whole.high, whole.low);
     const double size = std::sqrt(dot(extent, extent));
-    StructureSurface all;
-    std::map<Position, NodeId> number;
-    const auto node = [&](const Position& p) {
-        const auto [found, is_new] =
-            number.try_emplace(p, static_cast<NodeId>(all.surface.vertices.size()));
-        if (is_new) all.surface.vertices.push_back(p);
-        return found->second;
-    };
+    SurfaceOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];
-        const auto add = [&](const std::array<Position, 3>& corners, bool is_continuation) {
-            const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
-            if (cutting::in_one_line(corners[0], corners[1], corners[2])) return;
-            all.surface.triangles.push_back(t);
-            all.structure.push_back(s);
-            all.is_continuation.push_back(is_continuation ? 1 : 0);
-        };
-        const std::size_t first = all.surface.triangles.size();
+        all.begin(own.is_closed);
         for (const auto& t : own.triangles)
-            add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
+            all.add(
+                {own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
         if (!structures[index(s)].is_body && (continues_all || !divides(own, rock))) {
             for (const auto& t : continuation(structures, given, s, size))
-                add(t, true);
-        }
-        CutterSurface& single = all.single.emplace_back();
-        single.is_closed = own.is_closed;
-        for (std::size_t t = first; t < all.surface.triangles.size(); ++t) {
-            std::array<NodeId, 3> corners{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                corners[i] = static_cast<NodeId>(single.vertices.size());
-                single.vertices.push_back(all.surface.vertices[index(all.surface.triangles[t][i])]);
-            }
-            single.triangles.push_back(corners);
+                all.add(t, true);
         }
     }
-    return all;
+    return std::move(all).surface();
 }
 
 }  // namespace
@@ -409,6 +419,42 @@ CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
 
 StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
     return surface_of(structures, structures.size(), rock, false);
+}
+
+StructureSurface structure_surface(std::span<const Structure> structures,
+                                   std::span<const ContinuedStructure> continued) {
+    SurfaceOfTriangles all;
+    std::vector<std::vector<std::int8_t>> kept;
+    for (std::size_t s = 0; s < structures.size(); ++s) {
+        all.begin(structures[s].is_body);
+        for (std::size_t t = 0; t < continued[s].triangles.size(); ++t)
+            all.add(continued[s].triangles[t], continued[s].is_continuation[t] != 0);
+        kept.push_back(continued[s].kept);
+    }
+    StructureSurface surface = std::move(all).surface();
+    surface.kept = std::move(kept);
+    return surface;
+}
+
+std::vector<ContinuedStructure> continued_structures(
+    std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners) {
+    Box rock;
+    for (const Position& corner : corners)
+        rock.include(corner);
+    const StructureSurface surface = structure_surface(structures, rock);
+    std::vector<ContinuedStructure> found(structures.size());
+    for (std::size_t s = 0; s < structures.size(); ++s) {
+        for (const std::int32_t other : structures[s].ends_at)
+            found[s].kept.push_back(kept_side(surface, static_cast<std::int32_t>(s), other));
+    }
+    for (std::size_t t = 0; t < surface.structure.size(); ++t) {
+        ContinuedStructure& own = found[index(surface.structure[t])];
+        auto& corners_of = own.triangles.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            corners_of[i] = surface.surface.vertices[index(surface.surface.triangles[t][i])];
+        own.is_continuation.push_back(surface.is_continuation[t]);
+    }
+    return found;
 }
 
 StructureSurface first_surface(std::span<const Structure> structures, const Box& rock) {

@@ -21,11 +21,17 @@ struct StructureSurface {
     std::vector<std::int32_t> structure;         ///< of triangles
     std::vector<std::uint8_t> is_continuation;   ///< of triangles
     std::vector<cutting::CutterSurface> single;  ///< each structure with its continuation
+    /// Of faults, where it is given: the side of each that they end at where they are.
+    std::vector<std::vector<std::int8_t>> kept;
 };
 
 /// @param rock  a box around the rock
 /// @throws InputError  as parts_of does
 StructureSurface structure_surface(std::span<const Structure> structures, const spatial::Box& rock);
+
+/// The same of structures that are continued already, in their order.
+StructureSurface structure_surface(std::span<const Structure> structures,
+                                   std::span<const ContinuedStructure> continued);
 
 /// The first of some structures alone, with what continues it; the others are the faults that it
 /// ends at.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/strata/stack.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+
 #include "complex_checks.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -446,6 +450,91 @@ TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
         input.base_elevation = base;
         EXPECT_NE(refusal(input).find("base elevation"), std::string::npos);
     }
+}
+
+using Faces = std::multiset<std::vector<std::array<double, 3>>>;
+
+/// The faces of cells that lie within a window, each by its corners in order of their places.
+Faces faces_of_cells_in(const CellComplex& c, double low, double high) {
+    std::vector<std::uint8_t> inside(c.cell_block.size(), 1);
+    const auto corners = [&](std::size_t f) {
+        std::vector<std::array<double, 3>> found;
+        for (auto i = c.face_offsets[f]; i < c.face_offsets[f + 1]; ++i) {
+            found.push_back(
+                c.vertices[static_cast<std::size_t>(c.face_vertices[static_cast<std::size_t>(i)])]);
+        }
+        std::ranges::sort(found);
+        return found;
+    };
+    const auto each_cell = [&](std::size_t f, const auto& visit) {
+        for (const std::int32_t cell : c.face_cells[f]) {
+            if (cell >= 0) visit(static_cast<std::size_t>(cell));
+        }
+    };
+    for (std::size_t f = 0; f < c.face_cells.size(); ++f) {
+        for (const auto& p : corners(f)) {
+            if (p[0] < low || p[0] > high || p[1] < low || p[1] > high)
+                each_cell(f, [&](std::size_t cell) { inside[cell] = 0; });
+        }
+    }
+    Faces faces;
+    for (std::size_t f = 0; f < c.face_cells.size(); ++f)
+        each_cell(f, [&](std::size_t cell) {
+            if (inside[cell] != 0) faces.insert(corners(f));
+        });
+    return faces;
+}
+
+/// Only the triangles that lie in a window, or reach into it.
+OwnedSurface part_of(const OwnedSurface& whole, double low, double high) {
+    OwnedSurface part;
+    part.vertices = whole.vertices;
+    for (std::size_t t = 0; t < whole.triangles.size(); t += 3) {
+        std::array least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double x =
+                    whole.vertices[3 * static_cast<std::size_t>(whole.triangles[t + i]) + k];
+                least[k] = std::min(least[k], x);
+                most[k] = std::max(most[k], x);
+            }
+        }
+        if (least[0] <= high && least[1] <= high && most[0] >= low && most[1] >= low)
+            part.triangle(whole.triangles[t], whole.triangles[t + 1], whole.triangles[t + 2]);
+    }
+    return part;
+}
+
+TEST(Stack, WhatIsLocalFollowsFromTheTrianglesNearIt) {
+    const auto wave = [](double z, double a) {
+        return [=](double x, double y) { return z + 0.4 * std::sin(3 * x + a) * std::cos(2 * y); };
+    };
+    // lattices with lines in common, on which edges match here and do not match there
+    const std::vector<OwnedSurface> whole{grid(16, 16, 0, 0, 8, 8, wave(0, 0)),
+                                          grid(8, 8, 0, 0, 8, 8, wave(0.3, 1)),
+                                          grid(12, 12, 0, 0, 8, 8, wave(0.5, 2))};
+    std::vector<OwnedSurface> part;
+    for (const OwnedSurface& s : whole)
+        part.push_back(part_of(s, 2, 6));
+    const auto built = [](const std::vector<OwnedSurface>& surfaces, bool is_local) {
+        StackInput input;
+        for (const OwnedSurface& s : surfaces)
+            input.surfaces.push_back(s.view());
+        input.base_elevation = -3;
+        const CellComplex complex =
+            build_rock_masses({&input, 1}, 2, nullptr, CellKind::kColumns, nullptr, is_local);
+        expect_valid(complex, false);
+        return complex;
+    };
+    const CellComplex of_all = built(whole, true), of_part = built(part, true);
+    const Faces faces = faces_of_cells_in(of_all, 3, 5);
+    EXPECT_GT(faces.size(), 500U);
+    EXPECT_EQ(faces, faces_of_cells_in(of_part, 3, 5));
+    const CellComplex usual = built(whole, false);
+    EXPECT_EQ(usual.cell_block.size(), of_all.cell_block.size());
+    EXPECT_LT(usual.face_vertices.size(), of_all.face_vertices.size());
+    for (std::size_t b = 0; b < usual.volumes.size(); ++b)
+        EXPECT_NEAR(usual.volumes[b], of_all.volumes[b], 1e-12);
 }
 
 }  // namespace

@@ -220,6 +220,50 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
     }
 }
 
+TEST(JoinModels, StructuresMayBeContinuedBefore) {
+    const CellComplex west = layers({0, 1, 2}), east = layers({0.5, 1.5, 2.5});
+    const OwnedSurface upright = sheet(1, 0, 1, 3, 0.5, 1.5), other = sheet(2.5, 0.1);
+    Structure dying = fault(upright);
+    dying.dies_out = true;
+    const std::array structures{dying, fault(other)};
+    const auto side = [&](std::size_t s, double x) {
+        return sides_of_points(std::span(structures).subspan(s, 1), std::array{x, 2.0, 1.0}, 1,
+                               nullptr)[0];
+    };
+    std::vector<PartModel> models;
+    for (const double x : {0.5, 2.0, 3.8})
+        models.push_back({with(x > 3 ? east : west, 2), {side(0, x), side(1, x)}});
+    const Joined here = joined(models, structures, kAllAct);
+    const auto continued = continued_structures(structures, {{{0, 0, 0}, {4, 4, 2.5}}});
+    ASSERT_EQ(continued.size(), 2U);
+    EXPECT_GT(std::ranges::count(continued[0].is_continuation, 1), 0);
+    EXPECT_EQ(std::ranges::count(continued[1].is_continuation, 1), 0);  // it divides the rock
+    const Joined there = join_models(models, structures, kAllAct, 1, nullptr, continued);
+    EXPECT_TRUE(std::ranges::equal(here.complex.vertices, there.complex.vertices));
+    EXPECT_TRUE(std::ranges::equal(here.complex.face_vertices, there.complex.face_vertices));
+    EXPECT_TRUE(std::ranges::equal(here.complex.face_cells, there.complex.face_cells));
+    EXPECT_EQ(here.cell_part, there.cell_part);
+}
+
+TEST(ContinuedStructures, ABranchHasTheSideOnWhichItRemains) {
+    const OwnedSurface main = sheet(2, 0);
+    OwnedSurface branch;  // level, most of it west of the other one
+    for (const double y : {-9.0, 9.0}) {
+        for (const double x : {-9.0, 3.0})
+            branch.vertex(x, y, 1);
+    }
+    branch.triangle(0, 1, 3);
+    branch.triangle(0, 3, 2);
+    Structure ends = fault(branch);
+    ends.ends_at = {0};
+    const std::array structures{fault(main), ends};
+    const auto continued = continued_structures(structures, {{{0, 0, 0}, {4, 4, 2}}});
+    EXPECT_TRUE(continued[0].kept.empty());
+    const std::int8_t west =
+        sides_of_points(std::span(structures).first(1), std::array{0.5, 2.0, 1.0}, 1, nullptr)[0];
+    EXPECT_EQ(continued[1].kept, (std::vector<std::int8_t>{west}));
+}
+
 TEST(JoinModels, WhatLiesBetweenTwoCellsOnAFaultIsNotDividedFromItsMiddle) {
     const CellComplex west = layers({0, 1, 2}, 1), east = layers({0.5, 1.5, 2.5}, 1);
     const OwnedSurface inclined = sheet(1, 0.25);

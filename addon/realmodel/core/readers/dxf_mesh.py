@@ -6,14 +6,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
-from .text import LINES_AT_ONCE, Step, no_step, read_text
-from .triangle_mesh import TriangleMesh, mesh_of_faces
+from ..mapped_arrays import MakeRows, Rows
+from .shared_vertices import share_vertices
+from .text import LINES_AT_ONCE, Step, no_step, text_lines
+from .triangle_mesh import MeshRows, TriangleMesh
 
 _BEGINNING = re.compile(rb"(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
 _HEADER = 200_000  # characters in which the header's variables are looked for
@@ -30,51 +31,85 @@ def begins_as_dxf(head: bytes) -> bool:
     )
 
 
-def read_dxf(file: str | Path, step: Step = no_step) -> TriangleMesh:
+def read_dxf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
     """The faces of all entities of the drawing as one mesh; corners at the same place become one vertex.
-    Faces
-    in blocks that are inserted are not read. Raises InputRefused naming file and line."""
+    Faces in blocks that are inserted are not read. rows: where they are kept; a polyface mesh is in memory
+    before. Raises InputRefused naming file and line."""
     file = Path(file)
     with file.open("rb") as opened:
         if opened.read(len(_BINARY)) == _BINARY:
             raise InputRefused("binary DXF is not read", file=file, advice="save it as text (ASCII)")
-    faces: list[list[tuple[float, ...]]] = []
-    text = read_text(file)
-    for entity, number, codes in _entities(file, text, step):
+    corners, sizes, lines = rows(np.empty((0, 3))), rows(np.empty(0, np.int64)), _Lines(file, step)
+    count = sum(_keep(some, corners, sizes) for some in _faces(file, lines))
+    if not count:
+        advice = "export the surface as 3D faces (3DFACE) or as a polyface mesh"
+        raise InputRefused("it has no 3D faces", file=file, advice=advice)
+    mesh = MeshRows(file, rows)
+    share_vertices(corners.array(), sizes.array(), mesh, rows)
+    # many programs write the unit of their template, so that nothing is converted by it
+    said = _UNITS.search(lines.head)
+    unit = _UNIT_NAMES.get(int(said[1])) if said else None
+    return replace(mesh.mesh(), said_unit=unit)
+
+
+def _faces(file: Path, lines: _Lines) -> Iterator[list[list[tuple[float, ...]]]]:
+    """The places of the corners of faces, some faces at a time."""
+    faces = []
+    for entity, number, codes in _entities(file, lines):
         try:
             if entity == "3DFACE":
-                corners = [_place(codes, corner) for corner in range(4 if 13 in codes else 3)]
-                faces.append(_without_repeats(corners))
+                given = [_place(codes, corner) for corner in range(4 if 13 in codes else 3)]
+                faces.append(_without_repeats(given))
             elif entity == "POLYLINE":
                 faces += _polyline_faces(codes)
         except (ValueError, KeyError, IndexError) as error:
             raise InputRefused(f"a {entity} that cannot be read", file=file, line=number) from error
+        if len(faces) >= LINES_AT_ONCE:
+            yield faces
+            faces = []
+    yield faces
+
+
+def _keep(faces: list[list[tuple[float, ...]]], corners: Rows, sizes: Rows) -> int:
+    """Adds faces that are some; how many there were."""
     faces = [face for face in faces if len(face) > 2]
-    if not faces:
-        advice = "export the surface as 3D faces (3DFACE) or as a polyface mesh"
-        raise InputRefused("it has no 3D faces", file=file, advice=advice)
-    corners = np.array([place for face in faces for place in face])
-    vertices, index = np.unique(corners, axis=0, return_inverse=True)
-    index, ends = index.ravel().tolist(), np.cumsum([len(face) for face in faces]).tolist()
-    mesh = mesh_of_faces(file, vertices, [index[begin:end] for begin, end in pairwise([0, *ends])])
-    # many programs write the unit of their template, so that nothing is converted by it
-    said = _UNITS.search(text, 0, _HEADER)
-    unit = _UNIT_NAMES.get(int(said[1])) if said else None
-    return replace(mesh, said_unit=unit)
+    if faces:
+        corners.add(np.array([place for face in faces for place in face]) + 0.0)  # zero has one sign
+        sizes.add(np.array([len(face) for face in faces]))
+    return len(faces)
 
 
-def _entities(file: Path, text: str, step: Step) -> Iterator[tuple[str, int, dict]]:
+class _Lines:
+    """The lines of a file by twos, as a DXF has them. head: what it begins with, once some were read; count:
+    of lines, once all were."""
+
+    def __init__(self, file: Path, step: Step):
+        self._file, self._step = file, step
+        self.head, self.count = "", 0
+
+    def pairs(self) -> Iterator[tuple[int, str, str]]:
+        """The number of the first, from 1, and both."""
+        rest: list[str] = []
+        for first, lines, share in text_lines(self._file):
+            if first == 1:
+                self.head = "\n".join(lines)[:_HEADER]
+            self.count = first + len(lines) - 1
+            number = first - len(rest)
+            lines = rest + lines
+            for at in range(0, len(lines) - 1, 2):
+                yield number + at, lines[at].strip(), lines[at + 1].strip()
+            rest = lines[len(lines) // 2 * 2 :]
+            self._step(0.5 * share)
+
+
+def _entities(file: Path, lines: _Lines) -> Iterator[tuple[str, int, dict]]:
     """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has those of
     its VERTEX entities under "vertices"."""
-    lines = text.split("\n")
     within, section, polyline = False, False, None
     name, begin, codes = "", 0, {}
-    for at in range(0, len(lines) - 1, 2):
-        if at % LINES_AT_ONCE == 0:
-            step(at / len(lines))
-        code, value = lines[at].strip(), lines[at + 1].strip()
+    for at, code, value in lines.pairs():
         if not code.lstrip("-").isdecimal():
-            raise InputRefused(f"'{code:.40}' is no group code", file=file, line=at + 1)
+            raise InputRefused(f"'{code:.40}' is no group code", file=file, line=at)
         if code != "0":
             if section and code == "2":
                 within, section = value.upper() == "ENTITIES", False
@@ -91,12 +126,12 @@ def _entities(file: Path, text: str, step: Step) -> Iterator[tuple[str, int, dic
                 polyline = None
             else:
                 yield name, begin, codes
-        name, begin, codes = value.upper(), at + 2, {}
+        name, begin, codes = value.upper(), at + 1, {}
         section = name == "SECTION"
         within = within and name != "ENDSEC"
         if name == "EOF":
             return
-    raise InputRefused("the file has no EOF", file=file, line=len(lines), advice="it is cut off")
+    raise InputRefused("the file has no EOF", file=file, line=lines.count, advice="it is cut off")
 
 
 def _place(codes: dict, corner: int) -> tuple[float, ...]:

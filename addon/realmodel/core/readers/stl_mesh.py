@@ -9,18 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ..mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows, in_pieces
+from ..mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from .damaged_mesh import UNREADABLE, Damaged, unreadable
+from .shared_vertices import share_vertices
 from .text import BYTES_AT_ONCE, FileBytes, Step, no_step
 from .triangle_mesh import MeshRows, TriangleMesh
 
 _CORNER = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _HEAD, _FACET = 84, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
 _END = b"endfacet"
-_CORNERS_AT_ONCE = 3 << 16
-_OF_PART = 1 << 8  # places that tell where slices end
-_PLACED = np.dtype([("place", np.float64, 3), ("corner", np.int64)])
-_NAMED = np.dtype([("corner", np.int64), ("vertex", np.int64)])
 
 
 def begins_as_stl(head: bytes, size: int) -> bool:
@@ -51,7 +48,7 @@ def read_stl(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
             step(0.5 * share)
     except UNREADABLE as error:
         raise unreadable(file, "STL", error) from error
-    _share_vertices(corners.array(), mesh, rows)
+    share_vertices(corners.array(), None, mesh, rows)
     return mesh.mesh()
 
 
@@ -94,43 +91,3 @@ def _wrong_facet(raw: bytes) -> int:
             break
         at += len(facet) + len(_END)
     return raw.count(b"\n", 0, max(raw.find(b"facet", at), at)) + 1
-
-
-def _share_vertices(corners: np.ndarray, mesh: MeshRows, rows: MakeRows) -> None:
-    """Adds corners (3 T, 3) to a mesh, each place once, in the order of its coordinates: slice by slice of x,
-    and then triangle by triangle."""
-    if not len(corners):
-        return
-    parts = -(-len(corners) // _CORNERS_AT_ONCE)
-    some = np.sort(corners[:: -(-len(corners) // (parts * _OF_PART)), 0])
-    ends = np.unique(some[[len(some) * part // parts for part in range(1, parts)]])
-    slices = [rows(np.empty(0, _PLACED)) for _ in range(len(ends) + 1)]
-    begin = 0
-    for piece in in_pieces(corners):
-        placed = np.empty(len(piece), _PLACED)
-        placed["place"], placed["corner"] = piece, np.arange(begin, begin + len(piece))
-        begin += len(piece)
-        _distribute(placed, np.searchsorted(ends, piece[:, 0], "right"), slices)
-    of_triangles = [rows(np.empty(0, _NAMED)) for _ in range(parts)]
-    for each in slices:
-        placed = each.taken()
-        vertices, index = np.unique(placed["place"], axis=0, return_inverse=True)
-        named = np.empty(len(placed), _NAMED)
-        named["corner"], named["vertex"] = placed["corner"], index.ravel() + mesh.vertices
-        mesh.add_vertices(vertices)
-        _distribute(named, named["corner"] // _CORNERS_AT_ONCE, of_triangles)
-    for part, each in enumerate(of_triangles):
-        named = each.taken()
-        index = np.empty(len(named), np.int64)
-        index[named["corner"] - part * _CORNERS_AT_ONCE] = named["vertex"]
-        mesh.add_faces(index.reshape(-1, 3))
-
-
-def _distribute(table: np.ndarray, part: np.ndarray, parts: list[Rows]) -> None:
-    """part: of each row."""
-    if not len(part):
-        return
-    order = np.argsort(part, kind="stable")
-    there, begins = np.unique(part[order], return_index=True)
-    for number, which in zip(there.tolist(), np.split(order, begins[1:]), strict=True):
-        parts[number].add(table[which])

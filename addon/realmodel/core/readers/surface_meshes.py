@@ -8,7 +8,6 @@ properties) is left out.
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,8 +16,9 @@ from ..errors import InputRefused
 from ..mapped_arrays import MakeRows, Rows
 from ..units import METERS
 from .damaged_mesh import UNREADABLE
-from .text import LINES_AT_ONCE, Step, no_step, text_lines
-from .triangle_mesh import MeshRows, TriangleMesh
+from .pending_mesh import PendingMesh, VertexNumbers
+from .text import Step, no_step, text_lines
+from .triangle_mesh import TriangleMesh
 
 
 def begins_as_obj(head: bytes, _size: int = 0) -> bool:
@@ -33,7 +33,7 @@ def begins_as_obj(head: bytes, _size: int = 0) -> bool:
 def read_obj(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
     """Reads all faces of a Wavefront OBJ. rows: where they are kept. Raises InputRefused naming file and
     line."""
-    found = _Pending(Path(file), rows)
+    found = PendingMesh(Path(file), rows)
     for number, words in _rows(found.file, step):
         try:
             if words[0] == "v":
@@ -50,82 +50,19 @@ def read_obj(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
     return found.mesh()
 
 
-class _Pending:
-    """A mesh of which a few vertices and faces wait to be added."""
-
-    def __init__(self, file: Path, rows: MakeRows):
-        self.file = file
-        self._mesh = MeshRows(file, rows)
-        self.vertices: list[list[float]] = []
-        self._faces: list[list[int]] = []
-        self._lines: list[int] = []
-
-    @property
-    def vertex_count(self) -> int:
-        """With those that wait."""
-        return self._mesh.vertices + len(self.vertices)
-
-    def add_face(self, corners: list[int], line: int) -> None:
-        self._faces.append(corners)
-        self._lines.append(line)
-
-    def flush_some(self) -> None:
-        """Adds what waits, if it is much."""
-        if len(self.vertices) + len(self._faces) >= LINES_AT_ONCE:
-            self._flush()
-
-    def _flush(self) -> None:
-        if self.vertices:
-            self._mesh.add_vertices(self.vertices)
-        self._mesh.add_faces(self._faces, self._lines)
-        self.vertices, self._faces, self._lines = [], [], []
-
-    def mesh(self) -> TriangleMesh:
-        self._flush()
-        return self._mesh.mesh()
-
-
-class _Index:
-    """The vertices of a surface by their numbers in the file: runs of consecutive ones, and others."""
-
-    def __init__(self):
-        self._runs: list[tuple[int, int]] = []  # where they begin, ascending, and the first vertex
-        self._ends: list[int] = []
-        self._others: dict[int, int] = {}
-
-    def __setitem__(self, number: int, vertex: int) -> None:
-        end = self._ends[-1] if self._ends else None
-        if end is not None and number < end:
-            self._others[number] = vertex
-            return
-        if number != end or vertex - number != self._runs[-1][1] - self._runs[-1][0]:
-            self._runs.append((number, vertex))
-            self._ends.append(number)
-        self._ends[-1] = number + 1
-
-    def __getitem__(self, number: int) -> int:
-        if number in self._others:
-            return self._others[number]
-        run = bisect_right(self._ends, number)
-        begin, first = self._runs[run]
-        if number < begin:
-            raise KeyError(number)
-        return first + number - begin
-
-
 def read_tsurf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
     """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights;
     a word says that values at vertices are not read. rows: where they are kept. Raises InputRefused
     naming file and line."""
     file = Path(file)
-    found, index = _Pending(file, rows), _Index()
+    found, index = PendingMesh(file, rows), VertexNumbers()
     up = 1.0
     properties: dict[str, None] = {}
     axis_units: set[str] = set()
     for number, words in _rows(file, step):
         try:
             if words[0] == "GOCAD":
-                index, up = _Index(), 1.0
+                index, up = VertexNumbers(), 1.0
                 if words[1] != "TSurf":
                     what = f"it holds a GOCAD {words[1]:.20}, which is no triangulated surface"
                     raise InputRefused(what, file=file, line=number, advice="export the TSurf alone")

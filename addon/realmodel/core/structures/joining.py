@@ -17,7 +17,14 @@ _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and j
 
 
 def build_joined(
-    work: Work, inputs: list, structures: Structures, cells: str, threads: int, start: float, end: float
+    work: Work,
+    inputs: list,
+    structures: Structures,
+    cells: str,
+    threads: int,
+    start: float,
+    end: float,
+    reach: Reach | None = None,
 ) -> dict:
     """As _native.build_rock_masses for rock masses (RockInput) with structures.
 
@@ -25,7 +32,8 @@ def build_joined(
     counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell,
     `cell_own_block` (C,) int32 is its block with those of bodies as body_block numbers them,
     `rock_of_own_block` (B,) int32 the rock mass of these, `own_block_divided` (S, B) as `acts` has it.
-    Bodies that are not there yet divide nothing. Raises InputRefused.
+    Bodies that are not there yet divide nothing. reach: of the structures; None: it is made here.
+    Raises InputRefused.
     """
     there = structures.there()
     if len(there) < len(structures):
@@ -33,7 +41,7 @@ def build_joined(
         built = build_joined(work, inputs, few, cells, threads, start, end)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
     models, parts, warnings = [], [], {}
-    reach = Reach(work, structures, threads)
+    reach = reach or Reach(work, structures, threads)
     begin = start + _BUILT * (end - start)
 
     def built_in(own_work: Work, part: int, own_threads: int) -> dict | None:
@@ -54,7 +62,12 @@ def build_joined(
     with work.phase(begin, end, "joining the compartments"):
         try:
             joined = work.native(
-                native.join_structured, models, structures.native(), divides, threads=threads
+                native.join_structured,
+                models,
+                structures.native(),
+                divides,
+                continued=structures.continued or [],
+                threads=threads,
             )
         except native.InputError as error:
             raise refused_structure(error, structures) from error
@@ -129,12 +142,15 @@ def _part_model(
     ]
     space = reach.cells_of(part)
     columns = space.any(axis=2)
+    if structures.continued is not None and columns.any():
+        # around a tile: sheets that ended here would be divided by lines that depend on what is far away
+        columns = np.ones_like(columns)
     kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
     stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
     taken = [n for n, stack in enumerate(stacks) if stack.sheets]
     if not taken:
         return None
-    rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
+    rows = [reach.numbers_of(sheet)[kept[id(sheet)]] for n in taken for sheet in stacks[n].sheets]
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
     more = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
@@ -143,6 +159,8 @@ def _part_model(
     around = reach.around(columns) if built_as == "blocks" else None
     if cells == "columns" and not space.all():
         more["wanted"] = (reach.low, reach.step, space.astype(np.uint8))
+    if structures.continued is not None:  # around a tile
+        more["is_local"] = True
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
     rocks = [
         (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
@@ -174,7 +192,7 @@ def _part_model(
     if (model["cell_block"] < 0).all():
         return None
     if (model["cell_block"] < 0).any():
-        model |= _without_cells(model, model["cell_block"] < 0)
+        model |= without_cells(model, model["cell_block"] < 0)
     if cells != built_as or (cells == "blocks" and len(set(blocks.tolist())) < len(blocks)):
         model |= one_cell_each(model)
     warnings = [
@@ -221,7 +239,7 @@ def _stack(inputs: list, structures: Structures, part: int, number: int, first: 
     )
     if not inside:
         return stack
-    ends = _beyond_all(sheets, structures)
+    ends = structures.ends or beyond_all(sheets, structures)
     plans = [entry.region] if entry.region is not None else distinct_plans(sheets)
     for at, (after, body) in enumerate(inside):
         given = structures.bodies[body]
@@ -239,7 +257,7 @@ def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> i
     return surfaces + rock * len(structures) + len(structures.faults) + body
 
 
-def _beyond_all(sheets, structures: Structures) -> tuple[float, float]:
+def beyond_all(sheets, structures: Structures) -> tuple[float, float]:
     """Heights below and above all sheets and bodies."""
     shapes = [*(vertices for vertices, _ in sheets), *(body.vertices for body in structures.bodies)]
     low, high = min(each[:, 2].min() for each in shapes), max(each[:, 2].max() for each in shapes)
@@ -271,7 +289,7 @@ def acts(inputs: list, structures: Structures) -> np.ndarray:
     return found
 
 
-def _without_cells(model: dict, dropped: np.ndarray) -> dict:
+def without_cells(model: dict, dropped: np.ndarray) -> dict:
     """The arrays of a model without some cells, (C,) bool: those under a body, where nothing is, and slivers
     on a floor."""
     number = np.append(np.where(dropped, -1, np.cumsum(~dropped) - 1), -1).astype(np.int32)
@@ -296,13 +314,16 @@ def _without_cells(model: dict, dropped: np.ndarray) -> dict:
     }
 
 
-def one_cell_each(model: dict) -> dict:
+def one_cell_each(model: dict, joins: np.ndarray | None = None) -> dict:
     """The arrays of a model of blocks with each connected part of a block as one cell: without the faces
-    between cells of one block."""
+    between cells of one block. joins: (F,) bool, the faces that connect; None: all. `cell`: (C,) int32 the
+    new cell of each."""
     faces, block = model["face_cells"], model["cell_block"]
-    part = native_module().cell_components(faces, block)
+    connecting = faces if joins is None else np.where(joins[:, None], faces, np.int32(-1))
+    part = native_module().cell_components(np.ascontiguousarray(connecting), block)
     roots, cell = np.unique(part, return_inverse=True)
-    cells = np.append(cell.ravel(), -1).astype(np.int32)[faces]
+    cell = cell.ravel().astype(np.int32)
+    cells = np.append(cell, np.int32(-1))[faces]
     kept = np.flatnonzero(cells[:, 0] != cells[:, 1])
     size = np.diff(model["face_offsets"])
     corner = np.repeat(np.isin(np.arange(len(faces)), kept), size)
@@ -314,4 +335,5 @@ def one_cell_each(model: dict) -> dict:
         "face_cells": np.ascontiguousarray(cells[kept]),
         "face_surface": model["face_surface"][kept],
         "cell_block": np.ascontiguousarray(block[roots]),
+        "cell": cell,
     }

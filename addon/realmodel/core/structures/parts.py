@@ -24,7 +24,10 @@ class Structures:
     """faults, bodies: of a project, with arrays; structures are numbered through both. displaced: of each
     fault its youngest displaced surface, by rock mass; times: of each body the surface after which it came.
     sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
-    branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided."""
+    branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided.
+
+    Of those around a tile alone (windows.py): continued, as the native continued_structures has them; ends:
+    heights below and above all rock. None: as the structures and sheets that are there tell."""
 
     faults: list[Fault]
     bodies: list[Body]
@@ -34,6 +37,8 @@ class Structures:
     low: np.ndarray | None = None
     high: np.ndarray | None = None
     box: np.ndarray | None = None
+    continued: list[tuple] | None = None
+    ends: tuple[float, float] | None = None
 
     def __len__(self) -> int:
         return len(self.faults) + len(self.bodies)
@@ -135,6 +140,7 @@ class Structures:
             sides=np.ascontiguousarray(sides),
             low=low,
             high=high,
+            continued=self.continued and [self.continued[number] for number in numbers],
         )
         return few, first.astype(np.int32)
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 
 import numpy as np
@@ -36,6 +37,24 @@ class Reach:
         # of the triangles of sheets: sheets in several places that have them, first and last cells
         self.ranges: dict[int, list[tuple]] = {}
         self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
+        self.asked = np.ones(self.count, bool)
+        self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
+
+    def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
+        """The same of some of the faults, by their numbers, and of parts that come into a box in plan: low x,
+        low y, high x, high y. structures: these, and some bodies."""
+        few = copy.copy(self)
+        few.structures, few.ranges, few.numbers = structures, {}, {}
+        first, last = self._range(np.array([box[:2]]), np.array([box[2:]]))
+        inside = np.zeros(self.count, bool)
+        inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
+        few.masks = [self.masks[fault] for fault in faults]
+        few.asked = inside
+        return few
+
+    def numbers_of(self, sheet: Triangulation) -> np.ndarray:
+        """(T,) the numbers of the triangles of a sheet in the whole surface, of which there may be a part."""
+        return self.numbers.get(id(sheet), np.arange(len(sheet[1])))
 
     def cells_of(self, part: int) -> np.ndarray:
         """(nx, ny, nz) bool: in which cells a part may have points."""
@@ -46,7 +65,8 @@ class Reach:
         first, last = self._range(self.structures.low[part][None], self.structures.high[part][None])
         inside = np.zeros(self.count, bool)
         inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
-        return possible & inside
+        found = possible & inside
+        return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:
         """A region in plan: these columns and a little around them, and what is beyond the last ones."""

@@ -8,16 +8,20 @@ from dataclasses import replace
 import numpy as np
 
 from ..algebra import norm
+from ..build_warning import BuildWarning
 from ..project import Project
+from ..rock_input import RockInput, mesh_rock, read_rocks
 from ..work import Work, native_module
 from .branches import require_meeting
 from .entries import Body, Fault
 from .parts import Structures, add_compartments, box_around, divide, structures_of
+from .reading import read_structures
 from .refusals import refused_structure
 from .sheets import make_sheets
 from .sides import FaultShape, fault_sides
 
-_DIVIDED = 0.1  # of the time: until the parts of space are known
+_READ, _MESHED = 0.2, 0.3  # of the time
+_DIVIDED = 0.1  # of what is left: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
 
 
@@ -58,6 +62,22 @@ def make_structures(
         if np.array_equal(structures.sides, before):
             break
     return structures
+
+
+def structured_inputs(
+    work: Work, project: Project, threads: int
+) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
+    """Reads, meshes and interpolates a project with faults or bodies: its rock masses with their sheets, its
+    structures, and what there is to tell. Raises InputRefused."""
+    with work.phase(0.0, _READ, "reading"):
+        inputs = read_rocks(work, project)
+        faults, bodies, told = read_structures(work, project, threads)
+    steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
+    for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
+        with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+    structures = make_structures(work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0)
+    return inputs, structures, told + [warning for entry in inputs for warning in entry.warnings]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:

@@ -15,6 +15,7 @@ from ..errors import InputRefused
 from ..library import load_library
 from ..project import Project, Rock, Surface
 from ..project_writer import library_text, toml_value
+from ..structures.entries import Body, Fault
 from ..toml_table import TomlDocument
 from .grid import TileGrid
 
@@ -42,8 +43,8 @@ class TileEntry:
 @dataclass(frozen=True)
 class Catalog:
     """What tiles.toml says. project: without shapes. digest: of the input. patches: quadrilaterals of
-    blocks on the borders between tiles, which were compared double for double; unequal: those that one side
-    alone has."""
+    blocks on the borders between tiles, or with faults or bodies the faces between cells of two tiles, which
+    were compared double for double; unequal: those that one side alone has."""
 
     project: Project
     cell_kind: str
@@ -80,6 +81,10 @@ def write_catalog(catalog: Catalog, folder: Path) -> None:
             lines += _lines(
                 name=surface.name, rule=surface.rule, property=surface.property, block=surface.block
             )
+    for fault in project.faults:
+        lines += ["", "[[fault]]", *_lines(name=fault.name)]
+    for body in project.bodies:
+        lines += ["", "[[body]]", *_lines(name=body.name, property=body.property)]
     for block in catalog.blocks:
         lines += ["", "[[block]]", *_lines(**asdict(block))]
     for tile in catalog.tiles:
@@ -122,6 +127,8 @@ def read_catalog(folder: Path) -> Catalog:
             content["name"],
             rocks,
             load_library(library) if library.exists() else None,
+            faults=[Fault(**fault) for fault in content.get("fault", [])],
+            bodies=[Body(**body) for body in content.get("body", [])],
             units=content["units"],
         )
         return Catalog(

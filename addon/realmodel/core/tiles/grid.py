@@ -50,6 +50,15 @@ class TileGrid:
             float(line) for line in (self.x[column], self.y[row], self.x[column + 1], self.y[row + 1])
         )
 
+    def tiles_meeting(self, box: tuple[float, float, float, float]) -> Iterator[tuple[int, int]]:
+        """The tiles that a box meets; what lies beyond the outermost lines counts to the outermost tiles."""
+        first, last = [], []
+        for axis, lines in enumerate((self.x, self.y)):
+            for ends, end, side in ((first, box[axis], "left"), (last, box[axis + 2], "right")):
+                ends.append(int((np.searchsorted(lines, end, side) - 1).clip(0, len(lines) - 2)))
+        columns, rows = (range(low, high + 1) for low, high in zip(first, last, strict=True))
+        return ((column, row) for row in rows for column in columns)
+
 
 def checked_size(tile_size) -> tuple[float, float]:
     """Width and height of tiles. Raises UsageError."""

@@ -23,6 +23,7 @@ from ..model import Model
 from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
+from ..structures.entries import Body, Fault
 from ..surface_heights import Triangulation, raise_to
 from ..work import Work, native_module, run
 from ..wrong_sides import WrongPoints, below_older, heights_at
@@ -76,7 +77,14 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
             for surface in entry.rock.surfaces
         ]
         rocks.append(Rock(entry.rock.name, surfaces, base_elevation=entry.rock.base_elevation))
-    return Project(project.name, rocks, project.library, units=project.units)
+    return Project(
+        project.name,
+        rocks,
+        project.library,
+        faults=[Fault(fault.name) for fault in project.faults],
+        bodies=[Body(body.name, property=body.property) for body in project.bodies],
+        units=project.units,
+    )
 
 
 def write_parts(
@@ -131,6 +139,7 @@ def write_certain_heights(
     certain. boxes: around the nodes of each tile, of which PLAN is written."""
     part, wider = _part(rock, f"{surface}-near"), 1.0
     heights: dict[Name, np.ndarray] = {}
+    waiting: dict[Name, np.ndarray] = {}  # the nodes whose heights are not certain
     while boxes:
         names = list(boxes)
         windows = PointWindows(points, list(boxes.values()), local.needed, wider=wider)
@@ -140,14 +149,15 @@ def write_certain_heights(
                     near.add(names[box], piece[which])
             for number, name in enumerate(names):
                 nodes = _read_part(folder_of(name), rock, PLAN).vertices[:, :2]
-                z = heights.setdefault(name, np.full(len(nodes), np.nan))
-                open_ones = np.flatnonzero(np.isnan(z))
-                asked, window = np.ascontiguousarray(nodes[open_ones]), windows.window(number)
+                z = heights.setdefault(name, np.empty(len(nodes)))
+                left = waiting.setdefault(name, np.arange(len(nodes)))
+                asked, window = np.ascontiguousarray(nodes[left]), windows.window(number)
                 task = partial(
                     local.certain_heights, points=near.of(name), nodes=asked, window=window, threads=1
                 )
                 found, certain = run(task)
-                z[open_ones[certain]] = found[certain]
+                z[left[certain]] = found[certain]
+                waiting[name] = left[~certain]
                 if certain.all():
                     _write({"z": heights.pop(name)}, folder_of(name) / part)
                     del boxes[name]
@@ -230,7 +240,12 @@ def _interpolated(
     points = near.get("points", np.empty((0, 3)))
     others = {n: part.vertices[:, 2] for n, part in parts.items() if n != REGION}
     z = near["z"] if "z" in near else local.heights(work, points, nodes, threads, others)
-    found = PartHeights(float(z.min()), float(z.max()))
+    known = z[np.isfinite(z)]
+    found = PartHeights(
+        float(known.min(initial=np.inf)),
+        float(known.max(initial=-np.inf)),
+        int(np.isfinite(z)[plan.triangles].all(axis=1).sum()),
+    )
     own = ((nodes >= box[:2]) & (nodes < box[2:])).all(axis=1)  # each node in one tile
     if local.settings.get("radius") is not None:
         beyond = local.beyond_radius(work, points, np.ascontiguousarray(nodes[own]), threads)
@@ -251,7 +266,15 @@ def _interpolated(
                 worst=int(plan.of_vertices[worst]),
                 place=tuple(nodes[worst].tolist()),
             )
-    return Interpolated(replace(plan, vertices=np.column_stack([nodes, z])), found, above)
+    part = replace(plan, vertices=np.column_stack([nodes, z]))
+    return Interpolated(part if len(known) == len(z) else _where_known(part), found, above)
+
+
+def _where_known(part: Part) -> Part:
+    """The triangles all of whose vertices have a height."""
+    known = np.isfinite(part.vertices[:, 2])[part.triangles].all(axis=1)
+    rest = part_of((part.vertices, part.triangles), np.flatnonzero(known))
+    return replace(rest, numbers=part.numbers[known], of_vertices=part.of_vertices[rest.of_vertices])
 
 
 def _older_above(
@@ -360,10 +383,12 @@ def _warnings(inputs: list[RockInput], built: dict, numbers: list[np.ndarray]) -
 
 
 def tile_arrays(model: Model) -> dict[str, np.ndarray]:
-    """A tile's model as arrays: those of others, and what clips its rock masses."""
+    """A tile's model as arrays: those of others, and what clips its rock masses. A tile of a model with
+    faults or bodies is a part of one, which nothing clips."""
     arrays = model_arrays(model)
     for r, entry in enumerate(model.rock_inputs):
-        arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
+        if not model.is_cut:
+            arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
     return arrays
 
 
@@ -399,6 +424,10 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
         blocks=blocks,
         surface_names=arrays["surface_names"].tolist(),
         project=project,
+        is_cut="region_vertices_0" not in arrays,
+        surface_kind=arrays["surface_kind"],
+        cell_compartment=arrays["cell_compartment"],
+        compartment_names=arrays["compartment_names"].tolist(),
     )
     inputs, number = [], 0
     for r, rock in enumerate(project.rocks):
@@ -412,7 +441,7 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
             RockInput(
                 replace(rock, surfaces=surfaces),
                 shapes,
-                (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
+                None if model.is_cut else (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
                 [None] * len(shapes),
                 [None] * len(shapes),
             )

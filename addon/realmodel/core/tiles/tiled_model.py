@@ -83,7 +83,9 @@ class TiledModel:
 
     @property
     def surface_names(self) -> list[str]:
-        return [surface.name for rock in self.project.rocks for surface in rock.surfaces]
+        """As of Model: surfaces, faults, bodies."""
+        surfaces = [surface for rock in self.project.rocks for surface in rock.surfaces]
+        return [each.name for each in (*surfaces, *self.project.faults, *self.project.bodies)]
 
     def section(self, point, normal, threads: int = 0) -> Section:
         """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
@@ -117,13 +119,13 @@ class TiledModel:
 
     def borehole(self, x: float, y: float) -> list[Interval]:
         """As Model.borehole."""
-        column, row = (
-            int(np.searchsorted(lines, at, "right")) - 1 for lines, at in ((self.x, x), (self.y, y))
-        )
+        place = self._off_borders(np.array([[x, y]], np.float64))[0]
+        found = []
         for number, tile in enumerate(self.tiles):
-            if (tile.column, tile.row) == (column, row):
-                return self._model(number).borehole(x, y)
-        return []
+            low, high = tile.extent[:, :2]
+            if (low <= place).all() and (place <= high).all():
+                found += self._model(number).borehole(*place.tolist())
+        return joined_intervals(found)
 
     def _corners(self, tile: Tile) -> np.ndarray:
         """(8, 3) of the box around a tile's vertices."""
@@ -150,6 +152,20 @@ class TiledModel:
             cells = np.where(found.cells >= 0, found.cells + np.int32(first_cell[number]), -1)
             sections.append(replace(found, cells=cells.astype(np.int32)))
         return joined_sections(sections)
+
+
+def joined_intervals(found: list[Interval]) -> list[Interval]:
+    """Intervals of one borehole in several tiles, from above downward; what one block has in two tiles
+    becomes one."""
+    joined: list[Interval] = []
+    for each in sorted(found, key=lambda interval: -interval.top):
+        last = joined[-1] if joined else None
+        near = last is not None and abs(last.bottom - each.top) <= _OFF * np.spacing(abs(each.top))
+        if near and last.block == each.block:
+            joined[-1] = Interval(each.block, last.top, each.bottom)
+        else:
+            joined.append(each)
+    return joined
 
 
 def joined_sections(sections: list[Section]) -> Section:

@@ -99,6 +99,8 @@ using realmodel::Warning;
 /// the wall between them is overlaid from both sides. Every decision is exact on the input;
 /// coordinates are rounded once. The same input gives the same result for any number of threads.
 /// @param wanted  of columns: those that lie nowhere in it may be left out
+/// @param is_local  of columns: edges have all vertices that lie on them, whether any face needs
+///                  them there or not, so that what is somewhere follows from what is near
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle, double_valued,
 /// base_not_below,
 ///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all
@@ -106,7 +108,7 @@ using realmodel::Warning;
 /// @throws Cancelled
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
                               CellKind cells = CellKind::kColumns,
-                              const WantedSpace* wanted = nullptr);
+                              const WantedSpace* wanted = nullptr, bool is_local = false);
 
 /// A vertex of a tile on a line that bounds it.
 struct BorderVertex {
@@ -145,6 +147,17 @@ struct JoinedInput {
 /// What build_rock_masses does to its input before it builds.
 /// @throws InputError not_finite, bad_index, vertical_triangle
 JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress);
+
+/// The meshes of rock masses with plan coordinates that differ by rounding alone made one.
+struct SnappedPlan {
+    /// Vertices of the surfaces of each rock mass, then of its region; none where nothing changed.
+    std::vector<std::vector<double>> meshes;
+    Warning warning;
+};
+
+/// The first thing that join_rock_masses does.
+SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads = 1,
+                      Progress* progress = nullptr);
 
 /// build_rock_masses of one.
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress,

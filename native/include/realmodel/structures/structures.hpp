@@ -39,6 +39,19 @@ struct Part {
 std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
                            int threads, Progress* progress);
 
+/// A structure with what continues it beyond its border, found once for models that are joined
+/// piece by piece: each piece has the triangles near it.
+struct ContinuedStructure {
+    std::vector<std::array<std::array<double, 3>, 3>> triangles;
+    std::vector<std::uint8_t> is_continuation;  ///< of triangles
+    std::vector<std::int8_t> kept;  ///< of a fault: the side of each that it ends at where it is
+};
+
+/// All structures as join_models continues them for rock in a box (two corners).
+/// @throws InputError  as parts_of does
+std::vector<ContinuedStructure> continued_structures(
+    std::span<const Structure> structures, const std::array<std::array<double, 3>, 2>& corners);
+
 /// What the rock is in one of the parts, though its cells may reach beyond it.
 struct PartModel {
     ComplexView model;
@@ -58,11 +71,14 @@ struct Joined {
 /// @param models  none overlaps another within one part; of several that a part's sides allow the
 ///                first counts
 /// @param acts    S x B: whether a structure divides a block of the models
+/// @param continued  of each structure, as continued_structures has them; none: they are continued
+///                   as far as these models reach
 /// @throws InputError  as parts_of does; kinds bad_model; ends_inside (a fault, and the place where
 ///                     it ends though the rock on both sides differs)
 /// @throws Cancelled
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
-                   std::span<const std::uint8_t> acts, int threads, Progress* progress);
+                   std::span<const std::uint8_t> acts, int threads, Progress* progress,
+                   std::span<const ContinuedStructure> continued = {});
 
 /// The side of a structure that points are on: of a fault that of the triangle nearest to each,
 /// of a body by the number of times that a ray from there leaves it. A point on it is above, or

@@ -49,7 +49,8 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
         next(0.4, "joining edges");
         CollinearEdges lines = find_collinear_edges(
             geometry, faces, c.plan_vertices, c.crossings,
-            blocks == nullptr ? &construction.node_is_thick : nullptr, threads, progress);
+            blocks == nullptr && !construction.is_local ? &construction.node_is_thick : nullptr,
+            threads, progress);
         next(0.3, "rounding");
         c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, threads, progress);
         next(0.1, "building walls");

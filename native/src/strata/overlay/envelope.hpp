@@ -91,6 +91,7 @@ struct Construction {
     Array<std::uint8_t> node_is_thick;
     std::vector<std::pair<std::int32_t, std::int32_t>> links;  ///< nodes of one block that touch
     bool may_lack_nodes = false;                               ///< whether kLeftOut stands for some
+    bool is_local = false;  ///< edges have all vertices that lie on them
 
     /// @throws InputError kind too_large, where there are more nodes than numbers for them
     std::int32_t add_node(std::int32_t block, bool is_thick);

@@ -40,6 +40,7 @@ struct Site {
     std::int32_t surfaces = 0;                   ///< in all rock masses
     std::optional<Window> window;                ///< of a tile, or nothing
     std::optional<WantedBoxes> wanted;           ///< of columns, or all of them are
+    bool is_local = false;  ///< of columns: edges have all vertices that lie on them
     /// Whether no surface covers a position twice, and no border of a region crosses itself.
     bool is_single_valued = true;
 

@@ -42,6 +42,20 @@ TEST(PlanSnapping, TheValueOfMostVerticesStands) {
     EXPECT_TRUE(snapping.y.empty());
 }
 
+TEST(PlanSnapping, ItMayBeAskedForAlone) {
+    OwnedSurface s = box(0, 1, 0, 1);
+    s.vertices[0] = 0x1p-53;
+    const OwnedSurface other = box(0, 1, 1, 2);
+    const StackInput input{{s.view(), other.view()}, {}, {}, {}, {}, {}};
+    const SnappedPlan snapped = snap_plan({&input, 1});
+    ASSERT_EQ(snapped.meshes.size(), 2U);
+    EXPECT_EQ(snapped.meshes[0][0], 0.0);
+    EXPECT_EQ(snapped.meshes[1], other.vertices);
+    EXPECT_EQ(snapped.warning.kind, "joined");
+    const StackInput same{{other.view()}, {}, {}, {}, {}, {}};
+    EXPECT_TRUE(snap_plan({&same, 1}).meshes.empty());
+}
+
 TEST(PlanSnapping, ANeedleOfThatWidthStaysANeedle) {
     OwnedSurface needle;
     needle.triangle(needle.vertex(1, 0, 1), needle.vertex(above(1), 0, 1), needle.vertex(1, 1, 1));

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One tile of a model with faults or bodies: the model around it, and the cells that belong to the tile."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from ..assembly import assemble
+from ..blocks import Block, count_blocks
+from ..model import Model
+from ..structures.joining import acts, body_block, build_joined, one_cell_each, without_cells
+from ..structures.labels import cell_compartments
+from ..structures.parts import Structures
+from ..structures.windows import Window
+from ..work import Work, native_module
+from .owned_cells import Seam, owners, reach_of
+from .tile_model import Frame, Name
+
+_ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+_WALL = -1  # face_surface
+
+
+@dataclass(frozen=True)
+class Whole:
+    """What tiles know of the whole besides their Frame. blocks: without numbers of cells. structures: all of
+    them, without shapes. surface_names, surface_kind: as of Model."""
+
+    blocks: list[Block]
+    structures: Structures
+    surface_names: list[str]
+    surface_kind: np.ndarray
+
+
+@dataclass(frozen=True)
+class FaultedTile:
+    """around: the model of all that the window holds. model: of the cells that belong to the tile, numbered
+    as in the whole. seams: by the tile on the other side. reach: a box in plan around these cells and those
+    beside them; None where there is no cell. part: (C,) as cell_component, by walls between columns alone."""
+
+    around: Model
+    model: Model
+    seams: dict[Name, Seam]
+    reach: tuple[float, float, float, float] | None
+    part: np.ndarray
+
+
+def build_faulted_tile(
+    work: Work, frame: Frame, whole: Whole, window: Window, name: Name, threads: int
+) -> FaultedTile:
+    """Raises InputRefused."""
+    inputs, few = window.inputs, window.structures
+    began = time.perf_counter()
+    built = build_joined(work, inputs, few, "columns", threads, 0.0, 0.8, window.reach)
+    project = replace(
+        frame.project, rocks=[entry.rock for entry in inputs], faults=few.faults, bodies=few.bodies
+    )
+    timings = {"intersect": time.perf_counter() - began}
+    model = assemble(Model, work, project, inputs, built, "columns", threads, timings, 0.8, few)
+    model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
+    owner = owners(model, frame.grid)
+    mine = (owner == name).all(axis=1)
+    whole_numbers = _numbered_as_whole(model, whole, window)
+    arrays = without_cells(whole_numbers, ~mine)
+    labels = _labels(built, whole, window, mine)
+    number = np.arange(int(mine.sum()))
+    if frame.cell_kind == "blocks":
+        arrays = one_cell_each(arrays, arrays["face_surface"] == _WALL)
+        number = arrays["cell"]
+        first = np.full(len(arrays["cell_block"]), len(number), np.int64)
+        np.minimum.at(first, number, np.arange(len(number)))
+        labels = labels[0][first], *labels[1:]
+    of_tile = np.full(len(mine), -1)
+    of_tile[mine] = number
+    found = _model(frame, whole, window, arrays, labels)
+    walls = np.where((found.face_surface == _WALL)[:, None], found.face_cells, np.int32(-1))
+    part = native_module().cell_components(np.ascontiguousarray(walls), found.cell_block)
+    both = np.column_stack([found.cell_component, part])
+    is_mine = np.append(mine, False)[model.face_cells]
+    between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
+    own = np.where(is_mine[between, 0], 0, 1)
+    others = owner[model.face_cells[between, 1 - own]]
+    parts = both[of_tile[model.face_cells[between, own]]]
+    seams, seen = {}, SimpleNamespace(**whole_numbers)
+    for other in np.unique(others, axis=0).tolist():
+        which = (others == other).all(axis=1)
+        seams[tuple(other)] = Seam.of(seen, between[which], own[which], parts[which])
+    reach = reach_of(model, mine) if mine.any() else None
+    return FaultedTile(model, found, seams, reach, part)
+
+
+def _numbered_as_whole(model: Model, whole: Whole, window: Window) -> dict[str, np.ndarray]:
+    """The arrays of the model around a tile with surfaces and blocks numbered as in the whole."""
+    surfaces = sum(len(entry.surfaces) for entry in window.inputs)
+    number = np.concatenate([np.arange(surfaces), surfaces + window.numbers, [-2, -1]]).astype(np.int32)
+    of_surface = {block.surface: n for n, block in enumerate(whole.blocks)}
+    blocks = np.array([of_surface[int(number[block.surface])] for block in model.blocks], np.int32)
+    return {
+        **{name: getattr(model, name) for name in _ARRAYS},
+        "face_surface": number[model.face_surface],
+        "cell_block": blocks[model.cell_block] if len(blocks) else model.cell_block,
+    }
+
+
+def _labels(built: dict, whole: Whole, window: Window, mine: np.ndarray):
+    """What cell_compartments gives for the cells of the tile, by all faults of the whole."""
+    inputs, few, structures = window.inputs, window.structures, whole.structures
+    surfaces = sum(len(entry.surfaces) for entry in inputs)
+    own = np.arange(surfaces + len(inputs) * len(few))
+    for rock in range(len(inputs)):
+        for body in range(len(few.bodies)):
+            there = int(window.numbers[len(few.faults) + body]) - len(structures.faults)
+            own[body_block(few, surfaces, rock, body)] = body_block(structures, surfaces, rock, there)
+    rocks = np.arange(len(inputs), dtype=np.int32)
+    counts = [len(entry.surfaces) for entry in inputs]
+    as_whole = {
+        "cell_own_block": own[built["cell_own_block"]][mine],
+        "cell_part": window.part[built["cell_part"]][mine],
+        "rock_of_own_block": np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
+        "own_block_divided": acts(inputs, structures),
+    }
+    return cell_compartments(inputs, as_whole, structures)
+
+
+def _model(frame: Frame, whole: Whole, window: Window, arrays: dict, labels) -> Model:
+    native = native_module()
+    volume = native.cell_volumes(
+        *(arrays[name] for name in ("vertices", "face_offsets", "face_vertices", "face_cells")),
+        len(arrays["cell_block"]),
+    )
+    component = native.cell_components(arrays["face_cells"], arrays["cell_block"])
+    count = len(whole.blocks)
+    cells, components = count_blocks(arrays["cell_block"], component, count)
+    blocks = [
+        replace(
+            block,
+            volume=float(volume[arrays["cell_block"] == n].sum()),
+            cells=int(cells[n]),
+            components=int(components[n]),
+        )
+        for n, block in enumerate(whole.blocks)
+    ]
+    nothing = np.empty((0, 3)), np.empty((0, 3), np.int32)
+    shapes = [nothing] * len(whole.structures)
+    for n, shape in zip(window.numbers.tolist(), window.structures.shapes, strict=True):
+        shapes[n] = shape
+    shapes = [surface for entry in window.inputs for surface in entry.surfaces] + shapes
+    labels_of_cells, names, sides = labels
+    model = Model(
+        **{name: arrays[name] for name in _ARRAYS},
+        surface_vertices=np.concatenate([vertices for vertices, _ in shapes]),
+        surface_triangles=np.concatenate([triangles for _, triangles in shapes]),
+        surface_vertex_offsets=np.cumsum([0, *(len(vertices) for vertices, _ in shapes)], dtype=np.int64),
+        surface_triangle_offsets=np.cumsum([0, *(len(each) for _, each in shapes)], dtype=np.int64),
+        cell_kind=frame.cell_kind,
+        blocks=blocks,
+        surface_names=whole.surface_names,
+        project=frame.project,
+        rock_inputs=[replace(entry, structure=None) for entry in window.inputs],
+        is_cut=True,
+        surface_kind=whole.surface_kind,
+        cell_compartment=labels_of_cells,
+        compartment_names=names,
+        compartment_sides=sides,
+    )
+    model.cell_component = component
+    return model

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which tile each cell of a model with faults or bodies belongs to, and what tiles have in common then.
+
+Such models are not cut at the lines between tiles. A cell belongs to the tile in which its first corner lies,
+by x, then y, then z: whoever sees the cell finds the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from .grid import TileGrid
+
+_WALL = -1  # face_surface
+_KEY = "V16"
+
+
+def owners(model, grid: TileGrid) -> np.ndarray:
+    """(C, 2) int64: column and row of the tile that each cell belongs to."""
+    order, rank = _ranks(model.vertices)
+    size = np.diff(model.face_offsets)
+    lowest = np.full(len(size), len(order), np.int64)
+    np.minimum.at(lowest, np.repeat(np.arange(len(size)), size), rank[model.face_vertices])
+    first = np.full(len(model.cell_block), len(order), np.int64)
+    for side in range(2):
+        there = model.face_cells[:, side] >= 0
+        np.minimum.at(first, model.face_cells[there, side], lowest[there])
+    places = model.vertices[order[first]]
+    lines = (grid.x, grid.y)
+    at = [
+        (np.searchsorted(line, places[:, axis], "right") - 1).clip(0, len(line) - 2)
+        for axis, line in enumerate(lines)
+    ]
+    return np.column_stack(at)
+
+
+def _ranks(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices in order of x, y and z; and (V,) the place of each in it."""
+    order = np.lexsort(vertices.T[::-1])
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return order, rank
+
+
+def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
+    """A box in plan around some cells, (C,) bool, and those that share a face with one."""
+    faces = np.append(mine, False)[model.face_cells].any(axis=1)
+    near = np.zeros(len(mine) + 1, bool)
+    near[model.face_cells[faces]] = True
+    near[-1] = False
+    faces = near[model.face_cells].any(axis=1)
+    corners = model.face_vertices[np.repeat(faces, np.diff(model.face_offsets))]
+    plan = model.vertices[corners, :2]
+    return *plan.min(axis=0).tolist(), *plan.max(axis=0).tolist()
+
+
+@dataclass(frozen=True)
+class Seam:
+    """The faces between cells of a tile and those of another, in order of their keys: (F,) key, the same
+    for the same polygon on the same surface; part (F, 2), of the tile's cell: the connected part of its
+    block, and that by walls between columns alone; block (F, 2), the tile's first; is_wall, whether it is
+    such a wall; place (F, 3), a corner."""
+
+    key: np.ndarray
+    part: np.ndarray
+    block: np.ndarray
+    is_wall: np.ndarray
+    place: np.ndarray
+
+    @classmethod
+    def of(cls, model, faces: np.ndarray, own: np.ndarray, part: np.ndarray) -> Seam:
+        """faces: some of a model. own: (F,) which of each one's cells is the tile's; part: of these."""
+        key = face_keys(model, faces)
+        order = np.argsort(key.view("S16"), kind="stable")
+        faces, own = faces[order], own[order]
+        cells = model.face_cells[faces]
+        rows = np.arange(len(faces))
+        block = np.column_stack([model.cell_block[cells[rows, side]] for side in (own, 1 - own)])
+        first = model.face_vertices[model.face_offsets[faces]]
+        return cls(
+            key[order],
+            part[order].astype(np.int32),
+            block.astype(np.int32).reshape(-1, 2),
+            model.face_surface[faces] == _WALL,
+            model.vertices[first].reshape(-1, 3),
+        )
+
+    def arrays(self, prefix: str) -> dict[str, np.ndarray]:
+        """By name, as of_arrays takes them."""
+        found = {f"{prefix}_{name}": getattr(self, name) for name in ("part", "block", "is_wall", "place")}
+        return {**found, f"{prefix}_key": self.key.view(np.uint8)}
+
+    @classmethod
+    def of_arrays(cls, arrays: dict[str, np.ndarray], prefix: str) -> Seam:
+        if f"{prefix}_key" not in arrays:
+            none = np.empty((0, 2), np.int32)
+            return cls(np.empty(0, _KEY), none, none, np.empty(0, bool), np.empty((0, 3)))
+        key = np.ascontiguousarray(arrays[f"{prefix}_key"]).view(_KEY)
+        return cls(key, *(arrays[f"{prefix}_{name}"] for name in ("part", "block", "is_wall", "place")))
+
+    def matches(self, other: Seam) -> bool:
+        """Whether two tiles have the same faces between them, with the same blocks on both sides."""
+        return np.array_equal(self.key, other.key) and np.array_equal(self.block, other.block[:, ::-1])
+
+    def first_difference(self, other: Seam) -> tuple[float, float, float]:
+        """A place where they do not match."""
+        ours, theirs = set(self.key.tolist()), set(other.key.tolist())
+        for seam, known in ((self, theirs), (other, ours)):
+            for key, place in zip(seam.key.tolist(), seam.place.tolist(), strict=True):
+                if key not in known:
+                    return tuple(place)
+        return tuple(self.place[0].tolist())
+
+
+def face_keys(model, faces: np.ndarray) -> np.ndarray:
+    """(F,) of 16 bytes: the same for the same polygon on the same surface, whichever cell it is seen from."""
+    _, rank = _ranks(model.vertices)
+    found = []
+    for face in faces.tolist():
+        corners = model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]
+        corners = np.roll(corners, -int(rank[corners].argmin()))
+        if rank[corners[1]] > rank[corners[-1]]:
+            corners = np.roll(corners[::-1], 1)
+        digest = hashlib.blake2b(np.ascontiguousarray(model.vertices[corners] + 0.0), digest_size=16)
+        digest.update(int(model.face_surface[face]).to_bytes(4, "little", signed=True))
+        found.append(digest.digest())
+    return np.frombuffer(b"".join(found), _KEY)

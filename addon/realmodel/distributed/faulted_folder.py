@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model with faults or bodies built tile by tile into a folder (docs/dev/tiles.md)."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..core import BuildFailed, BuildWarning
+from ..core.assembly import list_blocks
+from ..core.atomic import Outputs
+from ..core.errors import place_text
+from ..core.structures.setup import structured_inputs
+from ..core.structures.windows import Window, Windows
+from ..core.tiles import TiledModel
+from ..core.tiles.catalog import CATALOG, TILES, Catalog, write_catalog
+from ..core.tiles.faulted_tile import Whole, build_faulted_tile
+from ..core.tiles.owned_cells import Seam
+from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
+from ..core.tiles.tiled_model import tiled_model
+from ..core.work import Work, native_module, run
+from .run_folder import Parts, Store, blocks_of, entry_of, finished, places_of, stem, write_index, write_tile
+from .workers import Workers
+
+_PREPARED, _BUILT = 0.4, 0.97  # of the time
+_ROUNDS = 4  # in which tiles are built again from more around them, at last from everything
+_WINDOW = "window.pickle"
+
+
+def build_faulted(
+    project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, told, cancel
+) -> TiledModel:
+    """tile_folder.build for a project with faults or bodies. size: of tiles; told: the progress."""
+
+    def prepared(work: Work):
+        inputs, structures, warnings = structured_inputs(work, project, 0)
+        return Windows(work, inputs, structures, 0), structures, warnings
+
+    windows, structures, warnings = run(prepared, lambda share, text: told(_PREPARED * share, text), cancel)
+    inputs = windows.inputs
+    frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
+    digest = _digest(frame, windows)
+    if (folder / CATALOG).exists():
+        return finished(folder, digest)
+    store, none = Store(folder, digest), np.empty(0, np.int32)
+    names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+    whole = Whole(
+        list_blocks(inputs, np.zeros(len(names) + len(structures)), none, none, structures),
+        replace(
+            structures,
+            faults=[replace(each, vertices=None, triangles=None, points=None) for each in structures.faults],
+            bodies=[replace(each, vertices=None, triangles=None) for each in structures.bodies],
+        ),
+        [*names, *structures.names],
+        np.array([0] * len(names) + structures.kinds, np.int32),
+    )
+    listed = store.listed(frame.grid, lambda: _write_windows(windows, frame, store, cancel))
+    waiting = [name for name in listed if not store.has("joined", name)]
+    for times in range(_ROUNDS + 1):
+        _build_tiles((store, frame, whole), waiting, len(listed), workers, told, cancel)
+        asked = _farther(store, listed)
+        if not asked:
+            break
+        if times == _ROUNDS:
+            raise BuildFailed(next(iter(asked.values())))
+        for name in asked:
+            store.record("joined", name).unlink()
+            farther = None if times == _ROUNDS - 1 else 2 ** (times + 1) - 1
+            _write_window(windows, store, name, cancel, farther)
+        waiting = list(asked)
+    if windows.snapped is not None:
+        warnings.append(BuildWarning(windows.snapped, "joined"))
+    catalog = _catalog(frame, store, listed, digest, warnings)
+    write_index(store, [f"{TILES}/{stem(name)}.vtu" for name in listed])
+    write_catalog(catalog, folder)
+    store.remove()
+    return tiled_model(catalog, folder)
+
+
+def _digest(frame: Frame, windows: Windows) -> str:
+    """Of all that the result depends on."""
+    lines = frame.grid.x.tolist(), frame.grid.y.tolist()
+    digest = hashlib.sha256(repr((native_module().VERSION, frame.cell_kind, lines, frame.project)).encode())
+    for entry in windows.inputs:
+        digest.update(repr((entry.rock.base_elevation, [s.rule for s in entry.rock.surfaces])).encode())
+    structures = windows.structures
+    for fault in structures.faults:
+        digest.update(repr((fault.name, fault.youngest, list(fault.ends_at), fault.dies_out)).encode())
+    digest.update(
+        repr((structures.displaced, structures.times, [b.void for b in structures.bodies])).encode()
+    )
+    for array in windows.arrays():
+        digest.update(np.ascontiguousarray(array))
+    return digest.hexdigest()
+
+
+def _write_windows(windows: Windows, frame: Frame, store: Store, cancel) -> list[Name]:
+    names = [name for name in frame.grid if windows.meets(frame.grid.box(*name))]
+    for name in names:
+        _write_window(windows, store, name, cancel, 0)
+    return names
+
+
+def _write_window(windows: Windows, store: Store, name: Name, cancel, farther: int | None) -> None:
+    window = run(lambda work: windows.window(work, name, farther), cancel=cancel)
+    with Outputs() as outputs, outputs.file(store.parts(name) / _WINDOW) as file:
+        pickle.dump(window, file, pickle.HIGHEST_PROTOCOL)
+
+
+def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, told, cancel) -> None:
+    done = count - len(waiting)
+    for _ in workers.in_any_order(_build, shared, waiting, cancel):
+        done += 1
+        told(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
+
+
+def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
+    """On a worker: builds a tile, proves it, and writes it, and what its neighbors have to have, too."""
+    store, frame, whole = shared
+    window = _window(store.parts(name) / _WINDOW)
+    box = frame.grid.box(*name)
+    built = run(lambda work: build_faulted_tile(work, frame, whole, window, name, threads=1))
+    reports = [built.around.validate(places_of(frame, box), threads=1)]
+    if frame.cell_kind == "blocks":
+        reports.append(built.model.validate(0, threads=1))
+    for report in reports:
+        if not report.passed:
+            raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
+    model, arrays = built.model, {"others": np.array(sorted(built.seams), np.int64).reshape(-1, 2)}
+    for key, part in (("parts", model.cell_component), ("cells", built.part)):
+        roots = np.flatnonzero(part == np.arange(len(part)))
+        arrays |= {key: roots, f"block_of_{key}": model.cell_block[roots]}
+    for other, seam in built.seams.items():
+        arrays |= seam.arrays(stem(other))
+    store.write(store.file("patches", name), arrays)
+    safe, reach = window.safe, built.reach
+    is_within = reach is None or (
+        reach[0] >= safe[0] and reach[1] >= safe[1] and reach[2] <= safe[2] and reach[3] <= safe[3]
+    )
+    warnings = [asdict(warning) for warning in built.around.warnings]
+    write_tile(store, name, model, warnings=warnings, is_within=is_within)
+
+
+def _window(path: Path) -> Window:
+    try:
+        window = pickle.loads(path.read_bytes())
+    except (OSError, pickle.UnpicklingError, EOFError) as error:
+        raise BuildFailed(f"{path}: cannot be read; delete it and start again") from error
+    window.number_sheets()
+    return window
+
+
+def _farther(store: Store, names: list[Name]) -> dict[Name, str]:
+    """The tiles that have to see more around them, with what is wrong as they are."""
+    asked = {
+        name: f"cells of tile {name[0]}, {name[1]} reach too far beyond it; make tiles larger"
+        for name in names
+        if not store.told("joined", name)["is_within"]
+    }
+    for one, other, ours, theirs in _seams(store, names):
+        if not ours.matches(theirs):
+            place = place_text(ours.first_difference(theirs))
+            text = f"tiles {one} and {other} differ on their border near {place}; make tiles larger"
+            asked |= {one: text, other: text}
+    return asked
+
+
+def _seams(store: Store, names: list[Name]) -> Iterator[tuple[Name, Name, Seam, Seam]]:
+    """All pairs of tiles that have faces in common, and what each has of them."""
+    pairs = set()
+    for name in names:
+        for other in read_arrays(store.file("patches", name))["others"].tolist():
+            pairs.add(tuple(sorted([name, tuple(other)])))
+    read: dict[Name, dict] = {}
+    for one, other in sorted(pairs):
+        read = {name: read.get(name) or _read(store, name, names) for name in (one, other)}
+        ours, theirs = (Seam.of_arrays(read[a], stem(b)) for a, b in ((one, other), (other, one)))
+        yield one, other, ours, theirs
+
+
+def _read(store: Store, name: Name, names: list[Name]) -> dict[str, np.ndarray]:
+    return read_arrays(store.file("patches", name)) if name in names else {"others": np.empty((0, 2))}
+
+
+def _catalog(
+    frame: Frame, store: Store, names: list[Name], digest: str, warnings: list[BuildWarning]
+) -> Catalog:
+    parts, cells, faces = Parts(), Parts(), 0
+    kinds = [("parts", parts)] if frame.cell_kind == "columns" else [("parts", parts), ("cells", cells)]
+    for name in names:
+        arrays = read_arrays(store.file("patches", name))
+        for key, into in kinds:
+            blocks = arrays[f"block_of_{key}"].tolist()
+            for root, block in zip(arrays[key].tolist(), blocks, strict=True):
+                into.add((*name, root), block)
+    for one, other, ours, theirs in _seams(store, names):
+        faces += len(ours.key)
+        same = ours.block[:, 0] == ours.block[:, 1]
+        for column, (key, into) in enumerate(kinds):
+            which = same if key == "parts" else same & ours.is_wall
+            both = np.column_stack([ours.part[which, column], theirs.part[which, column]])
+            for a, b in np.unique(both, axis=0).tolist():
+                into.join((*one, a), (*other, b))
+    told = [store.told("joined", name) for name in names]
+    found = dict.fromkeys(warnings)
+    for record in told:
+        for each in record["warnings"]:
+            found[BuildWarning(**{**each, "items": tuple(each["items"])})] = None
+    return Catalog(
+        frame.project,
+        frame.cell_kind,
+        digest,
+        frame.grid,
+        blocks_of(frame, told, parts, cells),
+        [entry_of(name, record) for name, record in zip(names, told, strict=True)],
+        faces,
+        0,
+        list(found),
+    )

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The folder of a model in tiles while it is built, and what the table says of the tiles in it."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..core import BuildFailed, OutputFailed, UsageError
+from ..core.atomic import Outputs
+from ..core.blocks import Block
+from ..core.exporters.npz import write_arrays
+from ..core.exporters.vtk_xml import write_pieces
+from ..core.exporters.vtu import write_vtu
+from ..core.model import Model
+from ..core.simulation import PolyhedralMesh
+from ..core.tiles.catalog import CATALOG, INDEX, TILES, TileEntry, read_catalog
+from ..core.tiles.settling import Box
+from ..core.tiles.tile_model import Frame, Name, write_model
+from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
+from ..core.validation import PLACES_OF_REPORT
+
+RUN = "run"  # what only a run needs, in the folder
+_DIGEST = "digest"  # in there: of all that the result depends on
+_LEAST_PLACES = 100  # of a tile that are compared with the closed form
+
+
+def require_own(folder: Path) -> None:
+    """Raises UsageError where a folder holds something else than a model in tiles."""
+    try:
+        if (folder / CATALOG).exists() or (folder / RUN / _DIGEST).exists() or not folder.exists():
+            return
+        if any(each.name not in (RUN, TILES) for each in folder.iterdir()):
+            raise UsageError(f"{folder}: a folder with other content; choose a new one")
+    except OSError as error:
+        raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+
+def stem(name: Name) -> str:
+    return f"{name[0]:04d}-{name[1]:04d}"
+
+
+class Store:
+    """The files of a run, in the folder of the result; each is whole or not there."""
+
+    def __init__(self, folder: Path, digest: str):
+        self.folder = folder
+        try:
+            self._run.mkdir(parents=True, exist_ok=True)
+            (folder / TILES).mkdir(exist_ok=True)
+            of = self._run / _DIGEST
+            if of.exists() and of.read_text() != digest:
+                raise another(folder)
+            with Outputs() as outputs, outputs.file(of) as file:
+                file.write(digest.encode())
+        except OSError as error:
+            raise OutputFailed(f"{folder}: {error.strerror or error}") from error
+
+    @property
+    def _run(self) -> Path:
+        return self.folder / RUN
+
+    def file(self, kind: str, name: Name) -> Path:
+        """kind: built, the model of a tile; sides, what its borders are; joined, its model
+        with its neighbors' vertices; patches, what its borders are then."""
+        folder = self.folder / TILES if kind == "joined" else self._run
+        prefix = "" if kind == "joined" else f"{kind}-"
+        ending = "arrays" if kind == "built" else "npz"
+        return folder / f"{prefix}{stem(name)}.{ending}"
+
+    def parts(self, name: Name) -> Path:
+        """The folder with what a tile needs of each surface."""
+        return self._run / f"parts-{stem(name)}"
+
+    def record(self, kind: str, name: Name) -> Path:
+        return self._run / f"{kind}-{stem(name)}.json"
+
+    def has(self, kind: str, name: Name) -> bool:
+        """Whether a step is done: its record comes last."""
+        return self.record(kind, name).exists()
+
+    def done(self, kind: str, name: Name, **record) -> None:
+        with Outputs() as outputs, outputs.file(self.record(kind, name)) as file:
+            file.write(json.dumps(record).encode())
+
+    def told(self, kind: str, name: Name) -> dict:
+        try:
+            return json.loads(self.record(kind, name).read_text())
+        except (OSError, ValueError) as error:
+            text = f"{self.record(kind, name)}: cannot be read; delete {self._run} and start again"
+            raise BuildFailed(text) from error
+
+    def listed(self, grid: Iterable[Name], write: Callable[[], list[Name]]) -> list[Name]:
+        """The tiles that need something, in order of the grid: as `write` gives them, which writes what each
+        tile needs, unless that was done."""
+        listed = self._run / "parts.json"
+        if not listed.exists():
+            try:
+                for name in grid:
+                    self.parts(name).mkdir(exist_ok=True)
+            except OSError as error:
+                raise OutputFailed(f"{self._run}: {error.strerror or error}") from error
+            names = write()
+            with Outputs() as outputs, outputs.file(listed) as file:
+                file.write(json.dumps(names).encode())
+        return [tuple(name) for name in json.loads(listed.read_text())]
+
+    def write(self, path: Path, arrays: dict[str, np.ndarray]) -> None:
+        with Outputs() as outputs, outputs.file(path) as file:
+            write_arrays(arrays, file)
+
+    def remove(self) -> None:
+        shutil.rmtree(self._run, ignore_errors=True)
+
+
+def another(folder: Path) -> UsageError:
+    return UsageError(
+        f"{folder}: it holds a model of another project, tile size or kind of cells; "
+        "choose another folder, or delete this one"
+    )
+
+
+def finished(folder: Path, digest: str) -> TiledModel:
+    catalog = read_catalog(folder)
+    if catalog.digest != digest:
+        raise another(folder)
+    return tiled_model(catalog, folder)
+
+
+def write_tile(store: Store, name: Name, model: Model, **more) -> None:
+    """Writes a tile's model, and the record that it is done. more: what else that says."""
+    file = store.file("joined", name)
+    write_model(model, file)
+    mesh = PolyhedralMesh.of_model(model)
+    with Outputs() as outputs, outputs.file(file.with_suffix(".vtu")) as out:
+        write_vtu(mesh, out, lambda _share: None)
+    low, high = _extent(model.vertices)
+    store.done(
+        "joined",
+        name,
+        sha256=file_digest(file),
+        cells=np.bincount(model.cell_block, minlength=len(model.blocks)).tolist(),
+        faces=len(model.face_surface),
+        vertices=len(model.vertices),
+        low=low,
+        high=high,
+        blocks=[asdict(block) for block in model.blocks],
+        **more,
+    )
+
+
+def _extent(vertices: np.ndarray) -> tuple[list[float], list[float]]:
+    """The lowest and highest coordinates, 0 where there is no vertex."""
+    axes = vertices.T if len(vertices) else np.zeros((3, 1))  # min(axis=0) would take ten times as long
+    return [float(axis.min()) for axis in axes], [float(axis.max()) for axis in axes]
+
+
+def places_of(frame: Frame, box: Box) -> int:
+    """How many positions of a tile are compared with the closed form: its share of the whole's by area."""
+    low_x, low_y, high_x, high_y = frame.grid.whole
+    share = (box[2] - box[0]) / (high_x - low_x) * ((box[3] - box[1]) / (high_y - low_y))
+    return max(_LEAST_PLACES, math.ceil(PLACES_OF_REPORT * share))
+
+
+class Parts:
+    """The connected parts of blocks over all tiles, by sets that are joined."""
+
+    def __init__(self):
+        self._parent: dict[tuple, tuple] = {}
+        self._block: dict[tuple, int] = {}
+
+    def add(self, part: tuple, block: int) -> None:
+        self._parent[part], self._block[part] = part, block
+
+    def root(self, part: tuple) -> tuple:
+        while self._parent[part] != part:
+            self._parent[part] = part = self._parent[self._parent[part]]
+        return part
+
+    def join(self, one: tuple, other: tuple) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+    def count(self, blocks: int) -> np.ndarray:
+        """(B,) how many parts each block has."""
+        roots = [self._block[part] for part, parent in self._parent.items() if part == parent]
+        return np.bincount(np.array(roots, np.int64), minlength=blocks)
+
+
+def blocks_of(frame: Frame, told: list[dict], parts: Parts, whole_cells: Parts) -> list[Block]:
+    """The blocks of the whole. told: the records of tiles; parts: the connected parts; whole_cells: the cells
+    of whole blocks."""
+    if not told:
+        return []
+    of_tiles = [[Block(**block) for block in record["blocks"]] for record in told]
+    components, of_blocks = (each.count(len(of_tiles[0])) for each in (parts, whole_cells))
+    blocks = []
+    for number, block in enumerate(of_tiles[0]):
+        volume = math.fsum(blocks_[number].volume for blocks_ in of_tiles)
+        cells = sum(record["cells"][number] for record in told)
+        if frame.cell_kind == "blocks":
+            cells = int(of_blocks[number])
+        blocks.append(replace(block, volume=volume, cells=cells, components=int(components[number])))
+    return blocks
+
+
+def entry_of(name: Name, record: dict) -> TileEntry:
+    return TileEntry(
+        *name,
+        stem(name),
+        record["sha256"],
+        sum(record["cells"]),
+        record["faces"],
+        record["vertices"],
+        record["low"],
+        record["high"],
+        [block["volume"] for block in record["blocks"]],
+    )
+
+
+def write_index(store: Store, pieces: list[str]) -> None:
+    """The file that opens all tiles in ParaView."""
+    with Outputs() as outputs, outputs.file(store.folder / INDEX) as file:
+        write_pieces(file, pieces)

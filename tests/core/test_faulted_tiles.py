@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models with faults and bodies in tiles, built in this process: the same cells as undivided ones."""
+
+import contextlib
+import pickle
+from concurrent.futures import Future
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from faulted.generate import random_case
+from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
+from realmodel.core.structures import windows as windows_module
+from realmodel.core.structures.windows import Windows
+from realmodel.core.tiles.grid import TileGrid
+from realmodel.core.tiles.owned_cells import Seam, face_keys, owners
+from realmodel.distributed import build as build_tiles
+from realmodel.distributed import faulted_folder, tile_folder
+from realmodel.distributed.workers import Workers
+from sample_scripts import SAMPLES
+
+
+class NoWorkers(Workers):
+    """This process does all tasks, with what it would get as a worker."""
+
+    def __init__(self):
+        super().__init__(Future())
+
+    def in_any_order(self, function, shared, tasks, cancel=None, **options):
+        shared = pickle.loads(pickle.dumps(shared))
+        return super().in_any_order(function, shared, tasks, cancel, **{**options, "here": True})
+
+
+@pytest.fixture(autouse=True)
+def one_after_another(monkeypatch):
+    monkeypatch.setattr(tile_folder, "workers_of", lambda *_: contextlib.nullcontext(NoWorkers()))
+
+
+def sample(name):
+    return load_project(SAMPLES / name / "project.toml")
+
+
+def tile_size(model, columns, rows):
+    extent = np.ptp(model.vertices[:, :2], axis=0)
+    return extent[0] / columns, extent[1] / rows
+
+
+def assert_same_blocks(tiled, whole, columns_off=0.0):
+    """columns_off: the share of cells by which columns may differ. In an undivided model sheets end beside
+    compartments, and columns that reach beyond may be divided there."""
+    assert [block.name for block in tiled.blocks] == [block.name for block in whole.blocks]
+    for one, other in zip(tiled.blocks, whole.blocks, strict=True):
+        assert (one.surface, one.rock, one.property) == (other.surface, other.rock, other.property)
+        assert one.components == other.components, one
+        off = 0.0 if tiled.cell_kind == "blocks" else columns_off
+        assert abs(one.cells - other.cells) <= off * other.cells, (one, other)
+        assert abs(one.volume - other.volume) <= 1e-12 * other.volume, (one, other)
+    assert tiled.unequal == 0
+    assert tiled.surface_names == whole.surface_names
+
+
+def cell_keys(model):
+    """Of each cell its faces, by their corners and surfaces, and its block and compartment."""
+    keys, cells = face_keys(model, np.arange(len(model.face_surface))), [[] for _ in model.cell_block]
+    for key, sides in zip(keys.tolist(), model.face_cells.tolist(), strict=True):
+        for cell in sides:
+            if cell >= 0:
+                cells[cell].append(key)
+    names = [model.compartment_names[number] for number in model.cell_compartment]
+    return [
+        (b"".join(sorted(own)), block, name)
+        for own, block, name in zip(cells, model.cell_block.tolist(), names, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+@pytest.mark.parametrize("name", ["fault_blocks", "rift_basin", "intrusion", "quarry", "tunnel"])
+def test_samples_have_the_blocks_of_the_undivided_model(name, cells, tmp_path):
+    project = sample(name)
+    whole = build(project, cells=cells)
+    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 3, 2), cells=cells)
+    assert len(tiled.tiles) == 6 and tiled.patches > 0
+    assert_same_blocks(tiled, whole)
+    opened = open_tiles(tmp_path / "t")
+    assert [block.volume for block in opened.blocks] == [block.volume for block in tiled.blocks]
+    for tile in opened.tiles:
+        model = tile.model()
+        assert model.is_cut and model.validate().passed
+        assert model.surface_names == whole.surface_names
+        assert np.array_equal(model.surface_kind, whole.surface_kind)
+
+
+@pytest.mark.parametrize("name", ["fault_blocks", "intrusion", "quarry"])
+def test_cells_do_not_depend_on_where_tiles_end(name, tmp_path):
+    project = sample(name)
+    found = []
+    for folder, columns, rows in (("one", 1, 1), ("six", 3, 2), ("eight", 2, 4)):
+        tiled = build_tiles(project, tmp_path / folder, tile_size(build(project), columns, rows))
+        assert len(tiled.tiles) == columns * rows
+        keys = [key for tile in tiled.tiles for key in cell_keys(tile.model())]
+        assert len(keys) == len(set(keys))
+        found.append(set(keys))
+    assert found[0] == found[1] == found[2]
+
+
+def test_sections_boreholes_and_warnings_are_those_of_the_whole(tmp_path):
+    project = sample("fault_blocks")
+    whole = build(project)
+    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 3, 3))
+    rng = np.random.default_rng(3)
+    low, high = whole.vertices.min(axis=0), whole.vertices.max(axis=0)
+    for x, y in rng.uniform(low[:2], high[:2], (40, 2)):
+        ours, theirs = tiled.borehole(x, y), whole.borehole(x, y)
+        assert [each.block for each in ours] == [each.block for each in theirs]
+        assert np.allclose([each.top for each in ours], [each.top for each in theirs], rtol=0, atol=1e-9)
+    for normal in ((1, 0, 0), (1, 2, 0)):
+        sections = (model.section((low + high) / 2, normal) for model in (tiled, whole))
+        areas = [areas_of(section, len(whole.blocks)) for section in sections]
+        assert np.allclose(areas[0], areas[1], rtol=1e-12)
+    assert {w.text for w in tiled.warnings} == {w.text for w in whole.warnings}
+
+
+def areas_of(section, blocks):
+    """(B,) the area of each block in a section."""
+    areas = np.zeros(blocks)
+    for number, block in enumerate(section.block.tolist()):
+        begin, end = section.offsets[number : number + 2]
+        places = section.vertices[section.polygon_vertices[begin:end]]
+        normal = np.cross(places[1:-1] - places[0], places[2:] - places[0]).sum(axis=0)
+        areas[block] += np.linalg.norm(normal) / 2
+    return areas
+
+
+def lattice(n, z, size=1000.0):
+    """A surface on a lattice; z(x, y)."""
+    x, y = (each.ravel() for each in np.meshgrid(*[np.linspace(0, size, n + 1)] * 2))
+    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    a, b, c, d = corner, corner + 1, corner + n + 2, corner + n + 1
+    triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    return np.column_stack([x, y, z(x, y)]), triangles.astype(np.int32)
+
+
+def plane_fault(name, low, high, azimuth, at, **more):
+    """A leaning fault through (at, 500) that passes the rock, or with `half` dies out."""
+    half = more.pop("half", 2000.0)
+    along = np.array([np.sin(azimuth), np.cos(azimuth)])
+    corners = [(-half, low), (half, low), (half, high), (-half, high)]
+    lean = np.array([along[1], -along[0]]) * 0.4
+    vertices = [[*(np.array([at, 500.0]) + s * along + z * lean), z] for s, z in corners]
+    return Fault(name, np.array(vertices), np.array([[0, 1, 2], [0, 2, 3]]), **more)
+
+
+def faulted(n=24, dies_out=False):
+    """Four surfaces, two crossing faults, a third one that ends at the first, and a body."""
+
+    def thrown(shift, throw):
+        return lambda x, y: shift + 15 * np.sin(x / 130) + 10 * np.cos(y / 170) + throw * (x > 480)
+
+    surfaces = [
+        Surface(f"S{k}", *lattice(n + 3 * k, thrown(-300 + 100 * k, 0)), rule=rule)
+        for k, rule in enumerate(["erosional", "conformable", "erosional", "erosional"])
+    ]
+    half = {"half": 300.0} if dies_out else {}
+    faults = [
+        plane_fault("A", -900, 900, 0.2, 470.0, youngest="S2", dies_out=dies_out, **half),
+        plane_fault("B", -900, 900, 1.3, 500.0, youngest="S1"),
+    ]
+    vertices, triangles = lattice(3, lambda x, y: 0 * x - 150, 300.0)
+    bottom = vertices + np.array([350, 350, 0])
+    closed = np.concatenate([bottom, bottom + np.array([0, 0, 120])])
+    rim = [0, 1, 2, 3, 7, 11, 15, 14, 13, 12, 8, 4]
+    walls = []
+    for a, b in zip(rim, rim[1:] + rim[:1], strict=True):
+        walls += [[a, b, b + 16], [a, b + 16, a + 16]]
+    faces = np.concatenate([triangles[:, ::-1], triangles + 16, walls])
+    return Project(
+        "faulted",
+        [Rock("rock", surfaces, base_elevation=-600.0)],
+        faults=faults,
+        bodies=[Body("intrusion", closed, faces, after="S2")],
+    )
+
+
+@pytest.mark.parametrize("dies_out", [False, True])
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):
+    project = faulted(48, dies_out)
+    whole, seen = build(project, cells=cells), []
+    real = faulted_folder._write_window
+
+    def look(windows, store, name, cancel, farther):
+        real(windows, store, name, cancel, farther)
+        seen.append(farther)
+        window = faulted_folder._window(store.parts(name) / "window.pickle")
+        used = sum(len(triangles) for _, triangles in window.inputs[0].surfaces)
+        assert used < 0.55 * sum(len(triangles) for _, triangles in whole.rock_inputs[0].surfaces)
+
+    monkeypatch.setattr(faulted_folder, "_write_window", look)
+    tiled = build_tiles(project, tmp_path / "t", (251, 262), cells=cells)
+    assert_same_blocks(tiled, whole, 0.05)
+    assert seen == [0] * len(tiled.tiles) == [0] * 16
+
+
+def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
+    project = faulted()
+    whole, asked = build(project), []
+    real, around = Windows.window, Windows._around
+
+    def narrow(self, work, tile, farther=0):
+        asked.append(farther)
+        calls = []
+
+        def least(own, of):
+            calls.append(of)
+            return around(own, of) if len(calls) > 2 or farther != 0 else of
+
+        with monkeypatch.context() as patch:
+            patch.setattr(Windows, "_around", least)
+            return real(self, work, tile, farther)
+
+    monkeypatch.setattr(Windows, "window", narrow)
+    tiled = build_tiles(project, tmp_path / "t", (340, 340))
+    assert_same_blocks(tiled, whole, 0.05)
+    assert asked.count(0) == 9 and 1 in asked
+
+
+@pytest.mark.parametrize("seed", [3, 8, 21, 34, 55, 89, 144, 233])
+def test_random_models(seed, tmp_path):
+    project = random_case(50_000_000 + seed).project()
+    try:
+        whole = build(project)
+    except InputRefused as error:
+        with pytest.raises(InputRefused) as refused:
+            build_tiles(project, tmp_path / "t", (400, 400))
+        assert str(refused.value) == str(error)
+        return
+    if not len(whole.cell_block):
+        pytest.skip("nothing is left of this model")
+    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 2, 3))
+    for one, other in zip(tiled.blocks, whole.blocks, strict=True):
+        assert one.components == other.components
+        assert abs(one.volume - other.volume) <= 1e-12 * max(other.volume, 1e-3 * whole.volume)
+
+
+def test_a_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    project, built = faulted(), []
+    real = faulted_folder._build
+
+    def stops(shared, name):
+        if len(built) == 3:
+            raise OSError(28, "No space left on device")
+        built.append(name)
+        real(shared, name)
+
+    monkeypatch.setattr(faulted_folder, "_build", stops)
+    with pytest.raises(OSError, match="No space"):
+        build_tiles(project, tmp_path / "t", (340, 340))
+    with pytest.raises(InputRefused):
+        open_tiles(tmp_path / "t")
+    first = list(built)
+
+    def goes_on(shared, name):
+        built.append(name)
+        real(shared, name)
+
+    monkeypatch.setattr(faulted_folder, "_build", goes_on)
+    tiled = build_tiles(project, tmp_path / "t", (340, 340))
+    assert built[:3] == first and sorted(built[:9]) == sorted(set(built)) and len(tiled.tiles) == 9
+    assert_same_blocks(tiled, build(project), 0.05)
+    assert not (tmp_path / "t" / "run").exists()
+    monkeypatch.setattr(faulted_folder, "_build", None)  # it is only opened
+    again = build_tiles(project, tmp_path / "t", (340, 340))
+    assert again.blocks == tiled.blocks
+
+
+def test_a_fault_that_ends_in_the_rock_is_refused_as_without_tiles(tmp_path):
+    project = faulted()
+    short = plane_fault("A", -900, 900, 0.2, 470.0, half=300.0)
+    shape = lattice(24, lambda x, y: -200 + 60.0 * (x > 480))
+    project.rocks[0].surfaces[1] = replace(
+        project.rocks[0].surfaces[1], vertices=shape[0], triangles=shape[1]
+    )
+    project.faults = [short]
+    with pytest.raises(InputRefused, match="it ends inside the rock"):
+        build(project)
+    with pytest.raises(InputRefused, match="it ends inside the rock"):
+        build_tiles(project, tmp_path / "t", (340, 340))
+
+
+def test_paraview_opens_all_of_them_at_once(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    tiled = build_tiles(sample("fault_blocks"), tmp_path / "t", (900, 900))
+    grid = pyvista.read(tmp_path / "t" / "model.pvtu")
+    cells = np.bincount(grid["block"], minlength=len(tiled.blocks))
+    assert cells.tolist() == [block.cells for block in tiled.blocks]
+
+
+def test_owners_and_seams():
+    class Two:
+        """Two cubes beside each other."""
+
+        vertices = np.array([[x, y, z] for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)], float)
+        face_offsets = np.array([0, 4, 8, 12])
+        face_vertices = np.array([4, 5, 7, 6, 0, 1, 3, 2, 8, 10, 11, 9])
+        face_cells = np.array([[0, 1], [0, -1], [1, -1]])
+        face_surface = np.array([-1, 2, -1])
+        cell_block = np.array([3, 4])
+
+    grid = TileGrid(np.array([-0.5, 0.5, 2.5]), np.array([-1.0, 2.0]))
+    assert owners(Two, grid).tolist() == [[0, 0], [1, 0]]
+    parts = np.array([[0, 0]])
+    one = Seam.of(Two, np.array([0]), np.array([0]), parts)
+
+    class Turned(Two):
+        face_vertices = np.array([6, 7, 5, 4, 0, 1, 3, 2, 8, 10, 11, 9])
+        face_cells = np.array([[1, 0], [0, -1], [1, -1]])
+
+    other = Seam.of(Turned, np.array([0]), np.array([0]), parts)
+    assert one.matches(other) and one.is_wall.all() and one.block.tolist() == [[3, 4]]
+    assert Seam.of_arrays(one.arrays("a"), "a").matches(other)
+
+    class Moved(Turned):
+        vertices = np.nextafter(Two.vertices, 9.0)
+
+    moved = Seam.of(Moved, np.array([0]), np.array([0]), parts)
+    assert not one.matches(moved) and one.first_difference(moved) == (1.0, 0.0, 0.0)
+    assert not one.matches(Seam.of_arrays({}, "none"))
+
+
+def test_which_triangles_pass_a_box():
+    low, high = np.zeros(3), np.ones(3)
+    triangle = np.array([[[-1.0, -1.0, 0.5], [3.0, -1.0, 0.5], [-1.0, 3.0, 0.5]]])
+    assert windows_module._any_passes(triangle, low, high)
+    assert not windows_module._any_passes(triangle + np.array([0, 0, 0.6]), low, high)
+    aside = np.array([[[2.5, 0.0, 0.0], [0.0, 2.5, 0.0], [2.5, 2.5, 1.0]]])  # its box meets, it does not
+    assert not windows_module._any_passes(aside, low, high)
+    assert windows_module._any_passes(aside - np.array([0.6, 0, 0]), low, high)
