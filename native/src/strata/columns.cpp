@@ -111,6 +111,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
         begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,
                    share / count, "intersecting the surfaces");
         SurfaceTiling tiling = tilings.take(k);
+        if (site.window) clip_to_window(site, rock, tiling, progress);
         envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
                                         : overlay_columns(site.geometry, envelope, tiling, k,
                                                           construction, wanted, threads, progress);

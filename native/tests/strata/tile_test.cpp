@@ -57,6 +57,28 @@ TEST_P(TileOf, FourTilesHaveTheVolumesOfTheWhole) {
     }
 }
 
+/// Triangles that a border divides are whole facets in each tile: what surfaces above divide them
+/// into does not add up from surface to surface.
+TEST(ColumnsOfTiles, DoNotCompoundAlongTheirBorder) {
+    constexpr int kSide = 24, kSurfaces = 9;
+    std::vector<OwnedSurface> surfaces;
+    StackInput input;
+    for (int k = 0; k < kSurfaces; ++k)
+        surfaces.push_back(slope(kSide - k, k, 0.01 * k, -0.02 * k, k % 2 == 0));
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.base_elevation = -10;
+    const std::size_t whole = build_stack(input, 1, nullptr).cell_block.size();
+    std::size_t in_tiles = 0;
+    for (const Window& window : {Window{-2, -2, 2.3, 8}, Window{2.3, -2, 8, 8}}) {
+        const CellComplex tile = build_tile({&input, 1}, window, 1, nullptr).complex;
+        expect_valid(tile, false);
+        in_tiles += tile.cell_block.size();
+    }
+    EXPECT_GT(in_tiles, whole);
+    EXPECT_LE(in_tiles, whole + 3 * kSide * kSurfaces);  // a line passes two or three in a row
+}
+
 TEST_P(TileOf, AWindowBesideTheRegionIsEmpty) {
     const Input owned;
     const StackInput input = owned.view(true);

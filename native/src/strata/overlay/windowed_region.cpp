@@ -2,11 +2,48 @@
 #include "strata/overlay/windowed_region.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "strata/overlay/facet_overlay.hpp"
 #include "strata/overlay/whole_triangles.hpp"
 
 namespace realmodel::strata {
+
+namespace {
+
+/// The window of a tile: its own, or the region that a rock mass without one has there.
+std::array<Corner, 4> window_outline(Site& site, const EnteredRock& rock) {
+    const auto plan_of = [&](std::size_t t) {
+        if (!rock.window) return (*rock.region)[t];
+        PlanTriangle v;
+        for (std::size_t i = 0; i < 3; ++i)
+            v[i] = site.geometry.space(rock.window->triangles[t].corner[i]).plan;
+        return v;
+    };
+    const PlanTriangle half = plan_of(0);
+    const std::array corners{half[0], half[1], half[2], plan_of(1)[2]};
+    std::array<Corner, 4> outline;
+    for (std::size_t i = 0; i < 4; ++i)
+        outline[i] = {corners[i], site.geometry.add_edge(corners[i], corners[(i + 1) % 4])};
+    return outline;
+}
+
+/// Whether a box may have something on either side of the window's border. Boxes of points are as
+/// exact as doubles are.
+bool may_cross(const PlanBox& box, const Window& window) {
+    const double margin = 0x1p-40 * std::max({std::abs(box.low_x), std::abs(box.high_x),
+                                              std::abs(box.low_y), std::abs(box.high_y)});
+    const PlanBox wide{box.low_x - margin, box.low_y - margin, box.high_x + margin,
+                       box.high_y + margin};
+    const bool is_inside = wide.low_x > window.low_x && wide.high_x < window.high_x &&
+                           wide.low_y > window.low_y && wide.high_y < window.high_y;
+    return !is_inside && wide.meets({window.low_x, window.low_y, window.high_x, window.high_y});
+}
+
+}  // namespace
 
 Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progress* progress) {
     const Envelope region = initial_envelope(
@@ -23,6 +60,42 @@ Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progr
     for (std::size_t i = 0; i < overlaid.below.polygon.size(); ++i)
         overlaid.kept.add_facet(overlaid.below.outlines[i], kSky, -1, kSkyBlock);
     return std::move(overlaid.kept);
+}
+
+void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
+                    const Progress* progress) {
+    const auto window = window_outline(site, rock);
+    LocalArrangement scope(site.geometry);
+    Clipper clipper(scope);
+    PolygonPool clipped;
+    std::vector<std::size_t> which;
+    for (std::size_t p = 0; p < tiling.plane.size(); ++p) {
+        poll(progress, p);
+        const PolygonView whole = tiling.polygons[p];
+        if (!tiling.plane[p].has_value() || !may_cross(box_of(scope, whole), *site.window))
+            continue;
+        const PolygonView inside = clipper.intersect(whole, window);
+        const bool is_same = std::ranges::equal(whole, inside, {}, &Corner::point, &Corner::point);
+        if (inside.empty() || is_same) continue;
+        clipped.add(inside);
+        which.push_back(p);
+    }
+    scope.commit(site.geometry);
+    PolygonPool polygons;
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < tiling.plane.size(); ++p) {
+        if (next == which.size() || which[next] != p) {
+            polygons.add(tiling.polygons[p]);
+            continue;
+        }
+        Polygon outline(clipped[next].begin(), clipped[next].end());
+        for (Corner& corner : outline)
+            corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+        polygons.add(outline);
+        tiling.runs_on[p] = 0;
+        ++next;
+    }
+    tiling.polygons = std::move(polygons);
 }
 
 }  // namespace realmodel::strata

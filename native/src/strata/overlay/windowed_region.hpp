@@ -10,4 +10,10 @@ namespace realmodel::strata {
 /// there is a window, only what of the region lies in it. The planes of the window are made.
 Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progress* progress);
 
+/// Cuts off what of a surface lies beyond the window of a tile, where its polygons cross the
+/// border. So what they are divided into can become one facet again there, too, and the overlay
+/// does not compound along the border.
+void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
+                    const Progress* progress);
+
 }  // namespace realmodel::strata
