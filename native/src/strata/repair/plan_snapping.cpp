@@ -165,7 +165,11 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
     parallel_chunks(2, threads, progress, [&](std::size_t axis) {
         for (double& value : values[axis])
             value += 0.0;  // -0 becomes 0
-        boost::sort::spreadsort::float_sort(values[axis].begin(), values[axis].end());
+        // apart: Boost takes the difference of the bits of the least and of the greatest one
+        const auto begin = values[axis].begin(), end = values[axis].end();
+        const auto middle = std::partition(begin, end, [](double value) { return value < 0; });
+        boost::sort::spreadsort::float_sort(begin, middle);
+        boost::sort::spreadsort::float_sort(middle, end);
         reach[axis] = largest[axis] * 0x1p-51;  // two to four units in the last place
     });
     // Values whose joining would turn a triangle are left alone, until none is turned. Input so
