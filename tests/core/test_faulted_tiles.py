@@ -85,7 +85,7 @@ def test_samples_have_the_blocks_of_the_undivided_model(name, cells, tmp_path):
     assert [block.volume for block in opened.blocks] == [block.volume for block in tiled.blocks]
     for tile in opened.tiles:
         model = tile.model()
-        assert model.is_cut and model.validate().passed
+        assert model.is_cut and model.validate().passed  # whole blocks were joined from proven columns
         assert model.surface_names == whole.surface_names
         assert np.array_equal(model.surface_kind, whole.surface_kind)
 
@@ -263,9 +263,12 @@ def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
     assert asked.count(0) == 9 and 1 in asked
 
 
-@pytest.mark.parametrize("seed", [3, 8, 21, 34, 55, 89, 144, 233])
+# 62000015 leaves windows without rock, 62000085 cells as thin as rounding between those of two tiles
+@pytest.mark.parametrize(
+    "seed", [50_000_003, 50_000_021, 50_000_055, 50_000_144, 50_000_233, 62_000_015, 62_000_085]
+)
 def test_random_models(seed, tmp_path):
-    project = random_case(50_000_000 + seed).project()
+    project = random_case(seed).project()
     try:
         whole = build(project)
     except InputRefused as error:
@@ -275,7 +278,8 @@ def test_random_models(seed, tmp_path):
         return
     if not len(whole.cell_block):
         pytest.skip("nothing is left of this model")
-    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 2, 3))
+    cells = "blocks" if seed % 2 else "columns"
+    tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 4, 3), cells=cells)
     for one, other in zip(tiled.blocks, whole.blocks, strict=True):
         assert one.components == other.components
         assert abs(one.volume - other.volume) <= 1e-12 * max(other.volume, 1e-3 * whole.volume)

@@ -202,7 +202,7 @@ def validate(
         native, arrays = native_module(), _native_model(model)
         with work.phase(0.0, 0.6, "checking every cell and face"):
             found = work.native(native.check_topology, arrays, threads=threads)
-        if places and not model.is_cut and found[0]["failed"] == 0:
+        if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
                 if model.structures is not None:
                     found += check_points(work, model, int(places), int(seed))

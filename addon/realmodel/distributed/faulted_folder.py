@@ -125,12 +125,9 @@ def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
     window = _window(store.parts(name) / _WINDOW)
     box = frame.grid.box(*name)
     built = run(lambda work: build_faulted_tile(work, frame, whole, window, name, threads=1))
-    reports = [built.around.validate(places_of(frame, box), threads=1)]
-    if frame.cell_kind == "blocks":
-        reports.append(built.model.validate(0, threads=1))
-    for report in reports:
-        if not report.passed:
-            raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
+    report = built.around.validate(places_of(frame, box), threads=1)
+    if not report.passed:
+        raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
     model, arrays = built.model, {"others": np.array(sorted(built.seams), np.int64).reshape(-1, 2)}
     for key, part in (("parts", model.cell_component), ("cells", built.part)):
         roots = np.flatnonzero(part == np.arange(len(part)))
