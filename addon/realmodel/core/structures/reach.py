@@ -45,11 +45,8 @@ class Reach:
         low y, high x, high y. structures: these, and some bodies."""
         few = copy.copy(self)
         few.structures, few.ranges, few.numbers = structures, {}, {}
-        first, last = self._range(np.array([box[:2]]), np.array([box[2:]]))
-        inside = np.zeros(self.count, bool)
-        inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
         few.masks = [self.masks[fault] for fault in faults]
-        few.asked = inside
+        few.asked = self._cells_in(np.array(box[:2]), np.array(box[2:]))
         return few
 
     def numbers_of(self, sheet: Triangulation) -> np.ndarray:
@@ -62,10 +59,7 @@ class Reach:
         for mask, side in zip(self.masks, self.structures.sides[part].tolist(), strict=False):
             if side:
                 possible &= (mask & (_ABOVE if side > 0 else _BELOW)) > 0
-        first, last = self._range(self.structures.low[part][None], self.structures.high[part][None])
-        inside = np.zeros(self.count, bool)
-        inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
-        found = possible & inside
+        found = possible & self._cells_in(self.structures.low[part], self.structures.high[part])
         return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:
@@ -116,6 +110,13 @@ class Reach:
         last = np.floor((high + near - self.low[:n]) / self.step[:n])
         limit = self.count[:n] - 1
         return np.clip(first, 0, limit).astype(np.int64), np.clip(last, 0, limit).astype(np.int64)
+
+    def _cells_in(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """(nx, ny, nz) bool: the cells that a box meets, in space or in plan."""
+        first, last = self._range(low[None], high[None])
+        inside = np.zeros(self.count, bool)
+        inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
+        return inside
 
     def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
         beyond = native_module().structure_continuation(fault.native(), self.structures.box)

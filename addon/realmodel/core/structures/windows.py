@@ -182,10 +182,12 @@ class Windows:
             if is_there:
                 present.append(s)
         # what a fault is beyond one at which it ends, that one says
-        for s in reversed(self._ends_first()):
-            if s in present:
-                present += [number[name] for name in structures.faults[s].ends_at]
-        present = sorted(set(present))
+        waiting = [s for s in present if s < len(structures.faults)]
+        while waiting:
+            ends = {number[name] for name in structures.faults[waiting.pop()].ends_at}.difference(present)
+            present += ends
+            waiting += ends
+        present.sort()
         return present, fixed
 
     def _sides_of(self, work: Work, fault: int) -> np.ndarray:
@@ -197,22 +199,6 @@ class Windows:
             shape = self.structures.fault_shapes()[fault]
             self._sides[fault] = fault_sides(work, middles, shape, self._threads)
         return self._sides[fault]
-
-    def _ends_first(self) -> list[int]:
-        """The faults, each after those at which it ends."""
-        faults = self.structures.faults
-        number = {fault.name: n for n, fault in enumerate(faults)}
-        order: list[int] = []
-
-        def visit(n: int) -> None:
-            if n not in order:
-                for name in faults[n].ends_at:
-                    visit(number[name])
-                order.append(n)
-
-        for n in range(len(faults)):
-            visit(n)
-        return order
 
     def _few(self, present: list[int], fixed: np.ndarray, around: Box) -> tuple[Structures, np.ndarray]:
         """Some structures alone; and (P,) a part of the whole for each of theirs."""
