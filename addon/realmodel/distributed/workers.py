@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import contextlib
+import importlib.util
 import os
 import threading
 from collections import deque
@@ -71,7 +72,8 @@ class Workers:
             tasks.extendleft(reversed(following(task)))
         if not tasks:
             return
-        distributed, client = _distributed(), self.client
+        client = self.client
+        distributed = _distributed()
         everywhere = client.scatter(shared, broadcast=True, hash=False)
         one_is_done = threading.Event()
 
@@ -115,17 +117,14 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
         starting.set_result(client)
         yield Workers(starting)
         return
-    distributed = _distributed()
-    import dask
-
+    if importlib.util.find_spec("distributed") is None:
+        raise _without_dask()
     with contextlib.ExitStack() as ends, concurrent.futures.ThreadPoolExecutor(1) as apart:
-        environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
-        environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
-        environment |= _HEAP
-        ends.enter_context(dask.config.set({**_QUIET, "distributed.nanny.pre-spawn-environ": environment}))
 
         def start():
             with _starts:
+                distributed = _distributed()
+                ends.enter_context(_settings())
                 cluster = distributed.LocalCluster(
                     n_workers=count or os.cpu_count(),
                     threads_per_worker=1,
@@ -139,6 +138,16 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
             return client
 
         yield Workers(apart.submit(start))
+
+
+def _settings() -> contextlib.AbstractContextManager:
+    """Those of Dask while workers start and are at work."""
+    import dask
+
+    environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
+    environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
+    environment |= _HEAP
+    return dask.config.set({**_QUIET, "distributed.nanny.pre-spawn-environ": environment})
 
 
 def _ready() -> None:
@@ -162,6 +171,9 @@ def _distributed():
     try:
         import distributed
     except ImportError as error:
-        text = 'this needs Dask, which is not installed: pip install "dask[distributed]"'
-        raise UsageError(text) from error
+        raise _without_dask() from error
     return distributed
+
+
+def _without_dask() -> UsageError:
+    return UsageError('this needs Dask, which is not installed: pip install "dask[distributed]"')
