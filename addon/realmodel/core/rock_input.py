@@ -56,6 +56,7 @@ class RockInput:
     known of its vertices (surface_heights.told_of). warnings: what reading and interpolating
     had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
     structure: the compartments of a rock mass with faults, and their sheets; a surface is all its sheets.
+    torn: the refusal of a surface whose triangles overlap in a sheet, by number, where a fault is the reason.
     draws: how each surface is drawn in a realization of an ensemble; else None.
     """
 
@@ -68,6 +69,7 @@ class RockInput:
     whole: RockInput | None = None
     told: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
+    torn: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
 
     def native(self) -> tuple:
@@ -103,6 +105,7 @@ class RockInput:
             self,
             {number: told for number, told in self.told.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
+            self.torn,
         )
 
 
