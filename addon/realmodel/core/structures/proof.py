@@ -116,14 +116,9 @@ def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
 
 def _is_near(model, forms: list[ClosedForm], locator: Locator, point: np.ndarray) -> bool:
     """Whether something that divides rock is nearer to a point than rounding may move it."""
-    near = _rounding(model)
-    for move in np.vstack([np.eye(3), -np.eye(3)]) * near:
-        moved = (point + move)[None]
-        if _said(forms, moved)[0] != _said(forms, point[None])[0]:
-            return True
-        if (locator.cells(moved) != locator.cells(point[None])).any():
-            return True
-    return False
+    moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
+    blocks, cells = _said(forms, point + moves), locator.cells(point + moves)
+    return bool((blocks != blocks[0]).any() or (cells != cells[0]).any())
 
 
 def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
@@ -145,8 +140,8 @@ def _check_faces(model, places: int, random) -> dict:
     began = time.perf_counter()
     faces = np.flatnonzero(model.face_surface >= 0)
     faces = np.sort(random.choice(faces, min(len(faces), places), replace=False))
-    sums = np.add.reduceat(model.vertices[model.face_vertices], model.face_offsets[:-1])
-    points = (sums / np.diff(model.face_offsets)[:, None])[faces]
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    points = np.add.reduceat(model.vertices[corners], offsets[:-1]) / np.diff(offsets)[:, None]
     away = np.full(len(faces), np.inf)
     allowed = _rounding(model) * (1 + _steepness(model))
     for number in np.unique(model.face_surface[faces]):
