@@ -141,7 +141,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
 
 
 def _settings() -> contextlib.AbstractContextManager:
-    """Those of Dask while workers start and are at work."""
+    """The settings of Dask while workers start and run."""
     import dask
 
     environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
