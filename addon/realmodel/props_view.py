@@ -107,13 +107,13 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.overlay,
     )
-    compartments: StringProperty(options={"HIDDEN"})  # JSON of what a build told of compartments and faults
+    compartments: StringProperty(options={"HIDDEN"})  # JSON, see bl/compartments.py
     shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of
     applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show
     place: StringProperty(options={"HIDDEN"})  # JSON of the last coordinates that were asked for
-    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are told from
+    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are measured from
     message: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     bounds_low: FloatVectorProperty(options={"HIDDEN"})
     bounds_high: FloatVectorProperty(options={"HIDDEN"})

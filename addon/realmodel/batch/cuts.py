@@ -129,7 +129,7 @@ class CutRequest:
             self._other = build(load_project(self.cutter[0]), cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:
-        """Cuts and stages the halves; what there is to say about them."""
+        """Cuts, and stages the halves for writing. Returns the summary for the terminal."""
         names = ", ".join(path.name for path in self.outputs)
 
         def step(_share, _text):
@@ -140,8 +140,8 @@ class CutRequest:
             cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads, step)
             text = "by the plane"
         elif isinstance(self.cutter, Path):
-            vertices, told = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
-            lines += [f"warning: {warning}" for warning in told]
+            vertices, warnings = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
+            lines += [f"warning: {warning}" for warning in warnings]
             try:
                 cut = model.cut_by_surface(vertices, self._mesh.triangles, threads, step)
             except InputRefused as error:

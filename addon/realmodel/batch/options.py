@@ -166,7 +166,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--estimate",
         action="store_true",
-        help="tell cells, memory and time that it would take, and build nothing",
+        help="print the expected cells, memory and time, and build nothing",
     )
     parser.add_argument(
         "--surfaces-only",
@@ -176,7 +176,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--eroded",
         action="store_true",
-        help="tell what each surface removed and each body took of each block, in the table and the report",
+        help="add the volume that each surface removed and each body took of each block to table and report",
     )
     parser.add_argument(
         "--check-model",

@@ -54,7 +54,7 @@ class BuildJob(ThreadJob):
         """As ThreadJob: gives some of the meshes that the scene will need."""
         current = bpy.data.scenes.get(self.scene_name)
         if current is None or not self._job.succeeded:
-            return True  # finish tells
+            return True  # finish raises the error
         if self._slices is None:
             shapes = built_scene.shapes_to_come(current, self._job.result(), self.composed)
             self._slices = meshes.slices(shapes)
@@ -101,7 +101,7 @@ def refused_surface(current, error):
 
 
 def message(error):
-    """An error in one line for a person; defects are told as such."""
+    """The message of an error, in one line. Errors that are defects of RealModel are reported as such."""
     if isinstance(error, RealModelError):
         return str(error)
     return f"this is a defect of RealModel, please report it: {type(error).__name__}: {error}"

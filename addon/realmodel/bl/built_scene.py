@@ -51,9 +51,9 @@ class Prepared:
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
     PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
-    and the stamp of the file. figures: for each surface what surface_figures says of it. told: by place what
-    is known of an interface's vertices (Model.surface_attributes). compartments: what `compartments` keeps.
-    stage: what `shown_models.remember_stage` takes, or None.
+    and the stamp of the file. figures: for each surface the text of surface_figures. attributes: by place the
+    attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 
     model: object
@@ -63,7 +63,7 @@ class Prepared:
     bounds: tuple = ()
     stored: dict = field(default_factory=dict)
     figures: list = field(default_factory=list)
-    told: dict = field(default_factory=dict)
+    attributes: dict = field(default_factory=dict)
     compartments: str = ""
     stage: tuple | None = None
 
@@ -87,7 +87,7 @@ def prepare(model, composed, stage=None, threads=0):
             shape = polygon_mesh.of_triangles(given, triangles, smooth=bool(is_surface))
             prepared.interfaces[place] = (shape, digest)
             if is_surface:
-                prepared.told[place] = model.surface_attributes(surface)
+                prepared.attributes[place] = model.surface_attributes(surface)
     prepared.blocks = polygon_mesh.of_blocks(model, origin, threads)
     prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
     for place, stamp in composed.read.items():
@@ -288,8 +288,8 @@ def _new_interfaces(current, prepared, composed, created):
         if own is None or digest != row.interface_digest:
             mesh = meshes.new_mesh(row.name, shape)
             created.append(mesh)
-            if place in prepared.told:
-                uncertainty.add_attributes(mesh, prepared.told[place])
+            if place in prepared.attributes:
+                uncertainty.add_attributes(mesh, prepared.attributes[place])
         if own is None:
             own = bpy.data.objects.new(row.name, mesh)
             created.append(own)

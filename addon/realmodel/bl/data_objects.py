@@ -103,7 +103,7 @@ def _read_points(scene, row):
 
 
 def file_key(row):
-    """What tells the file of a surface, and how it is read, from another."""
+    """A key of the file of a surface and of its import options; it changes when the file does."""
     path = project_settings.absolute(row.filepath)
     if path is None:
         return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many triangles an edge length gives, told beside it before anything is built."""
+"""The number of triangles that an edge length gives; the panel shows it before anything is built."""
 
 import math
 
@@ -14,7 +14,7 @@ from .surface_figures import plan_area
 
 
 def expected_triangles(row):
-    """About how many triangles the planar mesh of a rock mass will have; None where it cannot be told."""
+    """About how many triangles the planar mesh of a rock mass will have; None where it is not known."""
     if row.region_area <= 0.0 or row.edge_length <= 0.0:
         return None
     equilateral = math.sqrt(3.0) / 4.0 * row.edge_length**2

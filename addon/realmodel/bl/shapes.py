@@ -92,8 +92,8 @@ def points(item, depsgraph):
 
 
 def digest(given, triangles):
-    """What tells whether a mesh is still as it was: of offsets rounded as Blender keeps them, and
-    triangles."""
+    """The digest by which changes of a mesh are detected: of its offsets, rounded to float32 as in Blender,
+    and its triangles."""
     found = hashlib.blake2b(digest_size=16)
     found.update(np.ascontiguousarray(given, np.float32).tobytes())
     found.update(np.ascontiguousarray(triangles, np.int32).tobytes())

@@ -62,7 +62,7 @@ def _bytes_of(arrays):
 
 
 def file_stamp(path):
-    """What tells whether a file is still the one that was read; "" where there is no such file."""
+    """The path, time and size of a file, by which changes of it are detected; "" where it does not exist."""
     try:
         found = Path(path).stat()
     except (OSError, ValueError):

@@ -139,7 +139,7 @@ def _remove(folders: list[Path]) -> None:
     while folders:
         try:
             shutil.rmtree(folders[-1], ignore_errors=True)
-        except OSError as error:  # where a Ctrl-C follows a close, rmtree closes again and tells of that
+        except OSError as error:  # after a Ctrl-C following a close, rmtree closes again, which fails
             raise error.__context__ or error from None
         folders.pop()
 

@@ -73,7 +73,7 @@ def _build(
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs = read_rocks(work, project)
-        faults, bodies, told = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads)
     for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
         with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
@@ -94,7 +94,7 @@ def _build(
                 interpolate_rock(work, entry, start, end, threads, stage)
     inputs = taken()
     if structures is not None:
-        inputs[0].warnings += told
+        inputs[0].warnings += warnings
         structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
         built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build tells besides its result."""
+"""The warnings of a build."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cross-validation: each point as the others tell it."""
+"""Cross-validation: the height of each point, estimated from the others."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ DEFAULT_FOLDS = 10
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """points (P, 3), of which no two lie at one place; z (P,) as the other points tell them; errors (P,), z
-    less the points' heights; standardised (P,), errors over their kriging deviation, None where the method
-    gives no variance; rmse, the root of the mean squared error; the method, and the variogram used.
+    """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
+    minus the points' heights; standardised (P,), errors divided by the kriging standard deviation, None where
+    the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
 
-    Where nothing tells a point (a method that gives no height outside the other points' hull), its z and
-    errors are NaN; rmse is over the rest.
+    Where a point cannot be estimated (a method that gives no height outside the hull of the other points),
+    its z and error are NaN; rmse is of the others.
     """
 
     points: np.ndarray
@@ -86,13 +86,13 @@ def cross_validate(
     cancel: Cancel | None = None,
     **options,
 ) -> CrossValidation:
-    """Tells each point from the others by a method.
+    """Estimates the height of each point from the others by a method.
 
-    points: (P, 3), at least 2 places; points at one place count once. Kriging and inverse distance leave the
-    points out one by one (with all points as neighbours by the identities of Dubrule 1983, Mathematical
-    Geology 15, from one factor), with the variogram fitted to all of them. The other methods are run `folds`
-    times, each time without every folds-th point; a method that works on a mesh on `mesh`, (nodes (N, 2),
-    triangles (T, 3)). options: as `interpolate` takes them.
+    points: (P, 3), at least 2 positions in plan; points at one position count once. Kriging and inverse
+    distance leave the points out one by one, with the variogram fitted to all of them (where all points are
+    neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
+    methods are run `folds` times, each time without every folds-th point. mesh: (nodes (N, 2), triangles (T,
+    3)), for a method that works on a mesh. options: as for `interpolate`.
 
     Raises InputRefused, UsageError, Cancelled.
     """
@@ -133,8 +133,8 @@ def validate(
     if variance is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
             standardised = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
-    told = np.isfinite(errors)
-    rmse = float(np.sqrt(np.mean(errors[told] ** 2))) if told.any() else float("nan")
+    known = np.isfinite(errors)
+    rmse = float(np.sqrt(np.mean(errors[known] ** 2))) if known.any() else float("nan")
     return CrossValidation(points, z, errors, standardised, rmse, method, variogram)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a model will take before it is built: triangles, memory and time, by their number alone."""
+"""Estimates the triangles, memory and time of a model before it is built."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points ar
 class Estimate:
     """What building a project will take.
 
-    cell_kind, threads: as asked. triangles: of all surfaces. memory: bytes that building takes at most,
-    beyond what the process had; mostly it is a third to all of it. seconds: of the whole build where nothing
-    else is busy, right in the order of magnitude. available: bytes that were free.
+    cell_kind, threads: as given. triangles: of all surfaces. memory: an upper bound, in bytes, of the memory
+    that the build adds to the process; mostly it needs a third to all of that. seconds: of the whole build on
+    an idle machine, in order of magnitude. available: free memory in bytes.
     """
 
     cell_kind: str
@@ -71,10 +71,10 @@ def estimate(
     *,
     stage: int | None = None,
 ) -> Estimate:
-    """Tells what build() with the same arguments would take, without building it: files are read and regions
-    meshed, nothing is interpolated or intersected.
+    """Estimates the memory and the time that build() with the same arguments needs. It reads the files and
+    meshes the regions; nothing is interpolated or intersected.
 
-    Raises InputRefused for what build() would refuse while it reads and meshes, UsageError, Cancelled.
+    Raises InputRefused as build() does while it reads and meshes, UsageError, Cancelled.
     """
     check_cells(cells)
     threads = check_threads(threads)

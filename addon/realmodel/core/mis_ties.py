@@ -25,14 +25,14 @@ def without_mis_ties(
     contradictions are left in. room, gather: where arrays are kept.
     """
     found = _Places(points, room, is_once=False)
-    return found.kept(gather), found.told()
+    return found.kept(gather), found.warning()
 
 
 def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.ndarray, str | None, bool]:
     """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
     found = _Places(points, room, is_once=True)
-    return found.kept(gather), found.told(), not found.has_contradictions
+    return found.kept(gather), found.warning(), not found.has_contradictions
 
 
 class _Places:
@@ -87,7 +87,7 @@ class _Places:
             piece[numbers[first:last] - begin, 2] = heights[first:last]
             yield piece[self._keeps[begin : begin + len(piece)]]
 
-    def told(self) -> str | None:
+    def warning(self) -> str | None:
         if not self._count:
             return None
         apart, x, y = self._worst

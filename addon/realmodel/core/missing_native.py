@@ -51,9 +51,9 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
 
     error: what importing `_native` raised. package: the folder of the add-on.
 
-    A developer's copy has scripts/build.sh beside it and is told to run it. An installed one is told
-    which system and which Pythons it has modules for, or what keeps the one for this Python from being
-    loaded.
+    For a developer's copy, which has scripts/build.sh beside it, the advice is to run that. For an installed
+    add-on the sentence names the system and the Pythons that it has modules for, or the reason why the module
+    for this Python cannot be loaded.
     """
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     system = SYSTEMS.get(re.sub(r"^macosx-[\d.]+-", "macosx-", sysconfig.get_platform()))

@@ -61,11 +61,12 @@ def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
 def read_rings(
     region, holes=(), units: str = MODEL_UNIT, call: Callable | None = None
 ) -> tuple[object, list[np.ndarray], list[str]]:
-    """The region and the holes of a rock mass as checked arrays, and sentences about what was left out.
+    """The region and the holes of a rock mass as checked arrays, and warnings about shapes that were left
+    out.
 
-    The region is one outline (N, 2) with holes in it, or a list of rings that count even-odd, without. Raises
-    InputRefused; its cause is a native InputError where the rings do not fit together. call: Work.native,
-    where the caller may stop it.
+    The region is one outline (N, 2) with holes, or a list of rings with the even-odd rule and no holes. call:
+    Work.native, where the caller can cancel. Raises InputRefused; its cause is a native InputError where the
+    rings do not fit together.
     """
     shapes = shapes_of(region, units)
     if shapes is None:
@@ -75,8 +76,8 @@ def read_rings(
     file = None if layer is None else Path(layer.file)
     require_polygons(shapes, file)
     rings = rings_of_shapes(shapes)
-    told = shapes.without_area(file or Path("region"))
-    return *_as_given(rings, checked_region(rings, call), False), told
+    warnings = shapes.without_area(file or Path("region"))
+    return *_as_given(rings, checked_region(rings, call), False), warnings
 
 
 def _as_given(

@@ -291,7 +291,7 @@ def _block_of_surface(model) -> np.ndarray:
 
 
 def _test(entry: dict, model) -> ValidationTest:
-    """A test as the native part tells it; -1 stands for no number there."""
+    """A test from the dictionary of the native module, in which -1 means no number."""
     number, says = _SAYS[entry["name"]]
     if model.structures is not None:
         says = _SAYS_OF_STRUCTURES.get(entry["name"], says)

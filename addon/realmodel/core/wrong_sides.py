@@ -166,8 +166,8 @@ class WrongPoints:
 
 
 def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
-    """What to tell of the points of a surface so far (N,) beyond other surfaces; others: their numbers, one
-    or (N,)."""
+    """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
+    others: the numbers of these surfaces, one or (N,)."""
     points = rock.surfaces[number].points
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
     return [] if found is None else [found.warning(rock, number, len(points), side)]

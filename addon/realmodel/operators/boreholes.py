@@ -42,7 +42,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         name="Downward Dip",
         description="Which dips of holes go down",
         items=[
-            ("TOLD", "As in the table", "All dips of a table have one sign, and go down"),
+            ("TABLE", "As in the table", "All dips of a table have one sign, and go down"),
             ("NEGATIVE", "Negative", "-90 is straight down"),
             ("POSITIVE", "Positive", "90 is straight down"),
         ],
@@ -71,7 +71,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             reading_text.named_columns(self.columns),
             units=None if self.units == "NONE" else self.units,
             survey=_beside(picks, self.survey),
-            downward_dip=None if self.downward_dip == "TOLD" else self.downward_dip.lower(),
+            downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
         )
         for file in given.files:
             require_file(file)
@@ -81,10 +81,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
-        told = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
+        warnings = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
         borehole_picks.keep(rock, found.holes)
         arrived(context, rock, list(found.points.values()))
-        for text in [*found.warnings, *told]:
+        for text in [*found.warnings, *warnings]:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, f"Points for {len(found.points)} surfaces: {', '.join(found.points)}")
 

@@ -83,8 +83,8 @@ class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
 
 
 def a_message(context):
-    told = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
-    return None if told else "there is no message"
+    message = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
+    return None if message else "there is no message"
 
 
 class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):

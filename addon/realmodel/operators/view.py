@@ -207,7 +207,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
-    """Tell the coordinates of the model, its block, property and thickness: under the mouse until you click,
+    """Show the coordinates of the model, its block, property and thickness: under the mouse until you click,
     or at the 3D cursor"""
 
     bl_idname = "realmodel.coordinates"
@@ -295,15 +295,15 @@ def place_text(scene, place):
 
 
 class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
-    """Tell coordinates also as distances from a point: the one that was asked for last, or the 3D cursor. The
-    model itself does not move"""
+    """Set the point that distances are measured from: the last coordinates, or the 3D cursor. The model
+    itself does not move"""
 
     bl_idname = "realmodel.set_origin"
     bl_label = "Set Origin"
 
     action: EnumProperty(
         name="Origin",
-        description="The point that distances are told from",
+        description="The point that distances are measured from",
         items=(
             ("PLACE", "Last Place", "The coordinates that were asked for last"),
             ("CURSOR", "3D Cursor", "Where the 3D cursor is"),

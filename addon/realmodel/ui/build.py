@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building, its progress, what is missing for it, and what it had to tell."""
+"""The Build panel: the operator, its progress, missing input, warnings."""
 
 import bpy
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colors, the cut.
+"""The display of a built model: display modes, stage, exploded view, colors, cut.
 
-The settings call one function here when they change, the build calls `built` and `cleared`. All of it leaves
-the model as it is: see docs/guide/tour.md, "View".
+Each setting calls one function of this module when it changes; the build calls `built` and `cleared`. Nothing
+here changes the model: see docs/guide/tour.md, "View".
 
 shown_models   the model at a stage, from the core
 stages         the blocks' shapes at a stage
@@ -11,13 +11,13 @@ visible        hiding and showing objects without taking back what the user does
 bodies, cells  objects that are only for viewing
 drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
-colors        what the colors tell
+colors        the meaning of the colors
 ensembles      the section of an ensemble
 cuts, sections the movable plane; sections as mesh objects
-preparing      what takes long, in a thread
-viewpoints     where the viewports look from
+preparing      long work, in a thread
+viewpoints     the view directions of the viewports
 capture        pictures
-coordinates    what is under the cursor
+coordinates    the block, property and thickness under the cursor
 """
 
 import json

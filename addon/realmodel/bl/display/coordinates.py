@@ -188,7 +188,7 @@ def last(scene):
 
 
 def set_zero(scene, point):
-    """The point, in model coordinates, that distances are told from; None for none."""
+    """Sets the point, in model coordinates, that distances are measured from; None for none."""
     scene.realmodel.view.zero = "" if point is None else json.dumps([float(value) for value in point])
 
 

@@ -35,7 +35,7 @@ def round_length(most: float) -> float:
 
 
 def tick_texts(values: np.ndarray) -> list[str]:
-    """The numbers of an axis with as many decimals as tell them apart, thousands set apart by commas."""
+    """The labels of an axis: as many decimals as make them distinct, thousands separated by commas."""
     step = float(np.diff(values).min()) if len(values) > 1 else abs(float(values[0])) or 1.0
     largest = float(np.abs(values).max())
     if largest >= 1e9 or step < 1e-6:

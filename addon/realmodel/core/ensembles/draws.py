@@ -64,8 +64,8 @@ class Draw:
         drawn = np.column_stack([points[:, :2], at_points])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
-        told = heights(work, drawn, nodes, own.method, plain, threads, triangles)
-        z = own.result.z + (at_nodes - told.z)
+        kriged = heights(work, drawn, nodes, own.method, plain, threads, triangles)
+        z = own.result.z + (at_nodes - kriged.z)
         return replace(own.result, z=_bounded(z, settings, own, work, nodes, threads, triangles, surfaces))
 
     def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:

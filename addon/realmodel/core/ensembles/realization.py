@@ -109,7 +109,7 @@ class Realizer:
             ],
             interpolations=[None] * len(surfaces),
             warnings=[],
-            told={},
+            attributes={},
             structure=None,
             draws=draws,
         )

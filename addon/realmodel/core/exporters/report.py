@@ -168,7 +168,7 @@ def _faults(model) -> list[dict]:
 
 
 def fault_entry(fault) -> dict:
-    """What is told of a fault without a model."""
+    """The entry of a fault, as far as it does not need a model."""
     return {
         "name": fault.name,
         "triangles": len(fault.triangles),
@@ -183,7 +183,7 @@ def _mean_and_largest(values: np.ndarray) -> dict:
 
 
 def body_entry(body) -> dict:
-    """What is told of a body."""
+    """The entry of a body."""
     return {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
 
 
@@ -206,7 +206,7 @@ def _block(model, number: int, total: float, deviation: float) -> dict:
 
 
 def warning_entries(model) -> list[dict]:
-    """What was told of a model, or of surfaces."""
+    """The warnings of a model, or of a SurfaceSet."""
     return [
         {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
         for w in model.warnings
@@ -214,7 +214,7 @@ def warning_entries(model) -> list[dict]:
 
 
 def surface_entries(model) -> list[dict]:
-    """What is told of each surface of a model, or of a SurfaceSet."""
+    """The entry of each surface of a model, or of a SurfaceSet."""
     entries = []
     for rock in (entry.rock for entry in model.rock_inputs):
         for surface in rock.surfaces:

@@ -23,7 +23,7 @@ def _neighbourhood(settings: dict) -> dict:
 
 @dataclass(frozen=True)
 class Structure:
-    """What kriging knows of how heights differ: the variogram, the number of neighbours, and what to tell."""
+    """The variogram of kriging, its number of neighbours, and warnings."""
 
     variogram: Variogram
     neighbours: int
@@ -76,7 +76,7 @@ def krige(task: Task, known: Structure | None = None) -> Result:
 
 
 def without_near_points(alone: int, nodes: int) -> list[str]:
-    """What there is to tell of so many nodes that have no point within the radius."""
+    """The warning about nodes without a point within the radius. alone: their number."""
     if not alone:
         return []
     return [

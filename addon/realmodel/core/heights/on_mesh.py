@@ -79,7 +79,7 @@ def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
 
 
 def _beyond(task: Task, option: str) -> list[str]:
-    """What to tell of points on the wrong side of a bound: it goes before them."""
+    """The warning about points on the wrong side of a bound, which takes precedence over them."""
     reference = task.settings[option]
     if reference is None or not len(task.points):
         return []

@@ -90,7 +90,7 @@ def _read(
         advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
         raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
     table = layer if layer is not None else next(iter(layers))
-    if table not in layers:  # SQL does not tell a from A
+    if table not in layers:  # SQL ignores case
         table = next((name for name in layers if name.lower() == table.lower()), table)
     if table not in layers:
         what = f"it has no layer '{layer}'"

@@ -28,9 +28,9 @@ class _Station:
 
 
 class HoleDirections:
-    """Stations of holes, gathered row by row of one table.
+    """Survey stations of holes, gathered from the rows of one table.
 
-    Whether dips that go down are negative or positive can be told only when all of them are there.
+    The sign of downward dips is known only when all rows are read.
     """
 
     def __init__(self, given: Boreholes):

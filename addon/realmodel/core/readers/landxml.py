@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""LandXML (1.0 to 2.0): the triangulated surfaces (TIN) of a file, as one. Points stand as northing, easting,
+"""LandXML (1.0 to 2.0): all triangulated surfaces (TIN) of a file, as one mesh. Points are northing, easting,
 elevation."""
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def read_landxml(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) 
 
 
 class _Surfaces:
-    """What is told of the elements of a file, one after another."""
+    """The handler of the elements of a file (ElementHandler); adds their surfaces to a mesh."""
 
     def __init__(self, mesh: PendingMesh):
         self.mesh = mesh

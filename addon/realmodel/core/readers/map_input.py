@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outlines, lines and points from any file that holds some: what kind it is, is told from what it holds."""
+"""Outlines, lines and points from files; their format is detected from the content."""
 
 from __future__ import annotations
 

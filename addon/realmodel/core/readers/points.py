@@ -76,12 +76,13 @@ def read_point_rows(
 ) -> PointRows:
     """The points of a table of text, as PointFile describes it, read piece by piece.
 
-    Where nothing is said: values stand apart by semicolons, tabs, commas, bars or blanks, told from the first
-    line of numbers. Lines without numbers before it are headers; columns named x, y and z, or easting,
-    northing and elevation (any case, a unit in brackets behind it) are taken, otherwise the first three.
-    Decimal commas are known where commas do not separate and cannot stand between thousands. '#' begins a
-    comment. Further columns are ignored. Raises InputRefused naming file and line.
-    step(fraction) is called every few milliseconds; what it raises passes through.
+    By default the separator (semicolon, tab, comma, bar or blanks) is detected from the first line of
+    numbers. Earlier lines without numbers are headers; the columns named x, y and z, or easting, northing and
+    elevation (any case, a unit in brackets behind it) are read, otherwise the first three. Decimal commas are
+    detected where commas are not the separator and cannot separate thousands. '#' begins a comment. Further
+    columns are ignored. step(fraction) is called every few milliseconds; its exceptions pass through.
+
+    Raises InputRefused naming file and line.
     """
     file = Path(file)
     table = open_table(file, separator, columns or (), where or {}, KNOWN)
@@ -263,7 +264,7 @@ def head_rows(table: Table, most: int) -> list[list[str]]:
 
 
 def body_rows(table: Table) -> Iterator[list[str]]:
-    """What stands in each row of a table that is not blank."""
+    """The entries of each row of a table that is not blank."""
     body = table.raw[table.layout.body :].decode(table.encoding, "replace")
     return (table.layout.fields(line) for line in body.splitlines() if line.strip())
 
@@ -273,15 +274,15 @@ def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
     if "," not in entry:
         return False
     others = _head_entries(table, columns)
-    told = decimal_comma([*others, entry])
-    if told is None and is_number(entry, ",") and not any("." in other for other in others):
+    is_comma = decimal_comma([*others, entry])
+    if is_comma is None and is_number(entry, ",") and not any("." in other for other in others):
         raise InputRefused(
             f"'{entry}' may have a decimal comma or a thousands separator",
             file=table.file,
             line=error.items[0],
             advice='set decimal = "," for decimal commas, or remove the separators',
         ) from error
-    return bool(told)
+    return bool(is_comma)
 
 
 def _entry(table: Table, error) -> str:

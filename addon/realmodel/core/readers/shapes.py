@@ -16,10 +16,10 @@ from .table_layout import names_shown
 
 @dataclass(frozen=True)
 class Polygon:
-    """Rings (N, 2) float64, their first corner not repeated. item: what to call it, "" for the only one.
+    """Rings (N, 2) float64, their first corner not repeated. item: its name in messages, "" for the only one.
 
-    has_roles: the first ring is the outline, the others are holes in it; otherwise they count even-odd, as
-    those of a shapefile, which only their direction tells apart.
+    has_roles: the first ring is the outline, the others are holes in it. Otherwise the even-odd rule applies,
+    as for shapefiles, where outlines and holes differ only in direction.
     """
 
     item: str

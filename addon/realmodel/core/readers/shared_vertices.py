@@ -11,7 +11,7 @@ from ..mapped_arrays import MakeRows, Rows, in_pieces
 from .triangle_mesh import MeshRows
 
 _CORNERS_AT_ONCE = 3 << 16
-_OF_PART = 1 << 8  # places that tell where slices end
+_OF_PART = 1 << 8  # sampled corners of a slice, by which the limits of slices are chosen
 _PLACED = np.dtype([("place", np.float64, 3), ("corner", np.int64)])
 _NAMED = np.dtype([("corner", np.int64), ("vertex", np.int64)])
 

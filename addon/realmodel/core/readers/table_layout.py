@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a table of text is written: told from its first lines."""
+"""The layout of a table of text, detected from its first lines."""
 
 from __future__ import annotations
 
@@ -181,8 +181,8 @@ def names_shown(names: Sequence[str]) -> str:
 
 
 def decimal_comma(entries: Sequence[str]) -> bool | None:
-    """Whether entries that were to be numbers have decimal commas: None where that cannot be told from
-    commas between thousands, or where some have points."""
+    """Whether entries of a column of numbers have decimal commas; None where the commas may separate
+    thousands, or where some entries have points."""
     with_comma = [entry for entry in entries if "," in entry]
     if not with_comma or any("." in entry for entry in entries):
         return None if with_comma else False

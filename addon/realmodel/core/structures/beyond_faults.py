@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picks of one side of a fault that reach beyond it: where the other side has picks, too, these tell."""
+"""Picks of one side of a fault that lie beyond it, detected where the other side has picks, too."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class Fault(_Shape):
 
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
     or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
-    file of either (.pol, or a table; `stick` names the column that tells sticks apart). `extend`: how far
+    file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
     such a surface is continued beyond the points, model units.
 
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at

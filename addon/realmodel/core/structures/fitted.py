@@ -89,7 +89,7 @@ def _nearest_first(middles: np.ndarray, start: int) -> list[int]:
 
 
 def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
-    """All from their upper end down, or in the direction of the stick before where that cannot be told."""
+    """All sticks from their upper end down; level ones in the direction of the previous stick."""
     found, before = [], np.array([0.0, 0.0, -1.0])
     for stick in sticks:
         direction = stick[-1] - stick[0]

@@ -12,7 +12,7 @@ OUTSIDE = -1
 
 
 class Locator:
-    """Tells in which cells of a model points lie: in those whose faces go round them."""
+    """Locates points in the cells of a model, by winding numbers."""
 
     def __init__(self, model):
         triangles, face = fanned(model.face_offsets, model.face_vertices)

@@ -26,8 +26,8 @@ class Structures:
     sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
     branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided.
 
-    Of those around a tile alone (windows.py): continued, as the native continued_structures has them; ends:
-    heights below and above all rock. None: as the structures and sheets that are there tell."""
+    For the structures around one tile (windows.py): continued, as from the native continued_structures; ends:
+    heights below and above all rock. None: both are found from the structures and sheets themselves."""
 
     faults: list[Fault]
     bodies: list[Body]

@@ -67,17 +67,17 @@ def make_structures(
 def structured_inputs(
     work: Work, project: Project, threads: int
 ) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
-    """Reads, meshes and interpolates a project with faults or bodies: its rock masses with their sheets, its
-    structures, and what there is to tell. Raises InputRefused."""
+    """Reads, meshes and interpolates a project with faults or bodies. Returns its rock masses with their
+    sheets, its structures, and warnings. Raises InputRefused."""
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project)
-        faults, bodies, told = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads)
     steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
     for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
     structures = make_structures(work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0)
-    return inputs, structures, told + [warning for entry in inputs for warning in entry.warnings]
+    return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:

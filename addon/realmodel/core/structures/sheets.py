@@ -46,7 +46,7 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
             entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads)
     for number in sorted(interpolated):
-        _tell_of_points_too_low(work, entry, number, threads)
+        _warn_of_points_too_low(work, entry, number, threads)
 
 
 def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
@@ -62,8 +62,8 @@ def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
 
 
-def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Warnings as without faults, compartment by compartment."""
+def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
+    """Adds the warnings of points_too_low, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = sides_of(work, points, structure.faults, threads)
@@ -80,7 +80,7 @@ def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             structure=None,
         )
         for warning in points_too_low(work, one, [number], threads):
-            structure.tell([compartment], warning)
+            structure.warn([compartment], warning)
 
 
 def _make(entry, number: int, surface) -> list:

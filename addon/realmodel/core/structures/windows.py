@@ -70,9 +70,9 @@ class _Plan:
 
 
 class Windows:
-    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: with
-    plan coordinates that differ by rounding alone made one; snapped: what there is to tell of that, or
-    None."""
+    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: the
+    rock masses, plan coordinates that differ by rounding alone made equal; snapped: the warning about that,
+    or None."""
 
     def __init__(self, work: Work, inputs: list[RockInput], structures: Structures, threads: int):
         self.inputs, self.snapped = _snapped(work, inputs, threads)
@@ -294,8 +294,8 @@ class Windows:
 
 
 def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[RockInput], str | None]:
-    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike; and
-    what there is to tell of it."""
+    """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
+    and the warning about that, or None."""
     distinct = [
         {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.structure.distinct(k)}
         for entry in inputs
