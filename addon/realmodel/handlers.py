@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What RealModel does when Blender opens, saves or undoes: registered once, and all taken out again."""
+"""Handlers for opening, saving and undo in Blender: registered once, all removed again."""
 
 import functools
 import sys
@@ -20,8 +20,8 @@ _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
 
 
 def _patient(handler):
-    """Has a handler of renders wait for the window. While Blender draws a panel in Python nobody may write,
-    not even the thread of a render, whose handlers run beside the window."""
+    """Makes a handler of renders wait for the window. While Blender draws a panel in Python no other thread
+    may write data, not even that of a render, whose handlers run beside the window."""
 
     @functools.wraps(handler)
     def patient(scene, *arguments):
@@ -93,7 +93,7 @@ def _frame_changed(scene, depsgraph=None, *_arguments):
 
 
 def migrate_all():
-    """Brings every scene of the file up to date; one that cannot be is left as it is, and said so."""
+    """Migrates every scene of the file; a scene that cannot be migrated stays as it is, with a report."""
     for scene in bpy.data.scenes:
         try:
             versioning.migrate(scene)

@@ -13,7 +13,7 @@ _MOST_OF_SLIDER = 100
 
 
 class RealModelEnsemble(bpy.types.PropertyGroup):
-    """How many realizations, and how they are shown."""
+    """Settings of an ensemble, and of its display."""
 
     realizations: IntProperty(
         name="Realizations",

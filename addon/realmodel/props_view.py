@@ -21,7 +21,7 @@ SUBJECTS = (
 
 
 class RealModelView(bpy.types.PropertyGroup):
-    """How the model is looked at."""
+    """Settings of the view."""
 
     subject: EnumProperty(
         name="Geometry",

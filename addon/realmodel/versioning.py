@@ -37,7 +37,7 @@ def _from_2(scene):
 
 
 def _from_3(scene):
-    """How files are read, and how large triangles are, stood in texts."""
+    """Import options and the size of triangles were stored as texts."""
     with settings.filling():
         for rock in scene.realmodel.rocks:
             given = json.loads(rock.mesh_options) if rock.mesh_options and not rock.edge_length > 0.0 else {}
@@ -64,8 +64,8 @@ def needs_migration(scene):
 
 
 def migrate(scene):
-    """Brings the settings of a scene up to date. Raises RealModelError where what they hold is damaged; then
-    they stay as they were."""
+    """Migrates the settings of a scene. Raises RealModelError where they are damaged; then they stay as they
+    were."""
     if not needs_migration(scene) or scene.library is not None:
         return
     steps = _STEPS[scene.realmodel.version :] if scene.realmodel.exists else _STEPS[:1]

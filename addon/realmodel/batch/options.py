@@ -190,7 +190,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 
 def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
-    """What options say together. Leaves with status 2 and one line."""
+    """Checks combinations of options. Exits with status 2 and one line."""
     for name, ending in (("blend", ".blend"), ("report", ".json"), ("render", ".png")):
         path = getattr(options, name)
         if path is not None and path.suffix.lower() != ending:

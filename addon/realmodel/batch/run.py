@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build_model.py does: builds what the options ask for, writes it, prints the table."""
+"""The main program of build_model.py: builds the project, writes the outputs, prints the table."""
 
 import argparse
 import contextlib
@@ -233,7 +233,7 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
 
 
 def _mesh_request(options: argparse.Namespace):
-    """What --mesh asks for, or None."""
+    """The options of --mesh, or None."""
     if options.mesh is None:
         return None
     return MeshRequest(
@@ -247,7 +247,7 @@ def _mesh_request(options: argparse.Namespace):
 
 
 def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
-    """Where the outputs will stand; refused before anything is built rather than after."""
+    """The paths of the outputs. Refuses wrong ones before anything is built."""
     exported = [] if options.ensemble is not None else options.export  # else they are requests
     for path in exported:
         surface_writer_for(path) if options.surfaces_only else format_for(path)
@@ -317,7 +317,7 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
 @contextlib.contextmanager
 def _named(path, target: Path):
-    """What could not be written is named as the user did, not by the place where it is kept meanwhile."""
+    """Names the user's path in errors of writing, in the place of the temporary one."""
     try:
         yield
     except OutputFailed as error:

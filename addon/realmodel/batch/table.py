@@ -133,7 +133,7 @@ def _table(headings, rows, sums=None) -> str:
 
 
 def _row(model, block) -> list[str]:
-    """What a model and one in tiles say of a block."""
+    """The row of a block, of a model or of one in tiles."""
     return [
         block.name,
         _property(model.project.library, block),

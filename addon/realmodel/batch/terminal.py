@@ -71,7 +71,7 @@ class TerminalProgress:
             self._drawn = line
 
     def close(self) -> None:
-        """Takes the bar away, so that what follows begins on a clean line."""
+        """Removes the bar, so that further output begins on an empty line."""
         if self.bar and self._drawn:
             self.stream.write(f"\r{' ' * len(self._drawn)}\r")
             self.stream.flush()

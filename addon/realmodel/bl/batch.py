@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build_model.py does inside Blender without a window: scene, .blend file, picture."""
+"""build_model.py inside Blender in background mode: scene, .blend file, render."""
 
 import contextlib
 import os

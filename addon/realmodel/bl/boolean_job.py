@@ -75,7 +75,7 @@ class BooleanJob(ThreadJob):
         return self._put(work.run(self._work))
 
     def finish(self):
-        """Puts the result into the scene; raises Cancelled, and what went wrong."""
+        """Adds the result to the scene. Raises Cancelled, and the errors of the job."""
         return self._put(self._job.result())
 
     # -- in the thread
@@ -277,7 +277,7 @@ def _none(rows):
 
 
 def _read(item, depsgraph):
-    """What takes part of an object: Operand, mesh_data.Layers, and its own coordinates (V, 3) float32."""
+    """Reads an object: its Operand, mesh_data.Layers, and local coordinates (V, 3) float32."""
     matrix = np.array(item.matrix_world, np.float64)
     determinant = np.linalg.det(matrix[:3, :3])
     if determinant == 0 or not np.isfinite(determinant):

@@ -174,12 +174,9 @@ def _mode_name(item):
 
 
 def write_model(current, model, project=None):
-    """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. What
-    is the user's stays; materials of earlier properties are used again.
-
-    project: what the model was built from, if its files are to be named in the settings beside what was read
-    of them.
-    """
+    """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. The
+    user's objects stay; materials of earlier properties are reused. project: the project that the model was
+    built from, if the settings are to name its files beside the stored data."""
     _remove_model(current)
     project_settings.fill(current, project or model.project)
     composed = project_settings.compose(current, viewports.updated_layer(current).depsgraph)
@@ -189,9 +186,9 @@ def write_model(current, model, project=None):
 def put(current, prepared, composed, in_place=False):
     """Puts a prepared model into a scene, and shows it.
 
-    current: the bpy.types.Scene. in_place: give the blocks' meshes other contents instead of other meshes,
-    so that what points to them - Blender's undo among it - need not know; not for what may fail.
-    If anything fails the scene is as it was before.
+    current: the bpy.types.Scene. in_place: replace the contents of the blocks' meshes instead of the meshes,
+    so that references to them (as of Blender's undo) stay valid; only for updates that cannot fail. If
+    anything fails, the scene stays as it was.
     """
     model = prepared.model
     check_rows(current, model.project)
@@ -233,7 +230,7 @@ def put(current, prepared, composed, in_place=False):
 
 
 def move_helpers(current, moved):
-    """What stands beside a model goes with it: its section plane and sections, the objects of its data."""
+    """Moves the objects beside a model with it: its section plane and sections, the objects of its data."""
     items = [item for item in current.objects if item.get(scene.TAG) == "section"]
     if (plane := current.realmodel.view.plane) is not None and plane.get(scene.TAG) == "view":
         items.append(plane)
@@ -243,7 +240,7 @@ def move_helpers(current, moved):
 
 
 def _keep(current, prepared):
-    """What was read from files stays in the rows, and the figures of each surface with it."""
+    """Stores the data that were read from files in the rows, and the statistics of each surface."""
     for place, (text, stamp) in prepared.stored.items():
         row = settings.row_at(current, place)
         if place[1] is None:
@@ -460,7 +457,7 @@ def fill_results(current, model, objects):
 
 
 def clear(current):
-    """Takes the blocks out of a scene; the interfaces and all settings stay."""
+    """Removes the blocks from a scene; the interfaces and all settings stay."""
     _clear(current)
     scene.remove_unused_materials()
 
@@ -477,8 +474,8 @@ def _clear(current):
 
 
 def remove_model(current):
-    """Takes a whole model out of a scene: blocks, the interfaces that were made for it, collections,
-    settings. Objects that the user brought stay, outside of the model's collections."""
+    """Removes the whole model from a scene: blocks, the interfaces that were made for it, collections,
+    settings. The user's objects stay, outside of the model's collections."""
     _remove_model(current)
     scene.remove_unused_materials()
 
@@ -523,8 +520,7 @@ def _release(current, item):
 
 
 def remove_rock(current, row):
-    """What belongs to a rock mass that leaves the list: its blocks, the interfaces made for it, its
-    collections."""
+    """Removes the blocks, interfaces and collections of a rock mass that is removed from the list."""
     name = row.name
     with settings.filling():
         for surface in row.surfaces:
@@ -541,8 +537,8 @@ def remove_rock(current, row):
 
 
 def release_surface(current, row):
-    """What belongs to a surface, fault or body that leaves the list: its interface goes where it was made for
-    it, an object of the user's stays."""
+    """Removes the interface of a surface, fault or body that is removed from the list; an object of the user
+    stays."""
     item = row.interface
     row.interface = None
     if item is None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What follows when a setting is changed by hand or by a script: each update callback is one function
-here."""
+"""The update callbacks of settings, one function each: called when a setting is changed by hand or by a
+script."""
 
 from . import (
     data_objects,
@@ -56,7 +56,7 @@ def model_unit(group, _context):
 
 
 def edge_length(rock, _context):
-    """Of a rock mass: whoever sets it wants the triangles by it."""
+    """The edge length of a rock mass. Setting it switches Size From to the edge length."""
     if not settings.is_filling():
         rock.edges_by = "LENGTH"  # comes to `setting`
 
@@ -69,7 +69,7 @@ def triangles(rock, context):
 
 
 def switched_on(switch):
-    """Of a setting that counts only where `switch` is on: whoever gives it wants it."""
+    """A callback for a setting that counts only where `switch` is on: setting it turns the switch on."""
 
     def changed(row, context):
         if not settings.is_filling():

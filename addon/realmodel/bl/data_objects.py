@@ -57,7 +57,7 @@ def objects(scene):
 
 
 def place(scene):
-    """Puts the objects where the origin of the scene has them."""
+    """Moves the objects to their positions relative to the scene's origin."""
     origin = project_settings.model_origin(scene)
     for item in objects(scene):
         item.location = np.array(item[_ORIGIN]) - origin

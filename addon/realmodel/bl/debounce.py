@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jobs for a scene that begin after a short pause: nothing has changed for a moment. One of Blender's timers
-looks after them; what changes meanwhile stops the job, and it begins anew."""
+"""Debounced jobs for a scene: they begin after a short pause without changes. A timer of Blender runs them; a
+change while a job runs cancels the job, and it begins again after the next pause."""
 
 import time
 
@@ -8,16 +8,16 @@ import bpy
 
 from .threads import threads
 
-_LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blender does in that time
+_LOOK_SECONDS = 0.005  # between two calls of the timer, whose cost is negligible
 
 
 class DebouncedJob:
-    """What waits, and what is under way.
+    """The pending changes and the running jobs of all scenes.
 
-    pause(): seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or with its done,
-    cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) takes what it has
-    done. may_begin(): whether nothing else is in the way. hand_over(name, job): called once the job is done,
-    again and again until it returns True: what can be done in slices before `finish`.
+    pause(): seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or an object with
+    its done, cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) uses the
+    result of the job. may_begin(): whether a job may start now. hand_over(name, job): work in slices before
+    `finish`: called repeatedly when the job is done, until it returns True.
     """
 
     def __init__(self, pause, begin, finish, may_begin=lambda: True, hand_over=lambda name, job: True):

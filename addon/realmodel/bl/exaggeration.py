@@ -10,7 +10,7 @@ KEY = "realmodel_exaggeration"  # on the empty: its scene's model is stretched b
 
 
 def factor(scene):
-    """How many times as high as it is a scene's model is shown."""
+    """The vertical exaggeration with which a scene's model is shown."""
     return float(scene.realmodel.view.exaggeration)
 
 
@@ -53,7 +53,7 @@ def release(item):
 
 
 def world_matrix(item):
-    """Where an object is shown; Blender does not keep that up to date for hidden ones."""
+    """The world matrix of an object; Blender does not update that of hidden ones."""
     if item.constraints or item.parent_type != "OBJECT":
         return item.matrix_world
     if item.parent is None:

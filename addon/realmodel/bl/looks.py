@@ -45,9 +45,8 @@ _NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
 
 def apply(material, look, scale, seed, diagonal):
-    """Gives a material a look in the place of the nodes that it has.
-
-    look: a key of LOOKS. scale: of the texture, 1 suits a model of this diagonal. seed: shifts it."""
+    """Replaces the nodes of a material by a look. look: a key of LOOKS. scale: of the texture, 1 suits a
+    model of this diagonal. seed: shifts it."""
     color = tuple(material.diffuse_color)
     tree = material.node_tree
     tree.nodes.clear()
@@ -69,7 +68,7 @@ def level(material):
 
 
 def show_picture(material, image):
-    """Gives a material that has a look a picture of it in the place of its nodes."""
+    """Replaces the nodes of a material that has a look by a baked picture of the look."""
     tree = material.node_tree
     tree.nodes.clear()
     nodes = _Nodes(tree)
@@ -234,8 +233,8 @@ def _beds(nodes, above, rough, bed):
 
 
 def _joints(nodes, place, rough, bed, spacing):
-    """How deep in a joint (0 to 1). Joints are steep planes of two sets at irregular distances; those of the
-    first go through all beds, those of the second are in some beds, elsewhere in each."""
+    """The depth in a joint (0 to 1). Joints are steep planes of two sets at irregular distances: those of the
+    first set pass through all beds, those of the second only through some, at other positions in each bed."""
     found = []
     for number, (normal, apart) in enumerate(_JOINT_SETS):
         apart *= spacing
@@ -252,7 +251,7 @@ def _joints(nodes, place, rough, bed, spacing):
 
 
 def _cells(nodes, place, rough, look):
-    """How deep in an upright crack (0 to 1), and a number from 0 to 1 of what cracks enclose."""
+    """The depth in an upright crack (0 to 1), and a number from 0 to 1 for each cell between cracks."""
     bent = nodes.vector("SCALE", place, 1.0 / look.joint)
     if rough is not None:
         shift = nodes.new("ShaderNodeCombineXYZ")

@@ -101,7 +101,7 @@ def _surface_or_elevation(text):
 
 
 def _variogram(row):
-    """As a project file writes it; None where it is to be fitted."""
+    """The variogram as in a project file; None where it is to be fitted."""
     if row.fit_variogram:
         return None
     found = value(row, "variogram", OPTIONS)

@@ -16,8 +16,7 @@ def know(scene):
 
 
 def follow(row):
-    """What refers to a row by the name that it had refers to it by its new one, unless another row has the
-    old name."""
+    """Updates references to a row when it is renamed, unless another row has the old name."""
     scene, old = row.id_data, row.known_name
     row.known_name = row.name
     kind = settings.kind_of(row)

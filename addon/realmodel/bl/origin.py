@@ -21,7 +21,8 @@ TOO_FAR = 100.0  # sizes of a model: coordinates in 32 bits then have steps of a
 
 
 def far_from(origin, vertices):
-    """How far a model with these vertices (V, 3) lies from its origin, where that is too far; else None."""
+    """The distance of a model with these vertices (V, 3) from its origin, where it is too large; else
+    None."""
     if not len(vertices):
         return None
     low, high = vertices.min(axis=0) - origin, vertices.max(axis=0) - origin

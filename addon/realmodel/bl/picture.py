@@ -54,13 +54,14 @@ def set_up(
     left=0.0,
     sun=(SUN_AZIMUTH, SUN_ELEVATION),
 ):
-    """Gives a scene a camera, light, sky and ground of its own; they are used again the next time. Cameras
-    and lights of the user stay.
+    """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
+    lights of the user stay.
 
-    points: (N, 3) of what is to be seen. size: (width, height) of the picture. space: a 3D viewport that the
-    camera is to look as; without one it sees all points. studio: a lamp beside the camera, an even sky and no
-    ground, so that all that faces the eye has its own color. left: the part of the picture's width that is
-    kept free where the camera sees all points, for a legend. sun: its azimuth and elevation, radians.
+    points: (N, 3) that the picture is to show. size: (width, height) of the picture. space: a 3D viewport
+    whose view the camera takes; without one it sees all points. studio: a lamp beside the camera, a uniform
+    sky and no ground, so that faces toward the camera have their own color. left: the share of the picture's
+    width that is left empty for a legend, where the camera sees all points. sun: its azimuth and elevation,
+    radians.
     """
     _remove_turntable(current)
     camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
@@ -115,7 +116,7 @@ def _own(current, kind, data):
 
 
 def _look_as(camera, space, reach):
-    """Has a camera look as a viewport does; returns how far it is from what the viewport turns around."""
+    """Aligns a camera with the view of a viewport; returns its distance from the viewport's pivot."""
     view, data = space.region_3d, camera.data
     data.shift_x = 0.0
     is_flat = view.view_perspective == "ORTHO"
@@ -271,7 +272,7 @@ def camera_matrix(points, size, left=0.0, rotation=None):
 
 
 def set_renderer(scene, path, size, samples, time_limit):
-    """Has a scene render a PNG of a size in pixels."""
+    """Sets up a scene to render a PNG of a size in pixels."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100
@@ -283,7 +284,7 @@ def set_renderer(scene, path, size, samples, time_limit):
 
 
 def choose_renderer(scene, samples, time_limit):
-    """Has a scene render by what renderer this Blender has, in the colors as they are."""
+    """Chooses the render engine that this Blender has, with colors unchanged by a view transform."""
     render = scene.render
     versions.plain_colors(scene)
     if not versions.cycles_available(scene):

@@ -35,7 +35,7 @@ def propose_edge_length(row, points):
 
 
 def compose(rock, row, depsgraph, origin):
-    """What a rock mass's row says of its mesh goes to a realmodel.core.Rock. Raises InputRefused."""
+    """Transfers the mesh settings of a rock mass's row to a realmodel.core.Rock. Raises InputRefused."""
     rock.mesher = row.mesher
     if row.edges_by == "LENGTH":
         rock.edge_length = method_settings.value(row, "edge_length", ROCK)
@@ -112,7 +112,7 @@ def _fill_size(row, entry):
 
 
 def add_constraints(row, lines):
-    """Keeps further lines (N, 2) and points (1, 2), in model coordinates."""
+    """Stores further lines (N, 2) and points (1, 2), in model coordinates."""
     kept = list(stored_arrays.unpack(row.constraints_stored).values()) if row.constraints_stored else []
     kept += [np.asarray(line, np.float64) for line in lines]
     row.constraints_stored = (

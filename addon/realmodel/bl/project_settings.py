@@ -196,7 +196,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
 
 
 def name_file(entry, row, path):
-    """Has a surface, fault or body be read from a file as its row says."""
+    """Sets the file of a surface, fault or body from its row, with its import options."""
     if row.source == "POINTS_FILE":
         entry.points = PointFile(path, **reading_text.options(row))
     else:
@@ -204,7 +204,8 @@ def name_file(entry, row, path):
 
 
 def _stored_key(row):
-    """What a row keeps its file's shape in: of faults the surface through the points, not the points."""
+    """The key under which a row stores the shape of its file: of faults the fitted surface, not the
+    points."""
     return "stored" if row.source == "POINTS_FILE" and hasattr(row, "stored") else "stored_mesh"
 
 
@@ -214,13 +215,13 @@ def stored_shape(row):
 
 
 def keep_shape(row, text, stamp):
-    """Has the .blend keep the shape of a row, and the stamp of the file that it was read from."""
+    """Stores the shape of a row in the .blend, and the stamp of the file that it was read from."""
     setattr(row, _stored_key(row), text)
     row.stored_stamp = stamp
 
 
 def forget_shape(row):
-    """What was read of a row's file is worth nothing."""
+    """Discards the stored shape of a row's file."""
     setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
     row.stored_stamp = ""
 

@@ -5,8 +5,8 @@ from . import display, library_rows, looks, materials, scene, settings, weatheri
 
 
 def assign(current, rows, property_id):
-    """Gives a property to blocks (rows of the results), and to the surfaces that they lie beneath, or the
-    bodies that they are."""
+    """Assigns a property to blocks (rows of the results): to the surfaces above them, or to the bodies that
+    they are."""
     with settings.filling():
         for row in rows:
             source = settings.row_of_block(current, row)

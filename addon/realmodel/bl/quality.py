@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How good the surfaces of the built model are, as far as somebody has asked: found in a thread, kept for
-this session of Blender, and shown as charts."""
+"""The quality of the surfaces of the built model, on request: computed in a thread, kept for this session of
+Blender, and shown as charts."""
 
 import bpy
 import bpy.utils.previews
@@ -44,8 +44,8 @@ def found(current):
 
 
 def volume_deviation(current, row):
-    """What the standard deviation of the volume of a row of the results is at most, model units cubed; None
-    where it was not asked for, or is not known."""
+    """An upper bound of the standard deviation of a block's volume (a row of the results), model units cubed;
+    None where it was not requested, or is not known."""
     known = _deviations.get(current.realmodel.built_stamp, {}).get((row.rock, row.name))
     return known if known is not None and np.isfinite(known) else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a file of points, or a mesh, is read, between the settings of a surface and realmodel.core."""
+"""Converts the import options of points and meshes between the settings of a surface and realmodel.core."""
 
 import re
 

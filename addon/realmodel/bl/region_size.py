@@ -22,8 +22,8 @@ def expected_triangles(row):
 
 
 def ask():
-    """Has all regions measured that have not been, as soon as Blender lets data be changed: a panel that is
-    being drawn may not."""
+    """Schedules the measurement of all regions that have no area yet, for when Blender allows changes of
+    data: while a panel is drawn it does not."""
     if not bpy.app.timers.is_registered(_measure_all):
         bpy.app.timers.register(_measure_all, first_interval=0.0)
 

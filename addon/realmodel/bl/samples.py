@@ -45,7 +45,7 @@ def enum_items(_operator, _context):
 
 
 def label(name):
-    """How an example is called."""
+    """The label of an example."""
     return next((item[1] for item in enum_items(None, None) if item[0] == name), name)
 
 

@@ -27,7 +27,7 @@ def entry_of(place, row):
 
 
 def item_of(entry):
-    """What messages call a fault or a body."""
+    """The name of a fault or a body in messages."""
     return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
 
 
@@ -79,5 +79,5 @@ def names_of(project):
 
 
 def names_in(scene):
-    """Those of the rows of a scene."""
+    """The names of the rows of a scene."""
     return tuple([row.name for row in settings.structures_of(scene, kind)] for kind in ("fault", "body"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a thread does while the main thread shows how far it is."""
+"""Work in a thread while the main thread shows its progress."""
 
 from ..core import work
 from .threads import threads
@@ -50,5 +50,5 @@ class ThreadJob:
         """Removes the data-blocks that `hand_over` prepared."""
 
     def finish(self):
-        """What `_work(job)` has returned; raises Cancelled, and what went wrong."""
+        """The result of `_work(job)`; raises Cancelled, and its errors."""
         return self._job.result()

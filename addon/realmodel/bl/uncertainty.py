@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of the elevations of an interpolated interface, as attributes of its mesh."""
+"""The uncertainty of the elevations of an interpolated interface, as attributes of its mesh."""
 
 import numpy as np
 
@@ -11,10 +11,8 @@ UNKNOWN = -1.0
 
 
 def add_attributes(mesh, attributes):
-    """Gives the mesh of an interface what is known of its vertices, where anything is.
-
-    mesh: bpy.types.Mesh. attributes: as Model.surface_attributes returns them, of the same vertices.
-    """
+    """Writes the attributes of the vertices of an interface that are known. mesh: bpy.types.Mesh. attributes:
+    as of Model.surface_attributes, of the same vertices."""
     for name in (VARIANCE, DISTANCE):
         values = attributes[name]
         if np.isfinite(values).any():

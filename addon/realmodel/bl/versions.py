@@ -145,8 +145,8 @@ def make_matt(principled):
 
 
 def add_group_socket(group, name, kind, default=None, low=None, high=None, is_output=False):
-    """Gives a node group a socket of a kind, the name of its class; kinds of
-    numbers are subtypes from 4.0 on."""
+    """Adds a socket to a node group. kind: the name of its class; kinds of numbers are subtypes from 4.0
+    on."""
     if bpy.app.version < (4, 0, 0):
         socket = (group.outputs if is_output else group.inputs).new(kind, name)
     else:
@@ -171,7 +171,7 @@ def set_group_input(modifier, name, value):
 
 
 def group_input(modifier, name):
-    """What an input of a modifier of geometry nodes is set to."""
+    """The value of an input of a geometry nodes modifier."""
     key = _group_key(modifier, name)
     return (
         getattr(modifier.properties.inputs, key).value if hasattr(modifier, "properties") else modifier[key]
@@ -264,7 +264,7 @@ def depsgraph(scene):
 
 
 def let_through(material):
-    """Has Eevee draw what is transparent of a material so; Cycles always does."""
+    """Enables transparency of a material in Eevee; Cycles always has it."""
     if hasattr(material, "surface_render_method"):  # from 4.2 on
         material.surface_render_method = "BLENDED"
     else:

@@ -26,8 +26,8 @@ def towards(azimuth, elevation):
 
 
 def view_rotation(azimuth=CAMERA_AZIMUTH, elevation=CAMERA_ELEVATION):
-    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks.
-    azimuth, elevation: where it is from, radians."""
+    """The rotation of the default view, (3, 3): its columns point right, up, and backward. azimuth,
+    elevation: of the eye, radians."""
     back = towards(azimuth, elevation)
     right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
     return Matrix((right, back.cross(right), back)).transposed()
@@ -73,7 +73,7 @@ def updated_layer(scene):
 
 
 def still_open(remembered):
-    """Those viewports of some that are still there, by their pointers."""
+    """The viewports of a list that still exist, by their pointers."""
     return [space for space in all_spaces() if space.as_pointer() in remembered]
 
 

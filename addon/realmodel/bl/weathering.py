@@ -165,7 +165,7 @@ def _fill(nodes):
 
 
 def _depth(nodes, given, position):
-    """How much is worn away, about 0 to 2: of soft rock more, and unevenly; by layers on what has bedding."""
+    """The depth of erosion, about 0 to 2: larger and uneven in soft rock; by layers in bedded rock."""
     soft = nodes.math("SUBTRACT", 1.0, given["Hardness"])
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
     shift = nodes.new("ShaderNodeCombineXYZ")
@@ -217,7 +217,7 @@ class _Nodes(Nodes):
         return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
 
     def nearest(self, geometry, place, values):
-        """What fields are at the point of a geometry that is nearest to a place."""
+        """The values of fields at the point of a geometry that is nearest to a position."""
         found = self.new("GeometryNodeSampleNearest")
         self.link(geometry, next(s for s in found.inputs if s.type == "GEOMETRY"))
         self.link(place, found.inputs["Sample Position"])

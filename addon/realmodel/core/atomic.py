@@ -126,7 +126,7 @@ class Outputs:
             raise
 
     def drop(self) -> None:
-        """Gives up all that is not published."""
+        """Removes everything that is not published."""
         self._written.clear()
         try:
             _remove(self._folders)

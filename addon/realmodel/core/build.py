@@ -103,7 +103,7 @@ def _build(
 
 
 def _phase_ends(project: Project) -> dict[str, float]:
-    """Where each phase ends in the progress: by fixed shares of the phases that this project has."""
+    """The progress at the end of each phase: fixed shares of the phases that this project has."""
     has_files = bool(project.input_files())
     interpolates = bool(project.faults) or any(rock.interpolates for rock in project.rocks)
     shares = _SHARES | {

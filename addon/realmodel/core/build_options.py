@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build() and estimate() are asked for, checked."""
+"""Checks of the options of build() and estimate()."""
 
 from __future__ import annotations
 

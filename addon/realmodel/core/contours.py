@@ -108,8 +108,8 @@ def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: 
 
 
 def _crossings(corners: np.ndarray, vertices: np.ndarray, side: np.ndarray, level: float):
-    """Where the level crosses the side from corner `side` of each triangle: (T, 2), and the edges' vertices.
-    Both triangles of an edge get the same place."""
+    """The crossings of the level with the side from corner `side` of each triangle: (T, 2), and the vertices
+    of these edges. Both triangles of an edge get the same position."""
     row = np.arange(len(side))
     a, b = corners[row, side], corners[row, (side + 1) % 3]
     one, two = vertices[row, side], vertices[row, (side + 1) % 3]

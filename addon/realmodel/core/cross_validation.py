@@ -40,7 +40,8 @@ class CrossValidation:
 
     @property
     def mean_error(self) -> float:
-        """Of the estimated points: above 0 where estimates are too high. NaN where there are none."""
+        """The mean error of the estimated points: above 0 where estimates are too high. NaN where there are
+        none."""
         return float(self.errors[self.known].mean()) if self.known.any() else float("nan")
 
     @property
@@ -49,7 +50,8 @@ class CrossValidation:
 
     @property
     def correlation(self) -> float:
-        """Of measured and estimated heights (Pearson's); NaN where one of them is the same everywhere."""
+        """The correlation of measured and estimated heights (Pearson's); NaN where one of them is
+        constant."""
         measured, estimated = self.points[self.known, 2], self.z[self.known]
         if len(measured) < 2 or not np.ptp(measured) or not np.ptp(estimated):
             return float("nan")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each surface removed, and each body took, of each block when it came."""
+"""The volume of each block that each surface eroded and each body took."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def eroded(
 
 
 def _eroded(work: Work, model, threads: int) -> Erosion:
-    """Goes back in time from the model itself: to just before each surface that cuts anything."""
+    """Computes it backward in time, from the model itself to just before each surface that cuts anything."""
     stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
     arrivals = _arrivals_of_bodies(model)
     names = [body.name for body in model.structures.bodies] if arrivals else []
@@ -109,7 +109,7 @@ def _first_surfaces(model) -> np.ndarray:
 
 
 def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
-    """Of each rock mass whose surface k cuts what is older: its global index, and which blocks are."""
+    """For each rock mass whose surface k cuts older rock: its global index, and the older blocks."""
     found = []
     first_surfaces = _first_surfaces(model)
     for number, (rock, first) in enumerate(zip(model.project.rocks, first_surfaces[:-1], strict=True)):
@@ -172,7 +172,7 @@ def _with_bodies(structures, until: tuple[int, int]):
 
 
 def _rounding(model, volumes: np.ndarray) -> np.ndarray:
-    """How far volumes may be off: their sums, and the coordinates of their corners, each by some units in
+    """The rounding error of volumes: of the sums, and of the coordinates of the corners, each a few units in
     the last place."""
     vertices = model.surface_vertices
     bases = [rock.base_elevation for rock in model.project.rocks if rock.base_elevation is not None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can go wrong, as types. Every message is one line: where, what is wrong, what to do."""
+"""The types of errors. Every message is one line: where, what is wrong, what to do."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def _one_line(text: object) -> str:
 
 
 def _shortened(text: str) -> str:
-    """What damaged files hold may be long: its beginning and its end say enough."""
+    """The beginning and the end of a long text, such as the content of a damaged file."""
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 100]} ... {text[-95:]}"
 
 
@@ -59,7 +59,7 @@ class InputRefused(RealModelError):
         return _one_line(f"{text}; {self.advice}" if self.advice else text)
 
     def within(self, item: str, *, file: str | Path | None = None, line: int | None = None) -> InputRefused:
-        """The same refusal, said of `item`; a file and line already known are kept."""
+        """The same error with the name of `item`; a file and line already known are kept."""
         known = self.file is not None
         return type(self)(
             self.what,

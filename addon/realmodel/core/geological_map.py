@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What crops out on top of a model: polygons in plan that share their borders."""
+"""The geological map of a model: polygons in plan of the blocks that crop out on top, which share their
+borders."""
 
 from __future__ import annotations
 
@@ -23,10 +24,8 @@ _UPRIGHT = 2.0**-40  # the slope from which on a face is upright but for the rou
 
 @dataclass(frozen=True, eq=False)
 class MapArea:
-    """Where one block crops out, in one compartment.
-
-    polygons: of each the outline (N, 2) float64, counter-clockwise, then its holes, clockwise; rings are
-    open."""
+    """The outcrop of one block, in one compartment. polygons: of each the outline (N, 2) float64,
+    counter-clockwise, then its holes, clockwise; rings are open."""
 
     block: int
     compartment: int
@@ -223,8 +222,8 @@ def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
 
 
 def _highest(model, triangles: np.ndarray, vertex: np.ndarray, plan: np.ndarray, cell: np.ndarray) -> Ground:
-    """As ground_of, where parts of it lie above one another: laid flat and divided along all edges; of pieces
-    at the same place the highest."""
+    """As ground_of, for ground with parts above one another: projected and divided along all edges; of pieces
+    at the same position the highest."""
     rises = _rises(plan[vertex[triangles]])  # where vertices were joined some do no more
     triangles, cell = triangles[rises], cell[rises]
     flat = np.column_stack([plan, np.zeros(len(plan))])

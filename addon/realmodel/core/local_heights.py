@@ -146,9 +146,10 @@ class LocalHeights:
 
 @dataclass(frozen=True)
 class PartHeights:
-    """Of the heights of a part of a surface: the lowest and highest before some were raised; how many
-    triangles there are. Of those nodes that are counted here: how many have no point within the radius; how
-    many were raised, the farthest by how much, which one this is and where."""
+    """Statistics of the heights of a part of a surface. lowest, highest: before any were raised. triangles:
+    their number. Of the nodes that are counted in this part: alone, the number without a point within the
+    radius; raised, the number of raised ones; by, worst, place: the largest rise, its node, and where it
+    is."""
 
     lowest: float
     highest: float
@@ -160,7 +161,7 @@ class PartHeights:
     place: tuple[float, float] = (0.0, 0.0)
 
     def joined(self, other: PartHeights) -> PartHeights:
-        """Both."""
+        """The statistics of both parts."""
         worst = min((self, other), key=lambda each: (-each.by, each.worst))
         return replace(
             worst,
@@ -295,7 +296,7 @@ def _fitted(found: LocalHeights, task: Task) -> tuple[LocalHeights, tuple[str, .
 
 
 def linked(local: LocalHeights, rock: Rock, number: int) -> LocalHeights:
-    """With the other surfaces that a surface of a rock mass needs."""
+    """The same, linked to the other surfaces that a surface of a rock mass needs."""
     to = local.settings.get("to")
     if isinstance(to, str):
         local = replace(local, over=named_surfaces(rock, number)[to])

@@ -41,12 +41,13 @@ class Operand:
 
 @dataclass(eq=False)
 class Source:
-    """What a mesh of parts has of one operand.
+    """The elements of a mesh of parts that come from one operand.
 
-    vertices: (N,) of its vertices lie on it; vertex_of: (N, 3) vertices of the operand that each is between,
-    with vertex_weights (N, 3). edges: (E,) of its edges are of the operand's edges edge_of (E,). polygons:
-    (P,) of its polygons are of the operand's polygons polygon_of (P,). corners: (C,) of its corners are
-    between corner_of (C, 3), with corner_weights (C, 3).
+    vertices: (N,) vertices of the mesh that lie on the operand; vertex_of: (N, 3), the vertices of the
+    operand around each, with vertex_weights (N, 3). edges: (E,) edges of the mesh, parts of the operand's
+    edges edge_of (E,). polygons: (P,) polygons of the mesh, parts of the operand's polygons polygon_of (P,).
+    corners: (C,) corners of the mesh, between the operand's corners corner_of (C, 3), with corner_weights (C,
+    3).
     """
 
     vertices: np.ndarray

@@ -36,8 +36,8 @@ def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.
 
 
 class _Places:
-    """Which points are left when those at one place have become one. is_once: also where they have one
-    height."""
+    """Selects the points that are left when those at one position are merged. is_once: also those with equal
+    heights."""
 
     def __init__(self, points: np.ndarray, room: Room, is_once: bool):
         self._points = points
@@ -151,7 +151,8 @@ def heights_apart(points: np.ndarray) -> np.ndarray:
 
 
 def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of each point (P,) its place in plan; of each place its first point, and how far heights are apart."""
+    """For each point (P,) its position in plan; for each position its first point, and the range of the
+    heights there."""
     keys = np.delete(points, 2, axis=1)
     order = np.lexsort(keys.T[::-1])
     new = np.ones(len(points), bool)

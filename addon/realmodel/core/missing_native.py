@@ -12,8 +12,8 @@ ZIP = "the zip of RealModel"
 
 
 class System(NamedTuple):
-    """One that there is a zip for: its name, that of the zip's platform, how names of modules end, and what
-    to do where one cannot be loaded."""
+    """A system that has a zip: its name, the platform in the name of the zip, the ending of its modules, and
+    the advice where one cannot be loaded."""
 
     name: str
     platform: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a rock mass has in plan - its region, and constraints - from arrays, text or files."""
+"""The region and the constraints of a rock mass in plan, from arrays, text or files."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]
 
 
 def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
-    """What a file or a well-known text holds; None where arrays are given."""
+    """The shapes of a file or a well-known text; None where arrays are given."""
     layer = map_layer(given)
     if layer is not None:
         return read_shapes(layer, units)
@@ -162,7 +162,7 @@ def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
 
 
 def ring_path(region, items) -> tuple:
-    """Where in a project file the corner stands that a native refusal names first: (key, numbers...)."""
+    """The key in the project file of the corner that a native error names first: (key, numbers...)."""
     if not items or isinstance(region, (str, Path, MapLayer)):
         return ("region",)
     ring, corner = (*items, 0)[:2]

@@ -66,7 +66,7 @@ def covers_once(points: np.ndarray, polygons: list[Polygon]) -> bool:
 
 
 class _Around:
-    """Which of some rings contain another one."""
+    """Finds the rings that contain another ring."""
 
     def __init__(self, points: np.ndarray, rings: list[np.ndarray]):
         self.points, self.rings = points, rings

@@ -118,7 +118,7 @@ def smallest_angles(vertices, triangles) -> np.ndarray:
 
 
 def mesh_quality(angles: np.ndarray, page=_PAGE, words: bool = True) -> Drawing:
-    """How many triangles have which smallest angle; angles: as smallest_angles gives them."""
+    """A histogram of the smallest angles of triangles. angles: as of smallest_angles."""
     counts, edges = np.histogram(angles, _BINS)
     axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles), page, words)
     axes.frame("Smallest angle (°)", "Triangles")

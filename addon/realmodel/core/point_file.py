@@ -112,7 +112,7 @@ class MeshFile:
         check_z_axis(self.z_axis)
 
     def scale(self, model_unit: str) -> tuple[float, float]:
-        """What its plan and its heights are multiplied by."""
+        """The factors of plan coordinates and heights."""
         units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
         upward = -1.0 if self.z_axis == "down" else 1.0
         return factor(units.get("xy"), model_unit), upward * factor(units.get("z"), model_unit)

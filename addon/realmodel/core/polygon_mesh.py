@@ -43,7 +43,7 @@ class PolygonMesh:
 
     @property
     def polygons(self) -> int:
-        """How many polygons there are."""
+        """The number of polygons."""
         return len(self.offsets) - 1
 
 

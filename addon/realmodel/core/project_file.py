@@ -188,7 +188,7 @@ def _inner(table: Table, key: str, content: dict) -> Table:
 
 
 def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
-    """One outline of coordinates, refused with the line of the corner that is not two numbers."""
+    """One outline of coordinates. Errors name the line of the corner that is not two numbers."""
 
     def refuse(what: str, *corner: int):
         where = Table(table.document, {}, (*table.path, *path, *corner), table.item)

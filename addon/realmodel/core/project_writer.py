@@ -211,7 +211,7 @@ def off_text(vertices, triangles) -> bytes:
 
 
 def _rows(numbers: np.ndarray, apart: str) -> bytes:
-    """One row a line, each number with the fewest digits that stand for it alone."""
+    """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
         text.write(apart.join(map(repr, row)) + "\n")

@@ -72,13 +72,13 @@ class RockInput:
     draws: list[Draw] | None = None
 
     def native(self) -> tuple:
-        """As the native stack builder takes it: surfaces, region, base elevation, rules."""
+        """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
         rules = [surface.rule for surface in self.rock.surfaces]
         return self.surfaces, self.region, self.rock.base_elevation, rules
 
     def stage(self, m: int) -> RockInput:
-        """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
-        is gone keeps its heights as a ready mesh, if it has them yet."""
+        """The entry with the surfaces up to m only; the region stays the same. A surface that depends on a
+        removed one keeps its heights as a ready mesh, if it has them already."""
         gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
         surfaces = self.rock.surfaces[: m + 1]
         for number, surface in enumerate(surfaces):

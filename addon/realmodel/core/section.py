@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lies on a cutter: polygons that know their block and its property."""
+"""Sections: polygons of blocks on a cutter, each with its block and property."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Section:
 
     @property
     def area(self) -> float:
-        """Of all polygons, model units squared."""
+        """The area of all polygons, model units squared."""
         return float(self.polygon_areas.sum())
 
     def area_by_block(self) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where faults are in a section: the segments in which its planes meet their faces."""
+"""The traces of faults in a section: the segments in which its planes meet the faces of faults."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ def _older_points_above(
 
 
 def settle_method(work: Work, entry, number: int, threads: int) -> None:
-    """Gives a surface of a RockInput with the method "auto" the one that it would choose."""
+    """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     method, settings = surface.method_options()
     if method != "auto":

@@ -110,7 +110,7 @@ Reader = Callable[[Work, list[SurfaceInput]], Iterable[tuple[int, ReadSurface]]]
 
 
 def read_each(work: Work, surfaces: list[SurfaceInput]) -> Iterator[tuple[int, ReadSurface]]:
-    """One after another."""
+    """Reads surfaces one after another."""
     for number, surface in enumerate(surfaces):
         yield number, surface.read(lambda share, number=number: work.step((number + share) / len(surfaces)))
         work.step((number + 1) / len(surfaces))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What there is to judge a surface of a built model by."""
+"""The data by which a surface of a built model is judged."""
 
 from __future__ import annotations
 

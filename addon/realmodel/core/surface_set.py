@@ -45,7 +45,7 @@ class SurfaceSet:
 
     @property
     def interpolations(self) -> list[Interpolation | None]:
-        """What interpolating each surface gave; None for ready meshes."""
+        """The interpolation of each surface; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:

@@ -70,7 +70,7 @@ def _syntax_refused(file: Path, text: str, error: tomllib.TOMLDecodeError) -> In
 
 
 class Table:
-    """One table of a document, read key by key. `item` says in messages what it is."""
+    """One table of a document, read key by key. `item`: its name in messages."""
 
     def __init__(self, document: TomlDocument, content: dict, path: tuple, item: str):
         self.document = document

@@ -32,7 +32,7 @@ UNIT_NAMES = {
 
 
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
-    """What lengths in a unit are multiplied by; 1 where none is given."""
+    """The factor from a unit to the model's unit; 1 where none is given."""
     return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
 
 

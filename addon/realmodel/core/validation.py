@@ -253,7 +253,7 @@ def _wrong_arrays(model) -> list[str]:
 
 
 def _native_model(model) -> dict:
-    """What the native tests take."""
+    """The model as the native tests take it."""
     return {
         **{name: getattr(model, name) for name in _DTYPES},
         "block_volume": np.array([block.volume for block in model.blocks], np.float64),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the volumes of blocks may be off because heights were interpolated."""
+"""The uncertainty of the volumes of blocks that follows from interpolated heights."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _plan(model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _next(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Of each corner of polygons, what the next corner has."""
+    """For each corner of polygons the value at the next corner."""
     found = np.empty_like(values)
     found[:-1] = values[1:]
     found[last] = values[first]

@@ -225,7 +225,7 @@ class Job:
         return self.done
 
     def result(self):
-        """What the task has returned, once it has; raises what it has raised, and Cancelled."""
+        """The result of the task, once it is done; raises its error, or Cancelled."""
         self.wait()
         if self._leaves_at is not None:
             raise Cancelled("cancelled")

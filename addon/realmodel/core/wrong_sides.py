@@ -148,7 +148,7 @@ class WrongPoints:
         )
 
     def joined(self, other: WrongPoints) -> WrongPoints:
-        """Both, of parts of a surface."""
+        """The wrong points of two parts of a surface."""
         worst = min((self, other), key=lambda each: (-each.by, each.worst))
         items, others = (
             tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")

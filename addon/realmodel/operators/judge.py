@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How good a surface is: its charts, and its worst points."""
+"""The quality of a surface: its charts, and its worst points."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty

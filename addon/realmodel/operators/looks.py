@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How rock looks in rendered pictures: textures, and weathering."""
+"""The looks of rock in renders: textures, and weathering."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shapes the mesh of a region: where its triangles are smaller, what lines and points it contains."""
+"""The planar mesh of a region: refinement, constraints."""
 
 import bpy
 from bpy.props import IntProperty

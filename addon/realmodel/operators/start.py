@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a model begins: empty, from a project file, from meshes; and how it goes to a project file."""
+"""The start of a model: empty, from a project file, from meshes; and saving a project file."""
 
 import math
 from pathlib import Path
@@ -46,7 +46,8 @@ def _begin(current, name):
 
 
 def invoke(call, operator, **arguments):
-    """Has another operator go on: with its window where the first was invoked. Raises BuildFailed."""
+    """Continues with another operator: with its window where the first one was invoked. Raises
+    BuildFailed."""
     try:
         call("INVOKE_DEFAULT" if operator.options.is_invoke else "EXEC_DEFAULT", **arguments)
     except RuntimeError as error:

@@ -53,7 +53,7 @@ def _draw_progress(layout, activity):
 
 
 def _draw_missing(layout, group):
-    """What a build would ask for, with the button that gives it."""
+    """Draws the input that a build still needs, with the button that adds it."""
     for number, rock in enumerate(group.rocks):
         has_region = rock.region is not None or rock.region_file or rock.region_stored
         if method_settings.interpolates(rock) and not has_region:

@@ -181,7 +181,7 @@ def _draw_variogram(layout, scene, surface):
 
 
 def _variogram_text(scene, fitted):
-    """What a build fitted, in words."""
+    """The fitted variogram, as text."""
     parts = fitted.get("structures") or [fitted]
     said = [
         f"{VARIOGRAMS[part['model']][0]}, range {units.length_text(scene, part['range'])}, "

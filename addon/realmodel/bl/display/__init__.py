@@ -70,7 +70,7 @@ def stop():
 
 
 def forget_meshes():
-    """Lets go of what was read from meshes."""
+    """Clears the caches of data read from meshes."""
     drawing.forget()
     coordinates.forget()
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the colors of blocks and interfaces mean: their property, themselves, their rock mass, their age, or a
-value (`shades`).
+"""The colors of blocks and interfaces: by property, block, rock mass, age, or a value (`shades`).
 
-The mesh of a block keeps its property's material. Other colors are materials that the object, not the mesh,
-has in its slot, so they show in every way of shading and in renders, and go without a trace.
+The mesh of a block keeps its property's material. Other colors are materials in the slots of the object, not
+of the mesh. So they show in every shading mode and in renders, and can be removed completely.
 """
 
 import colorsys
@@ -23,7 +22,7 @@ _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value 
 
 
 def apply(scene):
-    """Gives all blocks and interfaces the colors that the settings ask for."""
+    """Sets the colors of all blocks and interfaces by the settings."""
     by = scene.realmodel.color_by
     shades.apply(scene, by)
     common = shades.material() if by in shades.IN_MESH else None
@@ -54,7 +53,7 @@ def apply(scene):
 
 
 def take_off(scene):
-    """Takes the colors off the interfaces. `apply` puts them on again."""
+    """Removes the colors of the interfaces. `apply` sets them again."""
     for _, surface in settings.interface_rows(scene):
         if _can_take(surface.interface):
             _put_into_slot(surface.interface, None)
@@ -102,7 +101,7 @@ def shade_viewports(by, before):
 
 
 def forget(scene):
-    """Takes all such colors out of a scene."""
+    """Removes all such colors from a scene."""
     for item in _colored(scene):
         slot = item.material_slots[0]
         if slot.link == "OBJECT" and not _is_of_user(slot):

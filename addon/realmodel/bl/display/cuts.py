@@ -96,7 +96,7 @@ def remove_plane(current):
 
 
 def _state(current, stage, matrix=None):
-    """What a cut is made of, as text: [point, normal, stage, stamp of the model]."""
+    """The state that a cut is made from, as text: [point, normal, stage, stamp of the model]."""
     point, normal = plane_in_model(current, matrix)
     return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
 

@@ -183,7 +183,7 @@ def _make_cells(scene, stage, mode, apart):
 
 
 def _make_surviving(scene, stage):
-    """What is left of each interface, or of its half: {interface: body}."""
+    """The parts of the interfaces that survive erosion, or of their halves: {interface: body}."""
     view = scene.realmodel.view
     made_of = cells.made_of(scene, stage)
     if view.surviving_of != made_of:

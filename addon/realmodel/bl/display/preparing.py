@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the view is to show is made in a thread, while the window stays alive: a stage that was not shown yet,
-the cells of a large model. Then the view is asked again, and finds it at hand."""
+"""Prepares shapes for the view in a thread while the window stays responsive: a stage that was not shown yet,
+the cells of a large model. Then the view is updated again and finds them in the cache."""
 
 import bpy
 
@@ -52,8 +52,8 @@ def _begin(name, _changed_at):
 
 
 def _hand_over(name, job):
-    """Gives Blender some of the meshes of cells that will be shown; whether all are there. (The blocks' own
-    meshes take the shapes of a stage in place, for the sake of what points to them.)"""
+    """Makes some of the meshes of cells that will be shown. Returns whether all are made. (The blocks' meshes
+    are updated in place for a stage, so that references to them stay valid.)"""
     scene = bpy.data.scenes.get(name)
     if scene is None or not job.succeeded:
         return True

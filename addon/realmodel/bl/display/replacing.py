@@ -40,7 +40,7 @@ def nobody_waits():
 
 
 def give_shape(item, shape):
-    """Gives an object's mesh other contents; shape: PolygonMesh."""
+    """Replaces the contents of an object's mesh. shape: PolygonMesh."""
     if not _rendering and not meshes_ahead.has(shape):
         meshes.refill(item.data, shape)
         return

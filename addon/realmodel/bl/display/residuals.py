@@ -51,7 +51,7 @@ def show(current):
 
 
 def hide(current):
-    """Takes the residuals out of a scene."""
+    """Removes the residuals from a scene."""
     bodies.remove(current, bodies.RESIDUALS)
     current.realmodel.view.residuals = ""
 

@@ -74,7 +74,7 @@ def add(current, found, name, flat=False):
 
 
 def stand(current, item, plane):
-    """Puts the object of a section into the scene. plane: of the section, where it is one."""
+    """Adds the object of a section to the scene. plane: of the section, if it is plane."""
     item[scene.TAG] = "section"
     if plane is not None:
         normal = np.asarray(plane[1], np.float64)

@@ -16,12 +16,12 @@ _shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
 class Recipe:
-    """How the model of a scene just after surface `stage` of each rock mass is made.
+    """Makes the model of a scene at a stage: just after surface `stage` of each rock mass.
 
-    cells: "columns" or "blocks"; None: of a stage whole blocks, of the whole model whichever is at hand. A
-    recipe is taken from the scene by the main thread, carried out by any (`make`), and what was made is
-    kept by the main thread again (`keep`). A model that is not at hand at all - a .blend was opened - is
-    built from the settings, without touching the scene. Raises InputRefused.
+    cells: "columns" or "blocks"; None: whole blocks for a stage, and the cells in the cache for the whole
+    model. The main thread makes the recipe from the scene, any thread runs it (`make`), and the main thread
+    caches the result (`keep`). Without a model in the cache (after a .blend was opened) the model is built
+    from the settings; the scene does not change. Raises InputRefused.
     """
 
     def __init__(self, scene, stage, cells=None):
@@ -132,6 +132,6 @@ def _make_room():
 
 
 def forget():
-    """Lets go of all stages."""
+    """Clears all cached stages."""
     _stages.clear()
     _shapes.clear()

@@ -92,7 +92,7 @@ def _text(item, scale):
 
 
 def _margins(area, scale):
-    """What the tools at the left and the sidebar at the right cover, in points."""
+    """The widths that the toolbar at the left and the sidebar at the right cover, in points."""
     widths = {region.type: region.width for region in area.regions if region.width > 1}
     if not bpy.context.preferences.system.use_region_overlap:
         return 0.0, 0.0

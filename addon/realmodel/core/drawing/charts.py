@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What charts, sections, and legends are put together from."""
+"""Common parts of charts, sections, and legends."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Axes:
             drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
 
     def _x_ticks(self) -> tuple[np.ndarray, list[str]]:
-        """As many as there is room for."""
+        """As many ticks as there is room for."""
         for most in range(9, 1, -1):
             values = ticks(*self.x_range, most)
             texts = tick_texts(values)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands over a view of a model: legend, north arrow, scale bar, and a box of coordinates."""
+"""The overlay of a view of a model: legend, north arrow, scale bar, and a box of coordinates."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _AXIS_NAMES = ("Easting", "Northing", "Elevation")
 
 @dataclass(frozen=True)
 class ColorKey:
-    """What colors mean: names with colors, the first on top; or a range (low, high) with its colors (N, 3),
+    """The key to colors: names with colors, the first on top; or a range (low, high) with its colors (N, 3),
     the lowest first."""
 
     title: str
@@ -63,11 +63,8 @@ class Eye:
 
 @dataclass(frozen=True)
 class Shown:
-    """What is looked at.
-
-    low, high: (3,) model coordinates of the box around it. placed: (4, 4), from these to the world. unit: of
-    lengths. exaggeration: of the vertical.
-    """
+    """The model in the picture. low, high: (3,) model coordinates of the box around it. placed: (4, 4), from
+    these to the world. unit: of lengths. exaggeration: of the vertical."""
 
     low: np.ndarray
     high: np.ndarray

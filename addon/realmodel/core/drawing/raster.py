@@ -32,8 +32,8 @@ def rasterize(drawing: Drawing, scale: float, background=WHITE) -> np.ndarray:
 
 
 def over(below: np.ndarray, above: np.ndarray, x: int, y: int) -> None:
-    """Puts the pixels `above`, as `rasterize` returns them, into opaque ones `below`, their upper left corner
-    at column x and row y."""
+    """Composites the pixels `above`, as of `rasterize`, over opaque ones `below`, their upper left corner at
+    column x and row y."""
     part = below[y : y + above.shape[0], x : x + above.shape[1]]
     above = above[: part.shape[0], : part.shape[1]]
     part[..., :3] += above[..., 3:] * (above[..., :3] - part[..., :3])
@@ -44,7 +44,7 @@ def _rgba(color) -> np.ndarray:
 
 
 def item_shapes(item):
-    """What an item covers, as (rings, color): rings (N, 2) in points."""
+    """The shapes of an item, as (rings, color): rings (N, 2) in points."""
     if isinstance(item, Polygon):
         if item.fill is not None:
             yield item.rings, item.fill

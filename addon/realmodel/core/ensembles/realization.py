@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One realization of a model: its surfaces drawn anew, intersected and cut as in every build."""
+"""Realizations of a model: its surfaces with random errors, intersected and cut as in every build."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Realizer:
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:
-        """Of the errors of each surface of a rock mass with those of the next older one."""
+        """The correlations of the errors of each surface of a rock mass with those of the next older one."""
         own = [surface.correlation for surface in entry.rock.surfaces]
         return [self.correlation if each is None else each for each in own]
 

@@ -69,8 +69,8 @@ class Noise:
 
 @dataclass(frozen=True)
 class Frame:
-    """Where fields are drawn, from one corner (2,) in plan to the other: fields of one frame are correlated
-    as their noises are."""
+    """The area of random fields, from one corner (2,) in plan to the other. Fields of one frame have the
+    correlation of their noises."""
 
     low: np.ndarray
     high: np.ndarray

@@ -158,7 +158,7 @@ def _write_zones(mesh: PolyhedralMesh, poly: Path, order: np.ndarray, turned: np
 
 
 def _zones(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
-    """Which have each number from 0, ascending, as labels; those of no number below 0 are left out."""
+    """The elements with each number from 0, ascending, as labels; negative numbers are left out."""
     with_one = np.flatnonzero(number >= 0)
     own = number[with_one]
     # NumPy sorts short numbers by counting

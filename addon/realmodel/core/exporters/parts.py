@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What programs for shapes take: blocks, surfaces and sections as named meshes of polygons."""
+"""Named meshes of polygons for programs that take shapes: blocks, surfaces and sections."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def model_parts(model) -> list[Part]:
 
 
 def block_materials(model) -> dict[int, str]:
-    """What the property of each block is called."""
+    """The name of the property of each block."""
     library = model.project.library
     used = {block.property for block in model.blocks}
     entries = {number: library.get(number) if library else None for number in sorted(used)}
@@ -107,7 +107,7 @@ def section_parts(section) -> list[Part]:
 
 
 def distinct_names(given: Iterable[str]) -> list[str]:
-    """The same names, on one line; of equal ones the second and further ones with a number behind."""
+    """The same names, each in one line; a number is appended to repeated ones."""
     taken: set[str] = set()
     names = []
     for name in given:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was built, as JSON: for programs that read on, and for the reviewer of a model."""
+"""The report of a model as JSON: for other programs, and for reviewers."""
 
 from __future__ import annotations
 
@@ -84,8 +84,8 @@ def model_report(
 
 
 def _erosion(model, erosion: Erosion) -> dict:
-    """What each surface removed and each body took of which blocks, and for each block what was laid down,
-    removed, taken and left."""
+    """The volumes that each surface eroded and each body took of each block, and for each block the volumes
+    deposited, eroded, taken and left."""
     names = [block.name for block in model.blocks]
     rock_of = [rock.name for rock in model.project.rocks for _ in rock.surfaces]
     return {
@@ -243,7 +243,7 @@ def surface_entries(model) -> list[dict]:
 
 
 def versions() -> dict[str, str]:
-    """Of all that had a part in the result."""
+    """The versions of all software that affects the result."""
     found = {
         "realmodel": native_module().VERSION,
         "python": platform.python_version(),

@@ -31,8 +31,8 @@ class Structure:
 
 
 def structure(task: Task, are_apart: bool = False) -> Structure:
-    """As the settings have it, or fitted to the points. are_apart: no two points have one place; they may be
-    in a file."""
+    """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
+    they may be in a file."""
     settings = task.settings
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:

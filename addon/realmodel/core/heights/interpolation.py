@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes into a method, and what comes out."""
+"""The input and the result of a method."""
 
 from __future__ import annotations
 

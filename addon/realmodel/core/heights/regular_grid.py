@@ -94,7 +94,7 @@ def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
 def _heights(
     points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, room: Room = np.zeros
 ) -> np.ndarray:
-    """Of the nodes from `low` to `high`; NaN where there is no point."""
+    """The heights of the nodes from `low` to `high`; NaN where there is no point."""
     z = room(tuple((high - low + 1).tolist()), float)
     z.fill(np.nan)
     for piece in in_pieces(points):

@@ -247,7 +247,7 @@ def _scaled(z: np.ndarray, metadata) -> np.ndarray:
 
 
 def _place(file: Path, tags: dict, keys: dict):
-    """Where the first height lies, and the steps to the next one across and down."""
+    """The position of the first height, and the steps to the next one across and down."""
     matrix = None
     if _TRANSFORMATION in tags and len(tags[_TRANSFORMATION]) == 16:
         m = tags[_TRANSFORMATION]

@@ -51,7 +51,7 @@ def grid_heights(
 
 
 def _to_blank(raw: Content, begin: int) -> bytes:
-    """What stands from a byte on, to the end of a number."""
+    """The text from a byte on, to the end of a number."""
     piece = raw[begin : begin + BYTES_AT_ONCE]
     at = begin + len(piece)
     while at < len(raw):

@@ -40,7 +40,7 @@ class HoleDirections:
 
     @classmethod
     def of_survey(cls, given: Boreholes, step: Step = no_step) -> HoleDirections:
-        """Those of the table of a survey. Raises InputRefused naming the line."""
+        """The stations of a survey table. Raises InputRefused naming the line."""
         found = cls(given)
         for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
             depth = row.number("depth")

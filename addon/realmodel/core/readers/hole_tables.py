@@ -67,7 +67,7 @@ class Row:
         return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
 
     def called(self, column: str) -> str:
-        """How the header calls a column, in small letters; empty without a header."""
+        """The name of a column in the header, in small letters; empty without a header."""
         names, at = self.table.layout.names or (), self.columns[column]
         return plain_name(names[at]) if at < len(names) else ""
 

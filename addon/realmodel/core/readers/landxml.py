@@ -99,7 +99,7 @@ class _Surfaces:
         self.mesh.flush_some()
 
     def _number(self, name: str) -> None:
-        """Gives the next vertex its name, mostly a number."""
+        """Adds the name of the next vertex, mostly a number."""
         if _is_number(name):
             self._numbers[int(name)] = self.mesh.vertex_count
         else:

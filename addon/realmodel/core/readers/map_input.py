@@ -41,10 +41,8 @@ def _is_json(file: Path, head: bytes) -> bool:
 def read_shapes(
     given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_step, heights: Heights | None = None
 ) -> Shapes:
-    """What a file holds, in the model's unit; with heights where these are wanted.
-
-    Raises InputRefused naming the file.
-    """
+    """The shapes of a file, in the model's unit; with heights where requested. Raises InputRefused naming the
+    file."""
     file = Path(given.file)
     try:
         with file.open("rb") as opened:

@@ -23,7 +23,7 @@ class PendingMesh:
 
     @property
     def vertex_count(self) -> int:
-        """With those that wait."""
+        """The number of vertices, including the pending ones."""
         return self._mesh.vertices + len(self.vertices)
 
     def add_face(self, corners: list[int], line: int | None = None) -> None:

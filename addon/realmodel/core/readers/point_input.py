@@ -162,7 +162,7 @@ def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarra
 
 
 class _Heights:
-    """What there is among heights that come piece by piece: numbers that programs write for none."""
+    """Looks among heights, piece by piece, for values that programs write for no data."""
 
     def __init__(self):
         self._count = 0

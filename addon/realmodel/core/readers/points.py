@@ -175,7 +175,7 @@ def _guessed_names(table: Table) -> tuple[str, ...]:
 
 
 def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
-    """What native code compares entries with: numbers as numbers, text as it stands in the file."""
+    """The values that native code compares entries with: numbers as numbers, text as in the file."""
     numbers = [float(value) for value in values if not isinstance(value, str)]
     return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
 
@@ -258,7 +258,7 @@ def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> lis
 
 
 def head_rows(table: Table, most: int) -> list[list[str]]:
-    """What stands in the first rows of a table."""
+    """The entries of the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
     return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
 

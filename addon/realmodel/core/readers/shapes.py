@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of outlines, lines and points hold, whatever their format."""
+"""The shapes of files of outlines, lines and points, whatever their format."""
 
 from __future__ import annotations
 
@@ -29,10 +29,8 @@ class Polygon:
 
 @dataclass
 class Shapes:
-    """What one file holds: polygons, lines (N, 2) and points (2,), the latter two with what to call them.
-
-    Read with heights, positions have three numbers, the third NaN where the file gives none.
-    """
+    """The shapes of one file: polygons, lines (N, 2) and points (2,), the latter two with their names in
+    messages. Read with heights, positions have three numbers, the third NaN where the file gives none."""
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)
@@ -41,15 +39,15 @@ class Shapes:
 
     @property
     def ordinates(self) -> int:
-        """How many numbers a position has."""
+        """The number of coordinates of a position."""
         return 3 if self.has_heights else 2
 
     def counts(self) -> tuple[int, int, int]:
-        """How many polygons, lines and points there are."""
+        """The numbers of polygons, lines and points."""
         return len(self.polygons), len(self.lines), len(self.points)
 
     def set_height(self, since: tuple[int, int, int], height: float) -> None:
-        """Gives all positions added since there were so many parts one height."""
+        """Sets the height of all positions added after these counts."""
         rings = [ring for polygon in self.polygons[since[0] :] for ring in polygon.rings]
         lines = [line for _, line in self.lines[since[1] :]]
         for places in [*rings, *lines, *(point for _, point in self.points[since[2] :])]:
@@ -94,7 +92,7 @@ class NothingSelected(InputRefused):
 
 
 class Selection:
-    """Which features count, by their attributes; remembers what there was for a refusal."""
+    """Selects features by their attributes; records the attributes and values for error messages."""
 
     def __init__(self, file: Path, where: Mapping, layer: str | None = None):
         self.file, self.where = file, where

@@ -63,7 +63,7 @@ def _of_binary(raw: FileBytes, count: int) -> Iterator[tuple[float, np.ndarray]]
 
 
 def _of_text(raw: FileBytes) -> Iterator[tuple[float, np.ndarray]]:
-    """As _of_binary."""
+    """The same of a text file."""
     rest, line, triangles = b"", 1, 0
     for at in range(0, len(raw), BYTES_AT_ONCE):
         piece, end, more = (rest + raw[at : at + BYTES_AT_ONCE]).rpartition(_END)

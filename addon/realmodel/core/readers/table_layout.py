@@ -38,7 +38,7 @@ class TableLayout:
 
 
 def fields(line: str, separator: str) -> list[str]:
-    """What stands in a line, without blanks and quotes around it."""
+    """The entries of a line, without blanks and quotes around them."""
     if '"' in line:
         given = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
         try:
@@ -56,7 +56,8 @@ def is_number(entry: str, decimal: str = ".") -> bool:
 
 
 def is_any_number(entry: str, separator: str) -> bool:
-    """With a decimal point, or with a decimal comma where commas do not separate."""
+    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
+    separate."""
     return is_number(entry) or (separator != "," and is_number(entry, ","))
 
 
@@ -113,7 +114,8 @@ def _is_comment(text: str) -> bool:
 
 
 def _separator(texts: list[str], numbers: int, columns: int) -> str:
-    """Of the first line that has enough columns and numbers with one; of the first with enough columns."""
+    """The separator of the first line that has enough columns and numbers; else of the first with enough
+    columns."""
     for text in texts:
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)

@@ -63,7 +63,7 @@ class FileBytes:
         return bytes(found)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
-        """Where a text of one byte stands next; -1 where it does not."""
+        """The next position of a text of one byte; -1 where there is none."""
         end = self._size if end is None else min(end, self._size)
         size = _BYTES_TO_FIND
         while begin < end:
@@ -74,7 +74,7 @@ class FileBytes:
         return -1
 
     def count(self, text: bytes, begin: int, end: int) -> int:
-        """How often a text of one byte stands between two places."""
+        """The number of times that a text of one byte occurs between two positions."""
         places = range(begin, end, BYTES_AT_ONCE)
         return sum(self[at : min(at + BYTES_AT_ONCE, end)].count(text) for at in places)
 
@@ -92,7 +92,8 @@ def _read_of(file: Path) -> Iterator[None]:
 
 
 def content_of(file: Path) -> Content:
-    """What a file holds, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises InputRefused."""
+    """The content of a file, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises
+    InputRefused."""
     content = FileBytes(Path(file))
     return read_bytes(file) if content[:2] in _UTF_16 else content
 
@@ -151,7 +152,7 @@ def encoding_of(content: Content) -> str:
 
 
 def read_bytes(file: Path) -> bytes:
-    """What a file holds; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+    """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
     with _read_of(file):
         raw = Path(file).read_bytes()
     if raw[:2] in _UTF_16:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of triangulated surfaces hold, whatever their format."""
+"""The triangulated surface of a file, whatever its format."""
 
 from __future__ import annotations
 

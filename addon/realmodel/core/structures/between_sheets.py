@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a fault would go on beyond its tip between two sheets: nothing displaces them there."""
+"""Faults that die out, continued beyond their tips between two sheets: nothing displaces the sheets there."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def _nearest(
     points: np.ndarray, known: np.ndarray, along: np.ndarray, number: int, near_by: float
 ) -> np.ndarray:
-    """Of some points, ordered by x, `along`, the nearest to another one in plan, nearest first. near_by: a
+    """The nearest of some points, ordered by x, `along`, to another one in plan, nearest first. near_by: a
     distance within which they mostly are."""
     place = points[number, :2]
     begin, end = np.searchsorted(along, (place[0] - near_by, place[0] + near_by))
@@ -62,8 +62,8 @@ def _nearest(
 
 
 def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:
-    """How far a point's height is from that of its neighbors on its own side, and of those on that other side
-    which fits it best; 0 and infinite where there are none."""
+    """The difference of a point's height from its neighbors on its own side, and from those on the other side
+    that fits best; 0 and infinite where there are none."""
     off = {
         int(side): abs(float(points[near[row[near] == side][:_COUNTED], 2].mean() - points[number, 2]))
         for side in np.unique(row[near])

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is at a point of a rock mass with faults and bodies, from its sheets alone: nothing is built.
-
-An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder but how
-faults go on beyond their borders.
-"""
+"""The block at a point of a rock mass with faults and bodies, from its sheets alone, without building. An
+independent evaluation for tests and for the proof of a model: it shares with the builder only the
+continuation of faults beyond their borders."""
 
 from __future__ import annotations
 

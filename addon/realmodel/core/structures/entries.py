@@ -13,7 +13,7 @@ from ..point_file import MeshFile, PointFile
 
 
 class _Shape:
-    """What faults and bodies have in common: a mesh from arrays or from a file."""
+    """The common part of faults and bodies: a mesh from arrays or from a file."""
 
     @property
     def mesh_file(self) -> MeshFile | None:
@@ -27,7 +27,7 @@ class _Shape:
         return None if given is None else Path(given.file)
 
     def shape_source(self) -> tuple[Path | None, int | None]:
-        """Where the shape comes from, for messages: its file, or its line in the project file."""
+        """The source of the shape, for messages: its file, or its line in the project file."""
         if self.shape_file is not None:
             return self.shape_file, None
         if self.source is not None:

@@ -63,7 +63,7 @@ def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndar
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
-    """Of all compartments of a rock mass, for surface `number`."""
+    """The families of all compartments of a rock mass, for surface `number`."""
     found: dict[tuple[int, ...], Family] = {}
     rows = structure.compartments
     for compartment, key in enumerate(map(tuple, keys_of(structure, number, rows).tolist())):

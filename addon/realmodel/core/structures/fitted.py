@@ -62,7 +62,7 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
 
 
 def _without_repeats(stick: np.ndarray) -> np.ndarray:
-    """Of points at one position only the first: a stick does not return to itself."""
+    """The first of the points at each position: a stick does not return to itself."""
     return stick[np.sort(np.unique(stick, axis=0, return_index=True)[1])]
 
 
@@ -134,7 +134,7 @@ def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: 
 
 
 def _shares(stick: np.ndarray) -> np.ndarray:
-    """Where each point lies on the way along a stick, from 0 to 1."""
+    """The position of each point along a stick, from 0 to 1."""
     way = np.concatenate([[0.0], norm(np.diff(stick, axis=0)).cumsum()])
     return way / way[-1]
 
@@ -164,7 +164,8 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of a plane: its strike, its dip (downward), and its normal, each of length 1 and at right angles."""
+    """The axes of a plane: its strike, its dip (downward), and its normal, of length 1 and at right
+    angles."""
     along = np.array([-normal[1], normal[0], 0.0])
     along = _unit(along) if norm(along) > _IN_LINE else np.array([1.0, 0.0, 0.0])
     down = np.cross(normal, along)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which rock masses a fault displaces and a body is in, and since when."""
+"""The rock masses that a fault displaces and that a body is in, and since when."""
 
 from __future__ import annotations
 

@@ -54,11 +54,11 @@ class Structures:
 
     @property
     def kinds(self) -> list[int]:
-        """Of each its number in `surface_kind`."""
+        """The number of each structure in `surface_kind`."""
         return [1] * len(self.faults) + [2] * len(self.bodies)
 
     def native(self) -> list[tuple]:
-        """As the native part takes them."""
+        """The arguments of the native module."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
         given = [
             (fault.vertices, fault.triangles, False, [number[name] for name in fault.ends_at], fault.dies_out)
@@ -67,7 +67,7 @@ class Structures:
         return given + [(body.vertices, body.triangles, True, [], False) for body in self.bodies]
 
     def fault_shapes(self) -> list[FaultShape]:
-        """Of each fault."""
+        """The shape of each fault."""
         alone = {f.name: FaultShape(f.vertices, f.triangles, f.dies_out) for f in self.faults}
         return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
 
@@ -107,7 +107,7 @@ class Structures:
         return body >= 0 and not self.bodies[body].void and bool(self.times[body])
 
     def blocks_of_bodies(self) -> list[tuple[int, Body, int]]:
-        """Of each block of a body: the number of its structure, the body, its first rock mass."""
+        """For each block of a body: the number of its structure, the body, its first rock mass."""
         count = len(self.faults)
         return [
             (count + number, body, min(self.times[number]))
@@ -116,7 +116,7 @@ class Structures:
         ]
 
     def stage(self, m: int) -> Structures:
-        """The same with the bodies that were there just after surface m."""
+        """The structures at stage m: with the bodies that are there just after surface m."""
         times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
         return replace(self, times=times)
 
@@ -164,7 +164,7 @@ def divide(work: Work, structures: Structures, box: np.ndarray, threads: int) ->
 
 
 def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
-    """One cell, as the native part takes a model."""
+    """One cell, as an argument of the native module."""
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.float64)
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     return {
@@ -214,8 +214,8 @@ def box_around(inputs: list, structures: Structures) -> np.ndarray:
 
 
 def add_compartments(structures: Structures, inputs: list) -> None:
-    """Gives each rock mass (RockInput) its compartments: the parts by their sides of the faults that act in
-    it."""
+    """Sets the compartments of each rock mass (RockInput): the parts, by their sides of the faults that act
+    in it."""
     for number, entry in enumerate(inputs):
         faults = structures.of_rock(number)
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where each part of space may have rock: the cells of a part are made only there."""
+"""The boxes of each part of space that may contain rock: only there the cells of a part are made."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Reach:
         self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
 
     def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
-        """The same of some of the faults, by their numbers, and of parts that come into a box in plan: low x,
-        low y, high x, high y. structures: these, and some bodies."""
+        """The reach of the parts that meet a box in plan (low x, low y, high x, high y), for some of the
+        faults, by their numbers. structures: these faults, and some bodies."""
         few = copy.copy(self)
         few.structures, few.ranges, few.numbers = structures, {}, {}
         few.masks = [self.masks[fault] for fault in faults]
@@ -169,7 +169,7 @@ def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarr
 
 
 def _corners(ring: np.ndarray) -> np.ndarray:
-    """Of a ring along two axes the places where it turns."""
+    """The corners of a ring along two axes."""
     straight = (np.roll(ring, 1, axis=0) == ring) & (ring == np.roll(ring, -1, axis=0))
     return ring[~straight.any(axis=1)]
 

@@ -38,7 +38,7 @@ class RockStructure:
             self.warnings.append((compartments, warning))
 
     def stage(self, m: int) -> RockStructure:
-        """The same with the surfaces up to m."""
+        """The structure with the surfaces up to m."""
         return replace(
             self,
             sheets=[sheets[: m + 1] for sheets in self.sheets],

@@ -122,7 +122,7 @@ def _make(entry, number: int, surface) -> list:
 
 
 def _neighbor(key, made, counts):
-    """Of the families with sheets across one fault that with the most data; None where there is none."""
+    """The family with the most data among those with sheets across one fault; None where there is none."""
     near = [other for other in made if sum(a != b for a, b in zip(key, other, strict=True)) == 1]
     return max(near, key=lambda other: (counts[other], other), default=None)
 

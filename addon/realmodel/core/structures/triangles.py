@@ -150,7 +150,7 @@ def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
-    """As crossing_pairs, without those of which the box of the first is farther than `near` from the plane of
+    """As crossing_pairs, without pairs in which the box of the first is farther than `near` from the plane of
     the second."""
     low, high = extents(first)
     middle, reach = (low + high) / 2, (high - low) / 2 + near

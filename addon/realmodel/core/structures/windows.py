@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a project with faults and bodies is around a tile: a project of its own, from the triangles that are
-near, whose cells in the tile are those of the whole."""
+"""The window of a project with faults and bodies around a tile: a project of its own, of the triangles that
+are near, whose cells in the tile are those of the whole."""
 
 from __future__ import annotations
 
@@ -285,7 +285,7 @@ class Windows:
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a plan the numbers of triangles in a box, of their vertices, and these triangles."""
+        """For a plan: the numbers of triangles in a box, of their vertices, and these triangles."""
         if id(plan) not in of_plan:
             own = plan.meeting(taken)
             used, corners = np.unique(plan.triangles[own], return_inverse=True)
