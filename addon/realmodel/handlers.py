@@ -133,7 +133,7 @@ _HANDLERS = (
 
 
 def _migrate_at_start():
-    """Once, when Blender lets its data be changed: an add-on that is enabled may not do so yet."""
+    """Called once, when Blender allows changes of data: not yet while an add-on is enabled."""
     if hasattr(bpy.types.Scene, "realmodel"):
         migrate_all()
 

@@ -277,7 +277,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
 
 
 class RealModelActivity(bpy.types.PropertyGroup):
-    """`window_manager.realmodel`: what goes on at the moment; not saved."""
+    """`window_manager.realmodel`: running work; not saved."""
 
     running: BoolProperty(options={"SKIP_SAVE"})
     progress: FloatProperty(

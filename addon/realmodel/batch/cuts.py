@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts, sections, fences and boreholes as the command line asks for them: WHAT=FILE."""
+"""Cuts, sections, fences and boreholes of the command line: WHAT=FILE."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class BoreholeRequest:
         pass
 
     def run(self, model, outputs, _threads: int, progress) -> str:
-        """Stages the file; what there is to say about the borehole."""
+        """Stages the file. Returns the summary of the borehole for the terminal."""
         progress(1.0, f"writing {self.file.name}")
         found = model.borehole(*self.what)
         with outputs.file(self.file) as file:

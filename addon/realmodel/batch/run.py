@@ -33,7 +33,7 @@ from .terminal import TerminalProgress
 
 
 def run(options: argparse.Namespace) -> None:
-    """Does what the options say. Raises RealModelError; files appear whole or not at all."""
+    """Runs the program with these options. Raises RealModelError; files appear whole or not at all."""
     probabilities = ProbabilityRequests.of(options) if options.ensemble is not None else None
     requests = _requests(options) if probabilities is None else probabilities.made
     if probabilities is not None and requests:
@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> None:
-    """Warnings and lines, unless --quiet. The outputs are there, though nobody may read this any more."""
+    """Prints warnings and lines, unless --quiet. A closed output is no error here: the files are written."""
     if not options.quiet:
         with contextlib.suppress(BrokenPipeError):
             for line in (*(f"warning: {warning}" for warning in warnings), *lines):

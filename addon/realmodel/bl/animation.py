@@ -66,8 +66,8 @@ def _turned(points, middle):
 
 
 def animate_stages(scene, frames):
-    """Keyframes of the stage: each is shown for some frames, the oldest that has rock first. Other keyframes
-    of the stage are removed. Returns how many stages there are."""
+    """Sets keyframes of the stage: each is shown for some frames, beginning with the oldest that has rock.
+    Other keyframes of the stage are removed. Returns the number of stages."""
     first = 0 if _has_base(scene) else 1
     last = max(settings.last_stage(scene), first)
     curves = versions.curves(scene)

@@ -77,7 +77,7 @@ def _failed(path, error):
 
 
 def _remove_startup_objects(current, project):
-    """Remove every object and collection of the scene that is not the model's."""
+    """Remove every object and collection of the scene that does not belong to the model."""
     keep = {item.name for item in project.all_objects}
     for item in list(bpy.data.objects):
         if item.name not in keep:

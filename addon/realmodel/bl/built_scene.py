@@ -254,7 +254,7 @@ def _keep(current, prepared):
 
 
 def _palette(current, model, created):
-    """Material of each property that a block has, and which are to be renamed or recolored."""
+    """The material of each property that a block has, and the materials to be renamed or recolored."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
         there = len(bpy.data.materials)
@@ -272,8 +272,8 @@ def _interface(row):
 
 
 def _new_interfaces(current, prepared, composed, created):
-    """By place the object that is to be the interface, with another mesh where it needs one:
-    (object, mesh or None, digest)."""
+    """For each place the object that will be the interface, with a new mesh if it needs one: (object, mesh or
+    None, digest)."""
     found = {}
     for place, row in settings.interface_rows(current):
         own = _interface(row)
@@ -295,7 +295,7 @@ def _new_interfaces(current, prepared, composed, created):
 
 
 def _settle_edited(current, composed):
-    """Interfaces changed by hand count as they are from now on."""
+    """Accepts interfaces that were edited by hand as they are now."""
     for place in composed.edited:
         row = settings.row_at(current, place)
         row.object = row.interface
@@ -304,7 +304,7 @@ def _settle_edited(current, composed):
 
 
 def _new_blocks(current, prepared, created, in_place):
-    """For each block of the model (object, new mesh or None to be filled in place), None for absent ones."""
+    """For each block of the model (object, new mesh or None to be updated in place), None for absent ones."""
     known = {(row.rock, row.name): row.object for row in current.realmodel.results}
     model, found = prepared.model, []
     for block, shape in zip(model.blocks, prepared.blocks, strict=True):
@@ -411,7 +411,8 @@ def _place_blocks(current, prepared, tree, blocks, palette):
 
 
 def _change_mesh(item, mesh):
-    """Another mesh for an object, with the materials and the name of the one before; that one goes."""
+    """Replaces the mesh of an object by another one, with its materials and its name; the old mesh is
+    removed."""
     old = item.data
     if not len(mesh.materials):
         for material in old.materials:
@@ -424,8 +425,8 @@ def _change_mesh(item, mesh):
 
 
 def _link(current, collection, item, move=False):
-    """Links an object into its collection where it is nowhere in the scene; an object that becomes part of
-    the model only now moves there."""
+    """Links an object to its collection if it is in no collection of the scene; an object that becomes part
+    of the model now is moved there."""
     if move:
         for other in list(item.users_collection):
             if other != collection and (

@@ -6,7 +6,7 @@ _caches = []
 
 
 class _Bounded(dict):
-    """Drops what was put in first, where it would hold more than `most` entries."""
+    """Drops the oldest entry where there would be more than `most`."""
 
     def __init__(self, most):
         super().__init__()

@@ -42,14 +42,14 @@ section = _unless_filling(display.section_changed)  # another plane, or none
 
 
 def name(row, _context):
-    """Another name of a rock mass, a surface, a fault or a body."""
+    """A rock mass, a surface, a fault or a body was renamed."""
     if not settings.is_filling():
         names.follow(row)
         live.touch(row.id_data)
 
 
 def model_unit(group, _context):
-    """Another unit of the model's lengths."""
+    """The unit of the model's lengths was changed."""
     if not settings.is_filling():
         units.set_up(group.id_data, group.units)
         live.touch(group.id_data)
@@ -80,7 +80,7 @@ def switched_on(switch):
 
 
 def region(rock, context):
-    """Another region: what was kept of the earlier one is worth nothing."""
+    """The region was changed: its stored outline is discarded."""
     if settings.is_filling():
         return
     rock.region_stored = rock.region_stamp = ""
@@ -93,7 +93,8 @@ def region(rock, context):
 
 
 def source(surface, context):
-    """Another source of a surface: it is made from that, whatever was done to its interface before."""
+    """The source of a surface was changed: the surface is made from it, and edits of its interface are
+    discarded."""
     if settings.is_filling():
         return
     surface.interface_digest = ""
@@ -153,8 +154,8 @@ def overlay(_row, _context):
 
 
 def property_id(row, _context):
-    """Surfaces, blocks and materials follow the new ID of a property. An ID that is invalid or in use is not
-    taken."""
+    """The ID of a property was changed: surfaces, blocks and materials follow. An invalid or used ID is
+    refused."""
     if settings.is_filling() or row.id == row.known_id:
         return
     if library_rows.take_id(row):
@@ -169,7 +170,7 @@ def property_name(row, _context):
 
 
 def property_look(row, _context):
-    """Another look of a property, another lithology where that says which, or another texture."""
+    """The look of a property, its lithology where that decides the look, or its texture was changed."""
     if not settings.is_filling():
         looks.follow(row.id_data, [row])
         weathering.follow(row.id_data)

@@ -207,7 +207,7 @@ def _remove(item):
 
 
 def shown_changed(group, _context):
-    """`show_data` was switched."""
+    """`show_data` was switched on or off."""
     if not settings.is_filling():
         update(group.id_data)
 
@@ -218,7 +218,7 @@ def origin_of(group):
 
 
 def set_origin(group, given):
-    """Another origin for a model that was not built yet; objects of the user stay where they stand."""
+    """Sets another origin for a model that was not built yet; objects of the user stay in place."""
     scene = group.id_data
     scene[ORIGIN_KEY] = [float(str(np.float32(value))) for value in given]
     place(scene)

@@ -28,7 +28,7 @@ class DebouncedJob:
         self._timer = self.look  # Blender knows timers by the object
 
     def touch(self, name):
-        """Something that the work of a scene depends on was changed."""
+        """Reports that input of a scene's job was changed."""
         self._changed_at[name] = time.perf_counter()
         if not bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.register(self._timer, first_interval=_LOOK_SECONDS)
@@ -43,7 +43,7 @@ class DebouncedJob:
         self._changed_at.clear()
 
     def stop_jobs(self):
-        """Stops what is under way, and forgets what it was for."""
+        """Stops the running jobs and discards the changes that wait."""
         for job, _ in self._jobs.values():
             job.cancel()
         for job, _ in self._jobs.values():
@@ -52,7 +52,7 @@ class DebouncedJob:
         self._changed_at.clear()
 
     def stop(self):
-        """Ends everything: the add-on is disabled, or another file was opened."""
+        """Stops all work: the add-on is disabled, or another file was opened."""
         self.stop_jobs()
         if bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.unregister(self._timer)

@@ -23,7 +23,7 @@ measured = caches.new()  # by the name of a scene: seconds from the last change 
 
 
 def touch(scene):
-    """Something that the model of a scene depends on was changed."""
+    """Reports that input of a scene's model was changed."""
     names.know(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)
@@ -42,7 +42,7 @@ def is_working():
 
 
 def changed(scene, depsgraph):
-    """Blender has evaluated changed objects."""
+    """Called when Blender has evaluated changed objects."""
     group = scene.realmodel
     if _at_work or not len(group.rocks):
         return
@@ -75,18 +75,18 @@ def _names(item):
 
 
 def undone():
-    """Blender has undone or redone something: what is on the screen may be of another build."""
+    """Called after undo and redo: the displayed blocks may be of another build."""
     for scene in bpy.data.scenes:
         touch(scene)
 
 
 def stop_work():
-    """Stops builds that are under way, and forgets what they were for."""
+    """Stops running builds and discards the changes that wait."""
     _work.stop_jobs()
 
 
 def stop():
-    """Ends everything: the add-on is disabled."""
+    """Stops all work: the add-on is disabled."""
     _work.stop()
 
 

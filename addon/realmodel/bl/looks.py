@@ -61,7 +61,7 @@ def apply(material, look, scale, seed, diagonal):
 
 
 def level(material):
-    """Nothing stands out of a material that has a look any more."""
+    """Removes the bump mapping of a material that has a look."""
     for link in list(material.node_tree.links):
         if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
             material.node_tree.links.remove(link)
@@ -87,7 +87,7 @@ def _new_shader(nodes):
 
 
 def _set_gloss(shader, roughness):
-    """Matt but for smooth rock."""
+    """Sets the roughness: matte, except for smooth rock."""
     versions.make_matt(shader)
     shader.inputs["Roughness"].default_value = roughness
     if roughness < 0.5:
@@ -171,7 +171,7 @@ def _fill(nodes, shader, look, color, unit, seed):
 
 
 def _multiply(nodes, color, seen, socket):
-    """Links a color to a socket as the product of the property's and what is left."""
+    """Links to a socket the property's color multiplied by the brightness."""
     mix = nodes.new("ShaderNodeMix")
     mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
     factor, first, second = (
@@ -194,7 +194,7 @@ def _above(nodes, place, size):
 
 
 def _laminae(nodes, place, above, lamina):
-    """Noise from 0 to 1 of laminae, which are level in the layer and end somewhere."""
+    """Noise from 0 to 1 for laminae, which are parallel to the layer and of limited length."""
     joined = nodes.new("ShaderNodeCombineXYZ")
     nodes.link(
         nodes.vector("DOT_PRODUCT", place, (0.8 * _FLAT_LAMINAE, 0.6 * _FLAT_LAMINAE, 0.0)), joined.inputs[0]
@@ -218,7 +218,8 @@ def _bands(nodes, along):
 
 
 def _beds(nodes, above, rough, bed):
-    """Three numbers from 0 to 1 of each bed, at random, and how deep in the groove between two (0 to 1)."""
+    """Three random numbers from 0 to 1 for each bed, and the depth in the groove between two beds (0 to
+    1)."""
     level = nodes.math("MULTIPLY", above, 1.0 / bed)
     if rough is not None:
         level = nodes.math("ADD", level, nodes.about(rough, 0.12 / bed))
@@ -273,8 +274,7 @@ def _groove(nodes, look, groove, worn, tones, heights):
 
 
 def _clasts(nodes, place, look):
-    """Tone, height (None: level) and a number from 0 to 1 of pebbles or crystals that differ from one
-    another."""
+    """Tone, height (None: flat) and a number from 0 to 1 for each pebble or crystal."""
     place = nodes.vector("SCALE", place, 1.0 / look.clast_size)
     if look.clast_size <= _CRYSTAL:
         first = nodes.part(nodes.cells("3D", place, 1.0, "F1").outputs["Color"], 0)

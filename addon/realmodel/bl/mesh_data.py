@@ -215,8 +215,8 @@ def _materials(mesh, item):
 
 
 def _write_materials(mesh, parts, given):
-    """Faces keep their materials. Those of the second that have none take the slot of their number, as in
-    Blender's own Boolean; those of the first that have none keep none."""
+    """Writes the material of each face. Faces of the second mesh without one take the slot of their number,
+    as in Blender's own Boolean; those of the first without one keep none."""
     first, second = (list(layers.materials) for layers in given)
     are_both = all(len(source.polygons) for source in parts.sources)
     if are_both and any(second):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays to Blender meshes and back."""
+"""Conversion of arrays to Blender meshes and back."""
 
 import bpy
 import numpy as np

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings as their declarations (core/setting.py) have them, between the properties of a row and
-realmodel.core; those of methods with their variograms."""
+"""Converts settings, by their declarations (core/setting.py), between the properties of a row and
+realmodel.core; also those of methods with their variograms."""
 
 import json
 

@@ -95,7 +95,7 @@ def set_edges(row, edge_length, triangles):
 
 
 def take_up_sizes(row):
-    """Places of shorter edges that a file of an earlier version has kept as they were get their rows."""
+    """Makes rows of the local edge lengths that files of an earlier version stored as text."""
     kept = json.loads(row.mesh_options) if row.mesh_options else {}
     for entry in kept.pop("size", ()):
         _fill_size(row.sizes.add(), entry)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the settings of a scene and the objects that they point to, to a project, and back."""
+"""Converts the settings of a scene, and the objects that they refer to, to a project, and back."""
 
 from __future__ import annotations
 
@@ -279,8 +279,7 @@ def _take_mesh(composed, surface, item, given, triangles, base):
 
 
 def oldest_first(items, depsgraph):
-    """Mesh objects by the mean height of their vertices: where surfaces follow each other, their order in
-    age."""
+    """Mesh objects by the mean height of their vertices: for surfaces in sequence, their order in age."""
 
     def mean_height(item):
         heights = shapes.points(item, depsgraph)[:, 2]
@@ -327,10 +326,8 @@ def packed_region(rock):
 
 
 def fill(scene, project):
-    """Rows for a project, in place of those that are there.
-
-    project: realmodel.core.Project. Files stay files; what has been read, as of `Model.project`, is kept.
-    """
+    """Fills the rows from a project, in place of the present ones. project: realmodel.core.Project. Files
+    stay files; data that were read, as in `Model.project`, are stored."""
     group = scene.realmodel
     with settings.filling():
         group.rocks.clear()

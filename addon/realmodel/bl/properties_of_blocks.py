@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Another property for blocks that are there: no build is needed for it, only other materials."""
+"""Assigns another property to built blocks: only materials change, no build is needed."""
 
 from . import display, library_rows, looks, materials, scene, settings, weathering
 

@@ -51,13 +51,13 @@ def volume_deviation(current, row):
 
 
 def check(current):
-    """Finds the quality of the active surface, in this thread. Raises RealModelError."""
+    """Computes the quality of the active surface, in this thread. Raises RealModelError."""
     key, recipe, task = _asked(current)
     _keep(key, recipe, Job(task).result())
 
 
 def start(current):
-    """Begins to find it in another thread. Raises InputRefused."""
+    """Starts to compute it in another thread. Raises InputRefused."""
     stop()
     key, recipe, task = _asked(current)
     _working.update(key=key, recipe=recipe, job=Job(task))
@@ -70,7 +70,7 @@ def state():
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running job."""
     if _working:
         _working["job"].cancel()
         _working.clear()
@@ -169,7 +169,7 @@ def icon(current, chart, pixels):
 
 
 def forget():
-    """Drops everything: the add-on is disabled, or another file was opened."""
+    """Clears all results: the add-on is disabled, or another file was opened."""
     global _pictures
     stop()
     _found.clear()

@@ -29,7 +29,7 @@ def ask():
 
 
 def stop():
-    """Ends what was asked for: the add-on is disabled."""
+    """Stops the scheduled measurement: the add-on is disabled."""
     if bpy.app.timers.is_registered(_measure_all):
         bpy.app.timers.unregister(_measure_all)
 

@@ -18,7 +18,7 @@ _quiet = 0  # how many blocks of code fill in settings at the moment
 
 @contextmanager
 def filling():
-    """While settings are filled in by a program, changing them has no consequences of its own."""
+    """While it is active, changes of settings are made by the program, and update callbacks do nothing."""
     global _quiet
     _quiet += 1
     try:
@@ -41,12 +41,12 @@ def begin(group):
 
 
 def is_mesh_object(_row, item):
-    """Poll of pointers to objects: what has vertices."""
+    """Poll of pointers to objects with vertices."""
     return item.type == "MESH" and DATA not in item
 
 
 def is_region_object(_row, item):
-    """Poll of pointers to objects: what can bound a region."""
+    """Poll of pointers to objects that can bound a region."""
     return item.type in {"MESH", "CURVE"} and DATA not in item
 
 
@@ -198,7 +198,7 @@ def set_number(row, key, value):
 
 
 def copy_row(source, target):
-    """Copies every setting of one row to another of its kind, the rows inside it too."""
+    """Copies every setting of one row to another of its kind, including rows within it."""
     with filling():
         for prop in source.bl_rna.properties:
             key = prop.identifier

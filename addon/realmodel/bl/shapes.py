@@ -68,7 +68,7 @@ def triangle_polygons(mesh):
 
 
 def require_open(item):
-    """Refuses an object whose mesh is closed: it has two heights over each place. Raises InputRefused."""
+    """Refuses an object whose mesh is closed: it has two heights at each position. Raises InputRefused."""
     mesh = item.data
     used = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", used)
@@ -207,7 +207,7 @@ def _bounding_edges(mesh):
 
 
 def _closed_chains(edges, count, where, plan):
-    """Vertex numbers of each closed loop that the edges make."""
+    """The vertex numbers of each closed loop of the edges."""
     degree = np.bincount(edges.ravel(), minlength=count)
     odd = np.flatnonzero((degree != 2) & (degree != 0))
     if len(odd):

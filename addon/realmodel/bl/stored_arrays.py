@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays as text, for properties of the .blend: what was read from files stays with the model."""
+"""Arrays as text in properties of the .blend: data that were read from files are stored with the model."""
 
 import base64
 import hashlib

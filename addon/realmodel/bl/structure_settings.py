@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults and bodies between the rows of a scene and realmodel.core."""
+"""Converts faults and bodies between the rows of a scene and realmodel.core."""
 
 from ..core import Body, Fault, Project, work
 from ..core.schema import BODY, FAULT
@@ -32,7 +32,7 @@ def item_of(entry):
 
 
 def fill(scene, project):
-    """Rows for the faults and bodies of a project, in place of those that are there."""
+    """Fills the rows from the faults and bodies of a project, in place of the present ones."""
     group = scene.realmodel
     group.faults.clear()
     group.bodies.clear()

@@ -17,12 +17,12 @@ class ThreadJob:
     _job = None
 
     def run(self):
-        """`_work(job)` in this thread; returns what it returns, and raises what it raises."""
+        """Runs `_work(job)` in this thread; returns its result, and raises its errors."""
         self._threads = threads()
         return work.run(self._work)
 
     def start(self, is_short=False):
-        """is_short: it is expected to take less than half a second."""
+        """Starts the work. is_short: it is expected to take less than half a second."""
         self._threads = threads(is_short)
         self._job = work.start(self._work)
 
@@ -38,7 +38,7 @@ class ThreadJob:
         self._job.cancel()
 
     def wait(self):
-        """Waits until it has ended or, where it was cancelled, for a moment."""
+        """Waits until the work has ended or, if it was cancelled, for a moment."""
         self._job.wait()
 
     def hand_over(self, _seconds):

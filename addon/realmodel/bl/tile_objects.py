@@ -64,7 +64,7 @@ def _origin(current, tiled):
 
 
 def _put(current, tiled, origin, found):
-    """found: (name of a tile or "", a PolygonMesh or None for each block)."""
+    """Adds the objects. found: (name of a tile or "", a PolygonMesh or None for each block)."""
     created, palette = [], {}
     try:
         top = bpy.data.collections.new(f"{tiled.name} tiles")

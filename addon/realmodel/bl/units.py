@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units: one unit of a scene is one unit of its model, and quantities as people read them."""
+"""Units: one unit of a scene is one unit of its model; quantities as text."""
 
 import math
 

@@ -134,12 +134,12 @@ def marks():
 
 
 def make_glossy(principled):
-    """Give a Principled shader the shine of most rock, water and glass again."""
+    """Set a Principled shader to the gloss of most rock, water and glass."""
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.5
 
 
 def make_matt(principled):
-    """Take the shine off a Principled shader; its socket was renamed in 4.0."""
+    """Remove the specular reflection of a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
 
@@ -198,7 +198,7 @@ def add_asset_library(name, folder):
 
 
 def leave_sky_to_bounces(world):
-    """Have Cycles not sample the sky as a lamp of its own."""
+    """Turn off Cycles' sampling of the sky as a lamp."""
     if hasattr(world, "cycles"):
         world.cycles.sampling_method = "NONE"
 
@@ -215,7 +215,7 @@ def cycles_available(scene):
 
 
 def denoise(scene):
-    """Have Cycles remove the noise of its picture where this build can (Debian's 3.4 cannot)."""
+    """Turn on Cycles' denoiser where this build has one (Debian's 3.4 has none)."""
     try:
         scene.cycles.denoiser = "OPENIMAGEDENOISE"
     except TypeError:  # the build has no denoiser

@@ -78,13 +78,13 @@ def still_open(remembered):
 
 
 def frame(current, shown):
-    """Turns viewports to the model of a scene, and lets them see that far; faults and bodies may reach far
-    beyond it."""
+    """Frames the model of a scene in viewports, and extends their clipping; faults and bodies may reach far
+    beyond the blocks."""
     frame_items(scene.model_objects(current, "interface") + scene.model_objects(current, "block"), shown)
 
 
 def frame_items(items, shown):
-    """Turns viewports to objects, and lets them see that far."""
+    """Frames objects in viewports, and extends their clipping."""
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
     if not corners:
         return

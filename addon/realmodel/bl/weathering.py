@@ -42,7 +42,7 @@ _INPUTS = {
 
 
 def hardness_of(row):
-    """From 0 to 1: that of a row of the library, else that of its look."""
+    """The hardness from 0 to 1 of a row of the library, else that of its look."""
     if row is None:
         return 0.5
     return row.hardness or LOOKS[looks.of_row(row) or looks.suiting(row)].hardness
@@ -55,8 +55,8 @@ def modifier_of(item):
 
 
 def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
-    """Weathers blocks, or changes how they are weathered. strength, noise: 1 suits the model. grass, scree:
-    radians, the steepest ground that they lie on, 0: none. detail: how often polygons are divided."""
+    """Adds weathering to blocks, or changes its settings. strength, noise: 1 suits the model. grass, scree:
+    radians, the steepest ground that has them, 0: none. detail: the number of subdivisions of polygons."""
     group, unit = _group(), looks.diagonal(scene) / looks.UNITS
     values = {
         "Strength": strength * _UNITS["Strength"] * unit,
@@ -82,7 +82,7 @@ def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
 
 
 def take_off(items):
-    """Leaves blocks as they were built."""
+    """Removes the weathering of blocks."""
     for item in items:
         modifier = modifier_of(item)
         if modifier is not None:
@@ -91,8 +91,8 @@ def take_off(items):
 
 
 def follow(scene):
-    """Weathered blocks get the hardness of their properties, where that has changed; what was set by hand in
-    the modifier stays until then."""
+    """Updates the hardness of weathered blocks where that of their properties has changed; values set by hand
+    in the modifier stay otherwise."""
     for block in scene.realmodel.results:
         item = block.object
         if item is None or item.library is not None or (modifier := modifier_of(item)) is None:

@@ -49,7 +49,7 @@ def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turn(columns: list[np.ndarray], axes: list[np.ndarray], p: int, q: int) -> bool:
-    """Turns two columns so that they are at right angles, and their axes with them; whether they were not."""
+    """Rotates two columns to be orthogonal, and their axes with them. Returns whether they were not."""
     one, other = dot(columns[p], columns[p]), dot(columns[q], columns[q])
     both = dot(columns[p], columns[q])
     if min(one, other) <= _ROUNDING**2 * max(one, other) or abs(both) <= _ROUNDING * np.sqrt(one * other):

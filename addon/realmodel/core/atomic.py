@@ -32,7 +32,7 @@ class Outputs:
     """
 
     def __init__(self, inputs: Iterable[str | Path] = ()):
-        """inputs: files that are read, which no output may replace."""
+        """inputs: files that are read; no output may replace one."""
         self._inputs = {Path(os.path.realpath(file)) for file in inputs}
         self._written: list[tuple[Path, Path]] = []  # (where it waits, its target), files and folders
         self._folders: list[Path] = []

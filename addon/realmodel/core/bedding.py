@@ -38,7 +38,7 @@ class Bedding:
     age: np.ndarray
 
     def part(self, corners: slice, polygons: slice) -> Bedding:
-        """That of some polygons."""
+        """The bedding of some polygons."""
         return Bedding(
             self.height[corners],
             self.thickness[corners],

@@ -214,7 +214,7 @@ def intersect(
 
 
 def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Intersection:
-    """`intersect` as the first part of a job, which takes that share of its progress."""
+    """`intersect` as the first part of a job, which takes this share of its progress."""
     given = [*_checked(a, 0), *_checked(b, 1)]
     native = native_module()
     with work.phase(0.0, share, "intersecting"):

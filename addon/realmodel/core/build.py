@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a project to a model: read, mesh, interpolate, intersect."""
+"""The steps of a build: read, mesh, interpolate, intersect."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BuildWarning:
-    """Something that was left out, changed, or looks like a mistake. items: numbers of triangles, from 0."""
+    """Something that was left out, changed, or is probably a mistake. items: numbers of triangles, from 0."""
 
     text: str
     kind: str = ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contour lines of triangles: straight within each, and joined where triangles meet in space."""
+"""Contour lines of triangles: straight within each, and joined where triangles share an edge in space."""
 
 from __future__ import annotations
 

@@ -235,7 +235,7 @@ def fence(
 
 
 def _joined(panels: list[dict]) -> dict:
-    """Sections one after another."""
+    """Several sections joined to one."""
     vertices = np.cumsum([0, *(len(panel["vertices"]) for panel in panels)])
     corners = np.cumsum([0, *(len(panel["polygon_vertices"]) for panel in panels)])
     polygons = [p["polygon_vertices"] + v for p, v in zip(panels, vertices, strict=False)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points that lie so far from the region that they cannot be meant for it: other coordinates, other units."""
+"""Points so far from the region that they cannot be meant for it: other coordinates, other units."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ def _shortened(text: str) -> str:
 
 
 class RealModelError(Exception):
-    """Base of every error that RealModel raises on purpose."""
+    """Base of all errors that RealModel raises on purpose."""
 
 
 class InputRefused(RealModelError):
@@ -73,7 +73,7 @@ class InputRefused(RealModelError):
 
 
 class HeightsMissing(InputRefused):
-    """Points are there, but no heights where they were looked for; another choice may find them."""
+    """There are points, but no heights in the chosen place; another choice may find them."""
 
 
 class OutputFailed(RealModelError):

@@ -51,7 +51,7 @@ class Estimate:
         return self.memory <= self.available
 
     def table(self) -> str:
-        """For people to read on a terminal."""
+        """The estimate as text for a terminal."""
         rows = [
             ("triangles of all surfaces", f"{self.triangles:,}"),
             (f"memory while building {self.cell_kind}", f"at most {memory_text(self.memory)}"),
@@ -107,14 +107,14 @@ def estimate(
 
 
 def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> int:
-    """Bytes that building rock masses takes at most, which are read and meshed, by their triangles.
-    structures: how many faults and bodies there are."""
+    """An upper bound of the memory, bytes, that building rock masses needs that are read and meshed, by their
+    triangles. structures: the number of faults and bodies."""
     bytes_of_stacks = sum(_MOST_BYTES[cells, _on_one_plan(entry)] * _triangles(entry) for entry in inputs)
     return bytes_of_stacks * _times(structures)
 
 
 def _times(structures: int) -> int:
-    """By how much faults and bodies multiply the work: stacks are built in parts, cut and joined."""
+    """The factor by which faults and bodies increase the work: stacks are built in parts, cut and joined."""
     return _STRUCTURED + structures if structures else 1
 
 
@@ -168,7 +168,7 @@ def memory_text(size: float) -> str:
 
 
 def _time_text(seconds: float) -> str:
-    """To one digit: the estimate has no more."""
+    """To one digit: the estimate is not more precise."""
     for unit, size in (("h", 3600), ("min", 60)):
         if seconds >= 2 * size:
             return f"{float(f'{seconds / size:.0e}'):g} {unit}"

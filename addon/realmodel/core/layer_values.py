@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values at places of a built model that colors show: the thickness of a layer, what vertices of a surface
-have."""
+"""Values of a built model for color scales: the thickness of layers, attributes of the vertices of
+surfaces."""
 
 from __future__ import annotations
 

@@ -131,7 +131,7 @@ def _read_property(table: Table) -> Property:
 
 
 def _loose_text(table: Table, key: str) -> str | None:
-    """Text that may be empty (no statement) or span lines, as descriptions do."""
+    """Text that may be empty (not given) or have several lines, as descriptions."""
     value = table.content[key]
     if isinstance(value, str) and key != "color":
         return value or None

@@ -69,7 +69,7 @@ def _gathered(rows: Rows, pieces: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def in_pieces(array: np.ndarray) -> Iterator[np.ndarray]:
-    """Rows of an array one after another, few at once."""
+    """Rows of an array in pieces."""
     for first in range(0, len(array), ROWS_AT_ONCE):
         yield array[first : first + ROWS_AT_ONCE]
 
@@ -138,7 +138,7 @@ class MappedArrays:
 
 
 class _MappedRows(Rows):
-    """In a file."""
+    """Rows in a file."""
 
     def __init__(self, empty: np.ndarray, file: Path, opened: Callable[[Path], np.ndarray]):
         super().__init__(empty)

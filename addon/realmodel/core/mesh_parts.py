@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of polygons made of parts of two others, and what their vertices, corners, edges and polygons take
-over from these."""
+"""Meshes of polygons made of parts of two others, and the sources of their vertices, corners, edges and
+polygons."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mis-ties: places where two measured lines cross and do not agree on the height of a surface."""
+"""Mis-ties: positions where two survey lines cross and have different heights of a surface."""
 
 from __future__ import annotations
 

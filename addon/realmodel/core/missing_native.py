@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why the compiled part is not there, and what to do about it, in the words of who is asking."""
+"""The message for a missing native module, with advice for the user's situation."""
 
 import re
 import sys

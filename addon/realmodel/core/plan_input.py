@@ -38,7 +38,7 @@ def layer_files(given) -> list[Path]:
 
 
 def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]) -> None:
-    """Refuses a file that is not there, and what is said of it that makes no sense."""
+    """Refuses a file that does not exist, and invalid options of it."""
     layer = map_layer(given)
     if layer is None:
         return

@@ -138,7 +138,7 @@ def mesh_quality_lines(angles: np.ndarray) -> list[str]:
 
 
 def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
-    """Axes on a page of their own, with the lines of text above where words are wanted."""
+    """Axes on a page of their own, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)
     if words:

@@ -344,7 +344,7 @@ def _check_boreholes(rock: Rock, refuse) -> None:
 
 
 def _check_mesh(rock: Rock, refuse) -> None:
-    """Refuses what a planar mesh cannot be made by."""
+    """Refuses settings from which no planar mesh can be made."""
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
         raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
     try:
@@ -377,7 +377,8 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
 
 
 def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
-    """continues: a ready mesh may have a method too, by which it is continued to faults."""
+    """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
+    continued to faults."""
     arrays = surface.vertices is not None or surface.triangles is not None
     shapes = [
         name
@@ -453,8 +454,7 @@ def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
 
 
 def _check_references(rock: Rock) -> None:
-    """Refuses names of surfaces that are not there, a minimum thickness above nothing, and surfaces each of
-    which is to be made from the other."""
+    """Refuses unknown names of surfaces, a minimum thickness above nothing, and circular references."""
     numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
     needs: list[list[tuple[str, int]]] = []
     for number, surface in enumerate(rock.surfaces):

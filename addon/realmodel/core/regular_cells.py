@@ -160,8 +160,8 @@ class PlanGrids:
 
 
 def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
-    """Exact at the centers of cells. size: as of `checked_size`; the height does not count. Raises
-    UsageError."""
+    """The plan grids, exact at the centers of cells. size: as of `checked_size`; the height is ignored.
+    Raises UsageError."""
     size = checked_size(model, size)
     origin, (nx, ny, _) = frame_of(model, size)
     if float(nx) * ny * max(len(model.blocks), 1) > MOST_CELLS:

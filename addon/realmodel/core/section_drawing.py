@@ -117,7 +117,7 @@ def flat_of(section: Section, points: np.ndarray) -> np.ndarray:
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
-    """Faults as thick lines, and the name of each at its lower end, or as low as other names allow."""
+    """Draws faults as thick lines, with their names at the lower end, or as low as other names allow."""
     right = axes.box[0] + axes.box[2]
     taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
     for trace in section.faults:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""TOML tables that are read strictly: every key is known, every value of its kind, or a line is named."""
+"""Strict reading of TOML tables: unknown keys and wrong values are refused with their line."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units of length, and what a file in one is multiplied by in a model of another."""
+"""Units of length, and the factors between them."""
 
 from __future__ import annotations
 

@@ -48,8 +48,8 @@ PLACES_OF_REPORT = 4_000  # in every report.json
 
 @dataclass(frozen=True)
 class Offender:
-    """One thing that is wrong: a sentence, the numbers of the cell, face, vertex and block meant (None: no
-    such), and the place (x, y, z) in model units or None."""
+    """One failure: a sentence, the numbers of the cell, face, vertex and block (None: not applicable), and
+    the position (x, y, z) in model units or None."""
 
     text: str
     cell: int | None = None
@@ -122,7 +122,7 @@ class ValidationReport:
         return sum(test.seconds for test in self.tests)
 
     def _cost(self) -> list[str]:
-        """Lines: what it took to look at all of the model, and at places in it."""
+        """Lines about the time that validation took."""
         sampled = sum(test.seconds for test in self.tests if test.number == 5)
         whole = self.seconds - sampled
         line = f"every cell, face and vertex in {whole:.2f} s"

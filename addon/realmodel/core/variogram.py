@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Semivariograms: how heights differ with distance."""
+"""Semivariograms: the difference of heights as a function of distance."""
 
 from __future__ import annotations
 
@@ -149,8 +149,8 @@ class Variogram:
 
 
 def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
-    """Warnings about a fitted variogram that means little, as sentences. has_trend: heights far from points
-    follow a trend."""
+    """Warnings about a fitted variogram of little significance, as sentences. has_trend: heights far from
+    points follow a trend."""
     warnings = []
     pairs = int(variogram.pairs.sum())
     if pairs < _FEW_PAIRS:

@@ -63,7 +63,7 @@ def _middles(model) -> np.ndarray:
 
 
 def _plan(model) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the corners of all faces, from the first vertex."""
+    """x and y of the corners of all faces, relative to the first vertex."""
     plan = model.vertices[:, :2] - model.vertices[:1, :2]
     x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
     return x, y

@@ -47,7 +47,7 @@ class Work:
 
     @contextmanager
     def phase(self, start: float, end: float, text: str):
-        """Work that takes the progress from `start` to `end`, both between 0 and 1."""
+        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
@@ -236,7 +236,7 @@ class Job:
 
 
 def start(task: Callable[[Work], Result]) -> Job:
-    """Begins task(work) in a thread of its own. What it calls with `run` becomes a part of it."""
+    """Starts task(work) in a new thread. Calls of `run` within the task become parts of it."""
     return Job(task)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points of a surface that lie where the rules do not let the surface be: usually errors in the data."""
+"""Points of a surface on the wrong side of another surface by the rules: usually errors in the data."""
 
 from __future__ import annotations
 

@@ -26,8 +26,8 @@ def _selected(context):
 
 
 def _two_meshes(context):
-    """Also after the operation, when the other object is hidden: Blender asks before it takes the operation
-    back to do it anew with what was changed in its panel."""
+    """Valid also after the operation, when the other object is hidden: Blender polls before it repeats the
+    operation with settings of the redo panel."""
     done = context.window_manager.operators
     if len(done) and done[-1].bl_idname == REALMODEL_OT_boolean.__name__:
         return None

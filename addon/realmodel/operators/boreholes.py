@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boreholes give points to all surfaces of a rock mass at once."""
+"""Import of boreholes: points for all surfaces of a rock mass at once."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building: at once for scripts; with progress and Esc from the panel."""
+"""The build operator: blocking in scripts; with progress and Esc from the panel."""
 
 import bpy
 
@@ -88,7 +88,7 @@ def a_message(context):
 
 
 class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
-    """Take the message out of the panel; the report of the model keeps its warnings"""
+    """Remove the message from the panel; the report of the model keeps its warnings"""
 
     bl_idname = "realmodel.dismiss"
     bl_label = "Dismiss Message"

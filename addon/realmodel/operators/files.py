@@ -276,7 +276,7 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
-    """Write what was built: a full report, or the table of blocks"""
+    """Write a report of the model, or the table of blocks"""
 
     bl_idname = "realmodel.report"
     bl_label = "Write Report"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces from files, of which tables are looked at first, and from objects."""
+"""Import of surfaces from files, with a preview of tables, and from objects."""
 
 import contextlib
 import os
@@ -277,10 +277,8 @@ def _draw_preview(box, preview):
 
 
 def arrived(context, rock, places, read=None):
-    """New data of a rock mass: the origin where there is none, an edge length, and all is shown and framed.
-
-    places: arrays (N, 3) in model coordinates. read: as for data_objects.update.
-    """
+    """Updates the scene for new data of a rock mass: the origin if there is none, an edge length, the display
+    and the view. places: arrays (N, 3) in model coordinates. read: as for data_objects.update."""
     scene = context.scene
     if places:
         points = np.concatenate(places)

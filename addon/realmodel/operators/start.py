@@ -63,7 +63,7 @@ class Replacing(Reporting):
     needs = (not_building,)
 
     def ask(self, context):
-        """Carries on, or opens the question first."""
+        """Continues, or shows the question first."""
         group = context.scene.realmodel
         if not (settings.has_rows(context.scene) or len(group.results)):
             return self.execute(context)

@@ -289,7 +289,7 @@ class REALMODEL_OT_fault_body_edit(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_body_property(Reporting, bpy.types.Operator):
-    """Choose from the library what the active body is made of"""
+    """Choose the property of the active body from the library"""
 
     bl_idname = "realmodel.body_property"
     bl_label = "Property of the Body"

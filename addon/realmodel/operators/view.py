@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looking at the model: standard views, capture, coordinates, hiding blocks by their property."""
+"""Operators of the view: standard views, capture, coordinates, hiding blocks by their property."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
@@ -53,7 +53,7 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
-    """Go back to how the viewports looked at the model before"""
+    """Go back to the previous view of the viewports"""
 
     bl_idname = "realmodel.view_previous"
     bl_label = "Previous View"
@@ -65,7 +65,7 @@ class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
-    """Go forth again to how the viewports looked at the model before Previous View"""
+    """Go forth to the next view of the viewports, after Previous View"""
 
     bl_idname = "realmodel.view_next"
     bl_label = "Next View"
@@ -77,7 +77,7 @@ class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
-    """Bring the whole model into the frame, without turning the view"""
+    """Zoom to the whole model, without rotating the view"""
 
     bl_idname = "realmodel.view_all"
     bl_label = "Frame Model"
@@ -142,7 +142,7 @@ class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
 
 
 def edit_interface(context, item):
-    """Enters Edit Mode of an interface, with the blocks in view."""
+    """Enters Edit Mode on an interface, with the blocks visible."""
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     context.scene.realmodel.display = "BLOCKS"

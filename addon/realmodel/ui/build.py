@@ -74,7 +74,7 @@ def _draw_problem(box, activity):
 
 
 def _draw_warnings(box, group, activity):
-    """Folded: a line for each of the first ones. Unfolded: all of them in full."""
+    """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
     given = notices.read(group.warnings)
     row = box.row(align=True)
     count = "1 Warning" if len(given) == 1 else f"{len(given)} Warnings"

@@ -21,7 +21,7 @@ class TabPanel:
 
 
 def ui_scale():
-    """Pixels by Blender's units of the interface, which has none before its first window is drawn."""
+    """Pixels per unit of Blender's interface, which has none before its first window is drawn."""
     return bpy.context.preferences.system.ui_scale or 1.0
 
 

@@ -57,13 +57,13 @@ def register():
 
 
 def unregister():
-    """Called when the add-on is disabled: no handler of drawing may stay."""
+    """Called when the add-on is disabled; removes all draw handlers."""
     drawing.handler.unregister()
     stop()
 
 
 def stop():
-    """Ends what is under way: another file was opened, or the add-on is disabled."""
+    """Stops all work: another file was opened, or the add-on is disabled."""
     cuts.stop()
     preparing.stop()
     replacing.stop()
@@ -76,7 +76,7 @@ def forget_meshes():
 
 
 def show_all(scene):
-    """Shows everything as the settings say."""
+    """Updates the whole display from the settings."""
     _show(scene, **{key: getattr(scene.realmodel, key) for key in _ANIMATED})
 
 
@@ -94,12 +94,12 @@ def opened():
 
 
 def mode_changed(scene):
-    """Another display mode, another surface or property hidden."""
+    """The display mode was changed, or a surface or property hidden or shown."""
     _show(scene, display=scene.realmodel.display)
 
 
 def stage_changed(scene):
-    """Another stage."""
+    """The stage was changed."""
     _show(scene, stage=scene.realmodel.stage)
 
 
@@ -137,7 +137,7 @@ def boreholes_changed(scene):
 
 
 def ensemble_changed(scene):
-    """Another coloring of the ensemble's section, or another realization."""
+    """The coloring of the ensemble's section, or its realization, was changed."""
     try:
         ensembles.recolor(scene)
     except RealModelError as error:
@@ -145,7 +145,7 @@ def ensemble_changed(scene):
 
 
 def colors_changed(scene):
-    """Another rule of coloring, or another color in the library."""
+    """The coloring, or a color in the library, was changed."""
     _show(scene, color_by=scene.realmodel.color_by)
 
 
@@ -206,10 +206,8 @@ def cleared(scene):
 
 
 def frame_changed(scene, depsgraph=None):
-    """Another frame of an animation: keyframed settings have changed without their callbacks.
-
-    depsgraph: the evaluated one; while an animation is rendered only that has their values.
-    """
+    """The frame of an animation was changed: keyframed settings have changed without their callbacks.
+    depsgraph: the evaluated one; while an animation is rendered only that one has their values."""
     if not len(scene.realmodel.results):
         return
     evaluated = scene if depsgraph is None else scene.evaluated_get(depsgraph)
@@ -226,7 +224,7 @@ def frame_changed(scene, depsgraph=None):
 
 
 def render_begins(scene):
-    """From now on nothing may be freed that a renderer may hold."""
+    """A render begins: from now on no data may be freed that the renderer may use."""
     replacing.tidy()
     replacing.begin_render()
     if len(scene.realmodel.results) and scene.library is None:
@@ -241,14 +239,14 @@ def render_ends(scene):
 
 
 def undoing():
-    """Blender is about to undo or redo. It keeps objects that did not change between two of its steps, and
-    does not know what a live build has changed since: they must not point to materials that it takes away."""
+    """Called before undo and redo. Blender keeps objects that are equal in two undo steps, without the
+    changes that a live build made in between: they must not point to materials that undo removes."""
     for scene in bpy.data.scenes:
         colors.take_off(scene)
 
 
 def undone():
-    """Blender has undone or redone something: what was read from meshes may be of others now."""
+    """Called after undo and redo: cached data of meshes may be outdated."""
     forget_meshes()
     for scene in bpy.data.scenes:
         if len(scene.realmodel.results):
@@ -258,7 +256,7 @@ def undone():
 
 
 def changed(scene, depsgraph):
-    """Blender has evaluated changed objects."""
+    """Called when Blender has evaluated changed objects."""
     plane = scene.realmodel.view.plane
     for update in depsgraph.updates:
         item = update.id.original

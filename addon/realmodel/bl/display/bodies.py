@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that are only for viewing: cut halves of blocks, single cells, points and lines of renders. They
-stand beside the model, in the collection "<project> view", each a child of the block that it stands for, and
-go where that goes."""
+"""Objects for display only: cut halves of blocks, single cells, points and lines of renders. They are in the
+collection "<project> view" beside the model, each a child of the block that it stands for, and move with
+it."""
 
 import bpy
 import numpy as np

@@ -55,7 +55,7 @@ class Recipe:
         return self.shapes
 
     def keep(self):
-        """Keeps what was made until other cells are asked for."""
+        """Caches the result until other cells are requested."""
         _kept[self.made_of] = self.shapes
         if self._model is not None:
             self._model.keep()

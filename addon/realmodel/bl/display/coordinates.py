@@ -174,7 +174,7 @@ def forget(names=None):
 
 
 def remember(scene, place):
-    """Keeps a place as the one that was asked for last."""
+    """Stores the last position."""
     scene.realmodel.view.place = "" if place is None else json.dumps(asdict(place))
 
 

@@ -118,7 +118,7 @@ def cut_now(current, stage=None, matrix=None):
 
 
 def follow(current, depsgraph):
-    """Another frame: whether the plane is elsewhere than where the cut was made; then it is made anew."""
+    """The frame was changed: updates the cut if the plane has moved."""
     if not is_on(current):
         return False
     plane = plane_of(current)
@@ -153,7 +153,7 @@ def _put(current, shapes, state):
 
 
 def take_off(current):
-    """Forgets the cut: the blocks are whole again."""
+    """Removes the cut: the blocks are shown whole again."""
     bodies.remove(current, bodies.CUT)
     _halves.pop(current.realmodel.view.cut, None)
     current.realmodel.view.cut = ""
@@ -183,7 +183,7 @@ def _begun(current, state):
 
 
 def _take(current, made):
-    """Shows the halves that a job has made, and keeps them."""
+    """Shows the halves that a job has made, and caches them."""
     state, model, shapes, recipe = made
     recipe.keep()
     _halves[state] = model
@@ -230,13 +230,13 @@ def is_working(current):
 
 
 def show_with(show):
-    """show(scene) is called when a cut was made that nobody waited for."""
+    """Sets show(scene), which is called when a cut was made in the background."""
     global _show
     _show = show
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running jobs."""
     _work.stop()
 
 

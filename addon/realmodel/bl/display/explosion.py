@@ -39,7 +39,7 @@ def apply(scene, amount, direction):
 
 
 def move(item, shift):
-    """Moves an object by its delta location, in place of where this has moved it before."""
+    """Moves an object by its delta location, in place of an earlier move."""
     if item.library is not None:
         return
     before = np.array(item.get(KEY, (0.0, 0.0, 0.0)))
@@ -56,7 +56,7 @@ def move(item, shift):
 
 
 def set_bounds(scene, low, high):
-    """Keeps how large the whole model is, so that a stage of it comes apart as far."""
+    """Stores the size of the whole model: stages of it move apart by the same distances."""
     scene.realmodel.view.bounds_low, scene.realmodel.view.bounds_high = low, high
 
 

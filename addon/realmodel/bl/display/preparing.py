@@ -99,13 +99,13 @@ def is_working(scene):
 
 
 def show_with(show_all):
-    """show_all(scene) is called when what was lacking has been made."""
+    """Sets show_all(scene), which is called when the missing shapes have been made."""
     global _show_all
     _show_all = show_all
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running jobs."""
     _work.stop()
     for slices in _slices.values():
         slices.clear()

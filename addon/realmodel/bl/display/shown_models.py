@@ -65,7 +65,7 @@ class Recipe:
         return found
 
     def keep(self, shapes=None):
-        """Keeps what was made, for the next time."""
+        """Caches the result."""
         if not self.stamp:
             return
         if shapes is not None:
@@ -112,7 +112,7 @@ def has_shapes(scene, stage):
 
 
 def remember_stage(scene, stage, model, shapes):
-    """Keeps a stage that was made together with the model."""
+    """Caches a stage that was made together with the model."""
     stamp = scene.realmodel.built_stamp
     _stages[stamp, stage, model.cell_kind] = model
     _shapes[stamp, stage] = shapes

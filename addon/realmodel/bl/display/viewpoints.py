@@ -51,7 +51,7 @@ class _View:
 
 
 def turn(context, direction):
-    """Looks along an axis, without perspective, at the whole model. direction: a key of DIRECTIONS."""
+    """Looks at the whole model along an axis, in orthographic view. direction: a key of DIRECTIONS."""
     found = viewports.spaces(context)
     _remember(found[0])
     for space in found:
@@ -152,7 +152,7 @@ def width_at_distance(space):
 
 
 def _aspect(space):
-    """Width by height of the region that a viewport is drawn in."""
+    """Width divided by height of the region that a viewport is drawn in."""
     for screen in bpy.data.screens:
         for area in screen.areas:
             if area.type == "VIEW_3D" and area.spaces.active == space:

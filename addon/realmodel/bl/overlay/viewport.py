@@ -60,7 +60,7 @@ def draw_items(drawing, scale):
 
 
 def _prepared(drawing, scale):
-    """Texts, and batches of what lies between them."""
+    """Texts, and batches of the shapes between them."""
     for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
         if is_text:
             yield from items

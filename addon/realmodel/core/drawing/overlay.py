@@ -106,7 +106,7 @@ def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) ->
 
 
 def legend_extent(key: ColorKey) -> tuple[float, float]:
-    """Width and height of a legend's paper in points."""
+    """Width and height of the background of a legend, in points."""
     if key.colors is None:
         width, height = legend_size(key.title, key.entries, SIZE)
     else:
@@ -120,8 +120,8 @@ def legend_extent(key: ColorKey) -> tuple[float, float]:
 
 
 def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
-    """In the lower left corner; returns where it ends at the right. Entries for which there is no room are
-    counted in the last line."""
+    """Draws the legend in the lower left corner; returns its right end. Entries without room are counted in
+    the last line."""
     most = max(int((drawing.height - 2 * _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
     if len(key.entries) > most:
         more = (f"and {len(key.entries) - most + 1} more", _PAPER)
@@ -138,7 +138,8 @@ def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
 
 
 def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: float) -> None:
-    """At the bottom. In perspective it holds for the middle of the model, and says so."""
+    """Draws the scale bar at the bottom. In perspective it is valid for the center of the model, and labeled
+    so."""
     middle = shown.world((shown.low + shown.high) / 2)[0]
     step = 1e-3 * float(np.linalg.norm(shown.high - shown.low)) or 1.0
     here, there = eye.at([middle, middle + step * eye.right])
@@ -162,7 +163,7 @@ def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: flo
 
 
 def _north_arrow(drawing: Drawing, eye: Eye, edge: float) -> None:
-    """In the lower right corner, lying on the ground: it turns with the view."""
+    """Draws the north arrow in the lower right corner, lying on the ground: it turns with the view."""
     right = np.array(eye.right[:2]) / (np.hypot(*eye.right[:2]) or 1.0)
     ahead = np.array([-right[1], right[0]])
     slope = float(np.dot(eye.up[:2], ahead))
@@ -247,7 +248,7 @@ def _ticks(drawing: Drawing, eye: Eye, shown: Shown, axis: int, edge, center: np
 
 
 def _label(drawing: Drawing, at: np.ndarray, text: str, anchor: str) -> None:
-    """Text on a piece of paper, to be read on any ground."""
+    """Text on a background, readable over any color."""
     x, y = at.tolist()
     width = text_width(text, SIZE)
     left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width

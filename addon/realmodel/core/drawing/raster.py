@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings as pixels, with smooth edges."""
+"""Rasterization of drawings, with antialiasing."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _normals(steps: np.ndarray) -> np.ndarray:
 
 
 def _miters(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """From the corners of a line to its edge, for normals before and after them."""
+    """Offsets from the corners of a line to its edge, for normals before and after them."""
     return (before + after) / np.maximum(1 + (before * after).sum(axis=1), _SHARPEST)[:, None]
 
 

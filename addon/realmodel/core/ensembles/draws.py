@@ -132,7 +132,7 @@ class Draw:
 
 
 def _bounded(z, settings, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
-    """Heights that keep to the surfaces that the options name, as the interpolated ones do."""
+    """Heights limited by the surfaces that the options name, as the interpolated ones are."""
     task = Task(work, np.empty((0, 3)), nodes, settings, threads, triangles, surfaces=surfaces or {})
     for option, limit in (("above", np.fmax), ("below", np.fmin)):
         if settings.get(option) is not None:

@@ -61,7 +61,7 @@ class Realizer:
             raise error.within(f"realization {number}") from error
 
     def prepare(self, threads: int = 0) -> None:
-        """Finds what all realizations share, so that workers that are given this do not find it again."""
+        """Computes the data that all realizations share, so that workers do not compute them again."""
         run(lambda work: self._interpolated(work, 0, threads))
 
     def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:

@@ -122,7 +122,7 @@ def distinct_names(given: Iterable[str]) -> list[str]:
 
 
 def plain_words(names: Sequence[str]) -> list[str]:
-    """Names for formats that know no blanks: other signs than letters, digits, - and . become _."""
+    """Names for formats without blanks: characters other than letters, digits, - and . become _."""
     words = ["".join(c if c.isalnum() or c in "-._" else "_" for c in name) for name in names]
     found: list[str] = []
     for word in words:

@@ -147,7 +147,7 @@ def _compartments(model) -> list[dict]:
 
 
 def _faults(model) -> list[dict]:
-    """Throw and heave along each fault: their means, and where they are largest."""
+    """Throw and heave along each fault: their means, and the largest values."""
     found = displacements(model)
     return [
         {

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points that are the nodes of a regular grid, turned in plan or not, and bilinear heights between them.
+"""Regular grids: points that are the nodes of a grid, rotated in plan or not, and bilinear heights between
+them.
 
-Calculated without NumPy's linear algebra, which gives other last digits on other processors.
+Calculated without NumPy's linear algebra, whose last digits differ between processors.
 """
 
 from __future__ import annotations
@@ -234,7 +235,8 @@ def _axes(points: np.ndarray) -> np.ndarray:
 
 
 def _steps(points: np.ndarray, numbers: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray] | None]:
-    """From some points to the nearest one, and to the nearest one across that direction, if there is one."""
+    """The steps from some points to the nearest one, and to the nearest one across that direction, if there
+    is one."""
     start = points[0, :2]
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     size = high - low
@@ -270,7 +272,8 @@ def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, si
 
 
 def _step(plan: np.ndarray, place: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray] | None, float]:
-    """From a place to the nearest of others, and to the nearest across, if there is one; how far that is."""
+    """The steps from a position to the nearest of others, and to the nearest across, if there is one; and the
+    distance."""
     d = plan - place
     squared = np.square(d).sum(axis=1)
     squared[squared == 0] = np.inf

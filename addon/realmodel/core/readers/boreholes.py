@@ -144,7 +144,7 @@ class _Holes:
         return path.offset(depth)
 
     def refuse_deviated(self, row: Row) -> None:
-        """Refuses an elevation where it does not say at which place the hole was."""
+        """Refuses an elevation that does not determine the position in the hole."""
         path = self._paths.get(row.text("hole"))
         if self._collars is not None and path is not None and not path.is_vertical:
             what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"

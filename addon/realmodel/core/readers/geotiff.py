@@ -83,7 +83,7 @@ def read_geotiff(
 
 @contextmanager
 def _no_logging():
-    """tifffile writes to the terminal what it thinks of tags; what matters here raises."""
+    """Suppresses the log messages of tifffile about tags; errors are raised."""
     logger = logging.getLogger("tifffile")
     before, logger.disabled = logger.disabled, True
     try:
@@ -236,7 +236,7 @@ def _no_value(file: Path, tags: dict) -> list[float]:
 
 
 def _scaled(z: np.ndarray, metadata) -> np.ndarray:
-    """Heights that GDAL stored as whole numbers with a scale and an offset beside them."""
+    """Heights that GDAL stored as integers with a scale and an offset."""
     parts = {}
     for role in ("scale", "offset"):
         given = re.search(rf'<Item [^>]*role="{role}"[^>]*>([^<]+)</Item>', str(metadata or ""))

@@ -88,14 +88,14 @@ def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str
 
 
 def require_polygons(shapes: Shapes, file: Path | None) -> None:
-    """Refuses what bounds no region."""
+    """Refuses shapes that bound no region."""
     if not shapes.polygons:
         advice = "a region needs polygons: Polygon or MultiPolygon"
         raise InputRefused("there is no polygon in it", file=file, advice=advice)
 
 
 def map_companions(file: Path) -> list[Path]:
-    """Files beside one of outlines that are read with it."""
+    """Other files that are read with a file of outlines."""
     if file.suffix.lower() == ".shp":
         return beside(file)
     return [changes] if file.suffix.lower() == ".gpkg" and (changes := open_changes(file)) else []

@@ -112,7 +112,7 @@ def read_point_file(
 
 
 class _InModel:
-    """Gathers points of a file in the model's unit. heights: those of the file, looked at on the way."""
+    """Gathers points of a file in the model's unit. heights: of the file, examined on the way."""
 
     def __init__(self, given: PointFile, model_unit: str, gather: Gather):
         self._given, self._unit, self._gather = given, model_unit, gather
@@ -202,7 +202,7 @@ def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
 
 
 def companions(file: Path) -> list[Path]:
-    """Files beside a file of points that are read with it."""
+    """Other files that are read with a file of points."""
     if file.suffix.lower() == ".shp":
         return map_companions(file)
     beside = world_file(file) if file.suffix.lower() in (".tif", ".tiff") else None

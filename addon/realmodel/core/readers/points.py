@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scattered points from tables of text: CSV and its kin, with or without a header, and plain .xyz."""
+"""Scattered points from tables of text: CSV and similar formats, with or without a header, and plain .xyz."""
 
 from __future__ import annotations
 
@@ -316,7 +316,7 @@ def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
 
 
 def _nothing_matches(table: Table, where: Mapping) -> InputRefused:
-    """No row holds what `where` asks for: said with what there is."""
+    """The error that no row matches `where`; it lists the values that there are."""
     conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
     there = []
     for name in where:

@@ -61,7 +61,7 @@ class Shapes:
             self.polygons.append(Polygon(item, open_rings, has_roles))
 
     def scaled(self, scale: float) -> Shapes:
-        """All of it in another unit."""
+        """The shapes in another unit."""
         if scale == 1.0:
             return self
         return Shapes(
@@ -71,7 +71,7 @@ class Shapes:
         )
 
     def without_area(self, file: Path) -> list[str]:
-        """Sentences about the lines and points, which bound no region."""
+        """Warnings about lines and points, which bound no region."""
         said = [(item, "LineString") for item, _ in self.lines] + [(item, "Point") for item, _ in self.points]
         items = dict.fromkeys(said)
         return [f"{file}: {item or 'it'} is a {kind}, which bounds no area: left out" for item, kind in items]
@@ -79,13 +79,13 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Heights:
-    """That heights are wanted: those of the positions, or one for each feature, by its attribute."""
+    """The heights to read: those of the positions, or one for each feature, by its attribute."""
 
     attribute: str | None = None
 
 
 class NothingSelected(InputRefused):
-    """No feature is as was asked. names: of the attributes; values: of the first one that was asked for."""
+    """No feature matches. names: of the attributes; values: of the first requested one."""
 
     names: Sequence[str] = ()
     values: Sequence[str] = ()
@@ -137,7 +137,7 @@ class Selection:
         return matches
 
     def require_some(self) -> None:
-        """Refuses what took nothing, saying what there is."""
+        """Refuses a selection without features; the error lists the values that there are."""
         if self.taken or not self.features:
             return
         for name, values in self.seen.items():

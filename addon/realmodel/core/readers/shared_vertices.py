@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that come as the places of their corners: those at one place become one vertex, piece by piece."""
+"""Faces given by the coordinates of their corners: equal corners become one vertex, piece by piece."""
 
 from __future__ import annotations
 

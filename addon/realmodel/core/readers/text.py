@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines of numbers in text files, read in pieces so that a caller can show progress and stop."""
+"""Text files with lines of numbers, read in pieces so that a caller can show progress and cancel."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Step = Callable[[float], None]
 
 
 def no_step(_fraction: float) -> None:
-    """For callers that want no progress."""
+    """For callers without progress."""
 
 
 class FileBytes:
@@ -138,7 +138,7 @@ def _with_plain_ends(text: str) -> str:
 
 
 def encoding_of(content: Content) -> str:
-    """utf-8, or latin-1 where it cannot be that."""
+    """utf-8, or latin-1 where the bytes are not valid UTF-8."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         for at in range(0, len(content), BYTES_AT_ONCE):
@@ -173,7 +173,7 @@ def line_of_word(raw: bytes, number: int) -> int:
 
 
 def require_text(file: Path, raw: bytes) -> None:
-    """Refuses what cannot be text."""
+    """Refuses binary content."""
     if b"\0" in raw[:4096]:
         raise InputRefused("this is a binary file, not text", file=file)
 

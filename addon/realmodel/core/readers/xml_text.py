@@ -24,7 +24,7 @@ def parse_xml(file: Path, raw: bytes) -> ElementTree.Element:
 
 
 def _damaged(file: Path, error: Exception) -> InputRefused:
-    """error: of the parser, or of an unknown encoding."""
+    """The error of damaged XML. error: of the parser, or of an unknown encoding."""
     line = error.position[0] if isinstance(error, ElementTree.ParseError) else None
     return InputRefused(f"damaged XML: {error}", file=file, line=line)
 

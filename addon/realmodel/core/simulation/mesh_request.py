@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for simulation as the command line and the panel ask for them, and what is printed of them."""
+"""Requests for meshes for simulation, of the command line and the panel, and their printed lines."""
 
 from __future__ import annotations
 

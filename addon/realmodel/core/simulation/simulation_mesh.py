@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that solvers like, made from a model: Model.simulation_mesh."""
+"""Meshes for simulation, made from a model: Model.simulation_mesh."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def layer_numbers(model, layers, layer_thickness) -> list[int]:
 
 
 def _without_columns(model) -> str | None:
-    """Why the model has no columns, or None."""
+    """The reason why the model has no columns, or None."""
     if model.is_cut:
         return "a cut model"
     if model.structures is None:

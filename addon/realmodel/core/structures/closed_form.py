@@ -52,7 +52,7 @@ class ClosedForm:
     grids: dict[tuple[int, int], PlanGrid] = field(default_factory=dict, compare=False)
 
     def _grid(self, shape: Triangulation) -> PlanGrid:
-        """That of a shape of this object, made once."""
+        """The grid of a shape, cached."""
         vertices, triangles = shape
         key = id(vertices), id(triangles)
         if key not in self.grids:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Throw and heave: how far the two sides of surfaces have moved along each fault."""
+"""Throw and heave: the displacement of surfaces along each fault."""
 
 from __future__ import annotations
 

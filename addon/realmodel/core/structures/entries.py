@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults and bodies as a project gives them."""
+"""The entries of faults and bodies in a project."""
 
 from __future__ import annotations
 

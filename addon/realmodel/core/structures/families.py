@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compartments that share the data of a surface: only faults that die out, or that do not displace it, part
-them."""
+"""Families: compartments that share the data of a surface, separated only by faults that die out or do not
+displace it."""
 
 from __future__ import annotations
 

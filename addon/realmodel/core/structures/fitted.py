@@ -67,7 +67,8 @@ def _without_repeats(stick: np.ndarray) -> np.ndarray:
 
 
 def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
-    """Along the fault: of a few orders that with the shortest way over the middles of the sticks."""
+    """The sticks in order along the fault: of a few orders the one with the shortest path through their
+    centers."""
     middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
     _, axes = principal_axes(middles)
     along = dot(middles, axes[0])
@@ -107,8 +108,8 @@ def _unit(direction: np.ndarray) -> np.ndarray:
 
 
 def _longer(sticks: list[np.ndarray], by: float) -> list[np.ndarray]:
-    """Each goes on at both ends in the mean direction of its own end and its neighbors', so that sticks that
-    are not quite parallel do not cross."""
+    """Extends each stick at both ends in the mean direction of its own end and its neighbors', so that sticks
+    that are not quite parallel do not cross."""
     ends = np.array([[_unit(stick[0] - stick[1]), _unit(stick[-1] - stick[-2])] for stick in sticks])
     found = []
     for number, stick in enumerate(sticks):

@@ -203,7 +203,7 @@ class InterpolatedSurface:
         return sheet
 
     def _with_own_points(self, family: Family, surface):
-        """Another surface with its points in the family's compartments alone."""
+        """Another surface with only its points in the family's compartments."""
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)

@@ -223,7 +223,7 @@ def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
 
 
 def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
-    """Some triangles of a sheet, with their vertices alone."""
+    """Some triangles of a sheet, with only their own vertices."""
     vertices, triangles = sheet
     if kept.all():
         return sheet

@@ -90,8 +90,8 @@ class Structures:
         )
 
     def _kept_sides(self, number: int) -> dict[str, int]:
-        """By the names of the faults at which a fault ends: the side on which it remains. With these it is in
-        those parts alone that have it."""
+        """For each fault at which a fault ends, by name: the side on which it remains. So it is only in parts
+        on these sides."""
         names = list(self.faults[number].ends_at)
         all_names = self.names
         others = self.sides[:, [all_names.index(name) for name in names]]

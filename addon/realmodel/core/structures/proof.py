@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random points of a finished model with structures, compared with the closed form."""
+"""Compares random points of a finished model with structures with the closed form."""
 
 from __future__ import annotations
 

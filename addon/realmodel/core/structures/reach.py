@@ -179,7 +179,7 @@ def _part(axis: int, part: slice) -> tuple:
 
 
 def _wider(cells: np.ndarray) -> np.ndarray:
-    """Cells with all that touch them, over corners too."""
+    """Cells and all cells that touch them, also at corners."""
     for axis in range(cells.ndim):
         one, other = (_part(axis, part)[: cells.ndim] for part in (slice(None, -1), slice(1, None)))
         wider = cells.copy()
@@ -190,7 +190,8 @@ def _wider(cells: np.ndarray) -> np.ndarray:
 
 
 def _hanging_together(cells: np.ndarray) -> np.ndarray:
-    """For each of some cells the least number of a cell that can be reached over faces; -1 for the others."""
+    """For each of some cells the least number of a cell that is connected to it over faces; -1 for the
+    others."""
     nothing = cells.size
     number = np.where(cells, np.arange(cells.size).reshape(cells.shape), nothing)
     while True:

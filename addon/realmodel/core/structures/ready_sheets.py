@@ -38,7 +38,7 @@ class ReadyMesh:
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
     def _divide(self, fault: int, shape: FaultShape) -> None:
-        """On which sides of a fault each triangle has a part."""
+        """The sides of a fault on which each triangle has a part."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
         side = np.where(on, 0, side)

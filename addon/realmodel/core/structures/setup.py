@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From rock masses that are read and meshed, and faults and bodies with arrays, to sheets in compartments."""
+"""Makes the sheets in compartments, from rock masses that are read and meshed, and faults and bodies with
+arrays."""
 
 from __future__ import annotations
 

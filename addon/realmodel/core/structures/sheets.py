@@ -50,7 +50,7 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
 
 
 def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
-    """_make, whose refusals name the surface."""
+    """_make; its errors name the surface."""
     rock = entry.rock
     try:
         return _make(entry, number, kind(work, entry, number, threads))
@@ -128,7 +128,7 @@ def _neighbor(key, made, counts):
 
 
 def _taken_over(surface, family: Family, sheets: dict) -> dict:
-    """Sheets of another family by the sides of this one: the faults that die out may be others."""
+    """Sheets of another family by the sides of this one, whose faults that die out may differ."""
     first = next(iter(sheets.values()))
     taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
     return _drawn_together(surface, family, taken)

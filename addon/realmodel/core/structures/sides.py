@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""On which sides of the faults of a rock mass points lie, and which faults are there."""
+"""The sides of the faults of a rock mass on which points lie, and the faults that exist there."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangles in space: which edges are open, which lie on one another, where they are."""
+"""Triangles in space: open edges, orientation, crossings."""
 
 from __future__ import annotations
 
