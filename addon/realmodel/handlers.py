@@ -29,7 +29,7 @@ def _patient(handler):
             return handler(scene, *arguments)
         until, interval = time.monotonic() + _PATIENCE, sys.getswitchinterval()
         while True:
-            sys.setswitchinterval(_PATIENCE)  # a panel that is begun now would get in between
+            sys.setswitchinterval(_PATIENCE)  # no panel may start to draw in between
             try:
                 scene.realmodel.view.message = scene.realmodel.view.message
                 return handler(scene, *arguments)

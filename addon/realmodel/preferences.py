@@ -35,7 +35,7 @@ class RealModelPreferences(bpy.types.AddonPreferences):
     )
     memory_limit: FloatProperty(
         name="Memory Limit",
-        description="Gigabytes that a build may use; one that needs more is refused before it begins. "
+        description="Memory that a build may use, in gigabytes; a build that needs more is refused. "
         "0: the memory that is free",
         min=0.0,
         soft_max=256.0,

@@ -27,7 +27,7 @@ class BuildJob(ThreadJob):
         self.composed = project_settings.compose(current, depsgraph, whole)
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
-        self._stage = group.stage if is_stage else None  # what is shown of the model afterwards
+        self._stage = group.stage if is_stage else None  # the stage that is shown afterwards
         self._slices = None
 
     def run(self, progress=None):

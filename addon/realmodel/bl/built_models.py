@@ -11,7 +11,7 @@ import numpy as np
 
 from . import caches
 
-MOST_BYTES = 1 << 30  # that kept models may take; the newest stays, however large
+MOST_BYTES = 1 << 30  # limit of the cache of models; the newest stays, however large
 _models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest first
 
 

@@ -96,7 +96,7 @@ def prepare(model, composed, stage=None, threads=0):
         else:
             text = project_settings.packed(project_settings.entry_at(model.project, place))
         prepared.stored[place] = (text, stamp)
-    for place in composed.edited:  # the digits that Blender's 32 bits do not have
+    for place in composed.edited:  # the digits lost in Blender's 32 bits
         entry = project_settings.entry_at(model.project, place)
         prepared.stored[place] = (project_settings.packed(entry), "")
     prepared.figures = surface_figures.of_model(model)

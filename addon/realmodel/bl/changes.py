@@ -31,9 +31,9 @@ def _unless_filling(consequence):
     return changed
 
 
-setting = _unless_filling(live.touch)  # that the model depends on
+setting = _unless_filling(live.touch)  # of settings that the model depends on
 coloring = _unless_filling(display.colors_changed)
-view = _unless_filling(display.mode_changed)  # what is drawn in the display modes
+view = _unless_filling(display.mode_changed)  # of settings of the display
 boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
 ensemble = _unless_filling(display.ensemble_changed)
@@ -88,7 +88,7 @@ def region(rock, context):
     region_size.ask()
     data_objects.update(rock.id_data)
     if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
-        viewports.frame_items(shown, viewports.spaces(context))  # the first that is to be seen
+        viewports.frame_items(shown, viewports.spaces(context))  # the first visible data
     setting(rock, context)
 
 

@@ -7,7 +7,7 @@ from ..core.readers import contents
 from . import caches, project_settings, reading_text, settings, stored_arrays
 
 _MOST_VALUES = 50
-_found = caches.new(most=64)  # by the stamp of a file and what was asked: the names found lately
+_found = caches.new(most=64)  # by the stamp of a file and the kind of names: recently found names
 
 
 def surfaces(row, _context, _text):

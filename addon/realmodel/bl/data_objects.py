@@ -17,7 +17,7 @@ from . import borehole_picks, display, project_settings, reading_text, settings,
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
-KEY = settings.DATA  # on an object: what it was made from; on the collection: that it is the one
+KEY = settings.DATA  # on an object: the stamp of its source; on the collection: a mark
 _ORIGIN = "realmodel_data_origin"  # on an object: the origin that its mesh was made for
 
 

@@ -67,14 +67,14 @@ class DebouncedJob:
         for name in list(self._jobs):
             job, changed_at = self._jobs[name]
             if name in self._changed_at:
-                job.cancel()  # it is made from what is no longer so
+                job.cancel()  # its input is outdated
             if job.done and (name in self._changed_at or self._hand_over(name, job)):
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):
             if name not in self._jobs and time.perf_counter() - changed_at >= self._pause():
                 del self._changed_at[name]
-                threads()  # read here for the job, whose thread may not ask Blender
+                threads()  # read here for the job, as its thread must not access Blender
                 job = self._begin(name, changed_at)
                 if job is not None:
                     self._jobs[name] = (job, changed_at)

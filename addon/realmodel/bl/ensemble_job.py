@@ -12,7 +12,7 @@ from . import project_settings, settings, shapes
 from .display import cuts, ensembles, explosion, shown_models
 from .thread_job import ThreadJob
 
-_BUILT = 0.1  # share of the progress for the model itself, which is built again where it is not kept
+_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
 
 
 class EnsembleJob(ThreadJob):

@@ -14,7 +14,7 @@ import bpy
 from . import caches
 
 _MARK = "realmodel_ahead"  # on a mesh that was made ahead: by which slice
-_made = caches.new()  # id of a shape -> (the shape, the name of its mesh, what its mark says)
+_made = caches.new()  # id of a shape -> (the shape, the name of its mesh, its mark)
 
 
 class Slices:

@@ -19,15 +19,15 @@ from .display import shown_models
 from .overlay import drawing_for, legend_share, rendered
 from .viewports import towards, view_rotation
 
-KEY = "realmodel_picture"  # on what is set up here: what it is
-TURNTABLE = "turntable"  # the empty that the camera of an animation hangs from
+KEY = "realmodel_picture"  # on objects and data added here: their purpose
+TURNTABLE = "turntable"  # the empty that is the parent of an animation's camera
 
 # Azimuths are clockwise from north (+y).
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
 MARGIN = 1.06
 OPEN_AZIMUTH = math.radians(125.0)
 _OPENED = np.linspace(0.16, 0.7, 19)  # of the model, in front of the cut
-_SEEN = 1e-3  # of a cut's area: a block that has less is hardly seen in it
+_SEEN = 1e-3  # of a cut's area: a block with less is hardly visible in it
 
 # Sun and sky add up to about 1 on a face turned to the sun, so library colors read true there.
 SUN_AZIMUTH = math.radians(112.0)
@@ -139,7 +139,7 @@ def _set_sky(current, color, strength):
         world = bpy.data.worlds.new("RealModel Sky")
         world[KEY] = "sky"
         world.use_nodes = True
-        # Left to the rays that bounce off: then each sample asks the sun, and an open ground has no noise.
+        # Only bounced rays sample the sky: then each sample includes the sun, and open ground has no noise.
         versions.leave_sky_to_bounces(world)
         current.world = world
     sky = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")

@@ -104,7 +104,7 @@ def compose(scene, depsgraph, whole=True):
             except InputRefused as error:
                 raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
-        if not rock.interpolates:  # nothing is meshed that they could shape
+        if not rock.interpolates:  # no mesh that they could affect
             rock.constraints, rock.size = [], []
     for place, row in settings.structure_rows(scene):
         entry = structure_settings.entry_of(place, row)
@@ -143,7 +143,7 @@ def _region(composed, number, rock, row, depsgraph, whole):
             rings = _stored_rings(composed, number, rock, row, whole)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
-    if rings:  # which of them are holes is not said: they count even-odd
+    if rings:  # holes are not marked: the even-odd rule decides
         rock.region = rings if len(rings) > 1 else rings[0]
 
 

@@ -22,12 +22,12 @@ CHARTS = (
     ("MESH", "Mesh", "Smallest angles of the triangles"),
 )
 _LOOK_SECONDS = 0.05
-_MOST = 64  # pictures that are kept
+_MOST = 64  # pictures in the cache
 _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
 _found = caches.new(most=64)  # key -> SurfaceQuality
-# Stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}.
+# Stamp of a model -> {(rock mass, block): upper bound of its volume's standard deviation}.
 _deviations = caches.new()
 _working = {}  # the job, its recipe, and its key, while there is one
 _pictures = None  # previews of charts, by their key
@@ -83,7 +83,7 @@ def _asked(current):
     recipe = shown_models.Recipe(current, settings.last_stage(current))
 
     def task(_work):
-        text_width("0", 1.0)  # reads the letters of charts, which the drawing of a panel should not
+        text_width("0", 1.0)  # loads the letters of charts now, not while a panel is drawn
         model = recipe.make()
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:

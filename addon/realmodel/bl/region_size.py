@@ -54,6 +54,6 @@ def measure(scene, row, depsgraph):
             rings, _ = read_region(path)
         area = 0.0 if rings is None else plan_area(*triangulate_rings(region_rings(rings)))
     except RealModelError:
-        area = 0.0  # the build will say what is wrong
+        area = 0.0  # the build will report the error
     with settings.filling():
         row.region_area = area

@@ -58,7 +58,7 @@ def write(context, items, path, size):
             export(str(target))
         for made in sorted(Path(place).iterdir()):
             if ending == ".glb" and made != target:
-                continue  # pictures that are in it
+                continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
 
@@ -201,7 +201,7 @@ def _bake(context, copies, beside, size, names, made):
             target="IMAGE_TEXTURES",
             save_mode="INTERNAL",
             margin=max(1, int(size * _GAP / 2)),
-            margin_type="EXTEND",  # what is beside a part may be in another picture
+            margin_type="EXTEND",  # neighboring faces may be in another picture
             use_clear=True,
             use_selected_to_active=False,
         )

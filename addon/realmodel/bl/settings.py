@@ -205,5 +205,5 @@ def copy_row(source, target):
             if prop.type == "COLLECTION":
                 for entry in getattr(source, key):
                     copy_row(entry, getattr(target, key).add())
-            elif not prop.is_readonly and not prop.is_skip_save:  # which others are kept in
+            elif not prop.is_readonly and not prop.is_skip_save:  # derived from other properties
                 setattr(target, key, getattr(source, key))

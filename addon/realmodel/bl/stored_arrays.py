@@ -14,7 +14,7 @@ from ..core import InputRefused
 from . import caches
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
-_MOST_BYTES = 256 << 20  # that arrays read lately may take; the newest stay, however large
+_MOST_BYTES = 256 << 20  # limit of the cache of arrays; the newest stay, however large
 _unpacked = caches.new()  # by digest of the text: arrays read lately, not to be written to
 
 

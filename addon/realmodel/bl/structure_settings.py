@@ -64,7 +64,7 @@ def _fill_shape(row, entry, units):
         row.filepath = str(entry.input_file)
         reading_text.fill(row, vars(points or entry.mesh_file))
         return
-    if entry.vertices is None:  # points that a script gave
+    if entry.vertices is None:  # points from a script
         entry = work.run(lambda task: _read_fault(task, entry, units))
     row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 # Vertex attributes of an interface: the variance of its height, squared model units, and the distance in
-# plan to the nearest point that it was interpolated from, model units. What is not known is -1.
+# plan to the nearest point that it was interpolated from, model units. Unknown values are -1.
 VARIANCE = "variance"
 DISTANCE = "distance"
 UNKNOWN = -1.0

@@ -41,7 +41,7 @@ def _fill_attributes(mesh, shape):
     attributes = mesh.attributes
     attributes["position"].data.foreach_set("vector", shape.coordinates.ravel())
     attributes[".corner_vert"].data.foreach_set("value", shape.corners)
-    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])  # what it lacks, loop_total, follows
+    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])  # loop_total follows from it
     if shape.edges is not None:
         attributes[".edge_verts"].data.foreach_set("value", shape.edges.ravel())
         attributes[".corner_edge"].data.foreach_set("value", shape.corner_edges)

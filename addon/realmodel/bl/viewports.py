@@ -33,7 +33,7 @@ def view_rotation(azimuth=CAMERA_AZIMUTH, elevation=CAMERA_ELEVATION):
     return Matrix((right, back.cross(right), back)).transposed()
 
 
-_status = {}  # by the pointer of a window: the message that its status bar has
+_status = {}  # by the pointer of a window: the message in its status bar
 
 
 def areas():

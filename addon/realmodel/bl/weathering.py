@@ -17,8 +17,8 @@ from . import library_rows, looks, materials, meshes, versions
 from .nodes import Nodes
 
 NAME = "Weathering"
-KEY = "realmodel_weathering"  # on the group: its version; on a material: the cover that it is
-HARDNESS = "realmodel_hardness"  # on a block: the hardness that the library gave its modifier
+KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
+HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
 _VERSION = 1
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}

@@ -105,7 +105,7 @@ class Outputs:
         return folder
 
     def _publish(self) -> None:
-        undone: list[tuple[Path | None, Path]] = []  # (what stood there or None, where)
+        undone: list[tuple[Path | None, Path]] = []  # (the earlier file or None, its place)
         try:
             for path, target in self._written:
                 with explained(target):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .model import Model
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
-_INWARDS = 1e-5  # of the way from a corner to that point
+_INWARDS = 1e-5  # of the distance from a corner to the inner point
 _NO_LAYER = -1
 
 

@@ -21,7 +21,7 @@ from .structures.reading import read_structures
 from .structures.setup import make_structures
 from .work import Cancel, Progress, Work, native_module, run
 
-# Of the time of a build, roughly; a phase that a project does not have has none
+# Shares of the time of a build, roughly; phases that a project does not have are left out
 _SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "merge": 0.02}
 
 __all__ = ["CELL_KINDS", "build"]

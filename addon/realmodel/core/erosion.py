@@ -68,13 +68,13 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
         with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
             before = _stage_volumes(work, model, m, threads)
         done += m + 1
-        # what bodies took that came after the surface is no erosion
+        # volumes taken by later bodies are no erosion
         came = any(time > m for time, _ in arrivals)
         left = _stage_volumes(work, model, m + 1, threads, (m + 1, 0)) if came else after
         for surface, older in _cut_at(model, m + 1):
             removed = before[older] - left[older]
             volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
-        # from here back to the next stage nothing cuts, so that these are its volumes just after, too
+        # back to the next stage nothing cuts, so these are also the volumes just after it
         after = np.where(np.isnan(before), after, before)
     taken = np.zeros((len(names), len(model.blocks)))
     for m, group in itertools.groupby(arrivals, lambda arrival: arrival[0]):

@@ -89,7 +89,7 @@ def ground_of(model) -> Ground:
         if _is_plain(plan, *edges[:2]):
             own = triangles[is_ground]
             return Ground(model.vertices[own], vertex[own], own, _areas(model, plan, *edges))
-    except BuildFailed:  # an area that is no wider than roundings is turned over
+    except BuildFailed:  # an area no wider than rounding is inverted
         pass
     return _highest(model, triangles[rises], vertex, plan, cell[rises])
 

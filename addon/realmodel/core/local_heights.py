@@ -196,7 +196,7 @@ def _is_local(surface: Surface) -> bool:
         return False
     if method == "parallel":
         return settings["thickness"] is not None
-    if method == "plane" and settings["extrapolate"] == "nearest":  # points that contradict count only there
+    if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False
     if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left
         return False

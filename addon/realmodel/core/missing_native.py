@@ -21,8 +21,8 @@ class System(NamedTuple):
     advice: str
 
 
-# By sysconfig.get_platform(), for macOS without its version: what the interpreter was built for, whatever
-# machine that runs on.
+# By sysconfig.get_platform(), for macOS without its version: the system that the interpreter was built for,
+# not the machine that it runs on.
 SYSTEMS = {
     "linux-x86_64": System(
         "Linux on x86-64",

@@ -148,7 +148,7 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
     values = {"name": given.name}
     if shape is not None:
         values[shape[0]] = shape[1]
-    # of a ready mesh the method is that by which it is continued to faults
+    # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     values |= {
         "minimum_thickness": given.minimum_thickness,

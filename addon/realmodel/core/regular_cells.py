@@ -82,7 +82,7 @@ def regular_cells(model, size: float | Sequence[float] | None = None) -> Regular
         whole = np.bincount(flat, area, nx * ny * nz).reshape(nz, ny, nx)
         own[:-1] += np.cumsum(whole[::-1], axis=0)[::-1][1:]  # beneath a face cells are full
         volumes[block] = own
-    # what rounding leaves of cells that are empty is less than this
+    # volumes below this are rounding errors of empty cells
     volumes[np.abs(volumes) < 1e-12] = 0.0
     return RegularCells(origin, size, counts, np.maximum(volumes, 0.0) * size.prod())
 

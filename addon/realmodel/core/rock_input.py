@@ -43,7 +43,7 @@ _EDGE_LENGTH_KINDS = (
     "size",
     "density",
     "too_large",
-)  # what native meshing lays to the edge length
+)  # kinds of errors of native meshing that the edge length causes
 
 
 @dataclass

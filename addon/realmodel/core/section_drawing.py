@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 MOST_EXAGGERATION = 1000.0
 _POINT = 0.0254 / 72  # meters
-_PLOT = (560.0, 360.0)  # the most that the section takes of the page, in points
+_PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
 _FAULT_WIDTH = 1.4
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
-_LEGEND = "Block"  # what the names in the legend are; views have those of properties
+_LEGEND = "Block"  # title of the legend; views have the names of properties
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 

@@ -25,7 +25,7 @@ from .surface_input import Reader, read_each
 from .work import Cancel, Progress, Work, native_module, run
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
-_CHOSEN = 0.3  # of what is left
+_CHOSEN = 0.3  # of the rest of the progress
 
 
 @dataclass(eq=False)

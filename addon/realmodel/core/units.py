@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-MODEL_UNIT = "m"  # of a project that does not say
+MODEL_UNIT = "m"  # of a project without units
 # Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
 METERS = {
     "mm": Fraction(1, 1000),

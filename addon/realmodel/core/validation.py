@@ -22,7 +22,7 @@ _DTYPES = {
     "face_surface": np.int32,
     "cell_block": np.int32,
 }
-# By the name of a test: its number in docs/dev/geometry.md, and what it says of the model.
+# By the name of a test: its number in docs/dev/geometry.md, and its statement about the model.
 _SAYS = {
     "arrays": (0, "array lengths and indices are consistent"),
     "closed": (1, "every cell is closed: its faces use each edge once in each direction"),

@@ -30,7 +30,7 @@ VARIOGRAMS = {  # label and tooltip in the panel
 }
 NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 
-# A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.
+# A fit is not significant where neighbouring points differ as much as any, or its range exceeds the data.
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
 _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill

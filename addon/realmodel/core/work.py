@@ -25,7 +25,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
-_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or what Blender calls an extension
+_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or the name of the extension in Blender
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
@@ -185,11 +185,11 @@ class Job:
 
     def _run(self, task, leaving: list[threading.Thread]) -> None:
         try:
-            for thread in leaving:  # so that two never hold memory at once
+            for thread in leaving:  # so that only one holds memory at a time
                 thread.join()
             _current.work = self._work
             self._result = task(self._work)
-        except BaseException as error:  # handed to the thread that asks for the result, which raises it
+        except BaseException as error:  # raised by result() in the other thread
             self._error = error
         finally:
             self._ended.set()

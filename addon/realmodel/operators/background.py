@@ -8,7 +8,7 @@ from ..core import Cancelled, RealModelError
 from .reporting import Reporting
 
 _STEP = 0.05  # seconds between two looks at the work
-_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
+_SLICE = 0.05  # seconds of making meshes, before the window is updated again
 
 running = []  # the jobs that are shown with progress
 

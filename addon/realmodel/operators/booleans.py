@@ -51,13 +51,13 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
 
     operation: EnumProperty(
         name="Operation",
-        description="What is made of the two objects",
+        description="Operation on the two objects",
         items=OPERATIONS,
         default="DIFFERENCE",
     )
     keep_operands: BoolProperty(
         name="Keep Operands",
-        description="Leave both objects as they are and make a new one of the result. Otherwise the active "
+        description="Keep both objects as they are and add a new one with the result. Otherwise the active "
         "object gets the result, its modifiers are applied, and the other object is hidden",
     )
 

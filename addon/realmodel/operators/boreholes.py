@@ -40,7 +40,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     downward_dip: EnumProperty(
         name="Downward Dip",
-        description="Which dips of holes go down",
+        description="Sign of the dips of holes that go down",
         items=[
             ("TABLE", "As in the table", "All dips of a table have one sign, and go down"),
             ("NEGATIVE", "Negative", "-90 is straight down"),
@@ -49,7 +49,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     columns: StringProperty(
         name="Columns",
-        description="Columns that are called otherwise, in any of the tables, such as hole = BHID; "
+        description="Columns with other names, in any of the tables, such as hole = BHID; "
         "depth = FROM. There are " + ", ".join(COLUMNS),
     )
     units: EnumProperty(

@@ -15,7 +15,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     bl_label = "Build"
     needs = (not_building,)
 
-    _scene = ""  # whose model is built, and whether it is its first one
+    _scene = ""  # the name of the scene that is built
     _is_first = False
     _spaces = ()  # pointers of the viewports that are turned to a first model
 

@@ -91,7 +91,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     )
     split: BoolProperty(
         name="One Surface for Each Value",
-        description="Rows of a table that have different values in a column are different surfaces",
+        description="Make one surface for each value in a column of the table",
         options={"SKIP_SAVE"},
     )
     split_column: StringProperty(
@@ -187,7 +187,9 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def _looked_at(self):
         for path in self._paths():
             if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
-                with contextlib.suppress(InputRefused):  # what is no table of text says so when it is read
+                with contextlib.suppress(
+                    InputRefused
+                ):  # files that are no tables are refused when they are read
                     if not is_mesh_file(path):
                         yield preview_table(path)
 

@@ -145,7 +145,7 @@ class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
 
     directory: StringProperty(
         name="Folder",
-        description="Where the library goes; empty: Blender's folder of the user",
+        description="Folder of the library; empty: Blender's folder of the user",
         subtype="DIR_PATH",
     )
 

@@ -32,7 +32,7 @@ def _plane_of(operator, context):
     given = any(operator.properties.is_property_set(key) for key in ("location", "normal"))
     if given:
         if not any(operator.normal):
-            raise UsageError("the normal is zero: give the direction that the plane is square to")
+            raise UsageError("the normal is zero: give the direction that is normal to the plane")
         return tuple(operator.location), tuple(operator.normal)
     if cuts.plane_of(scene) is None:
         raise InputRefused("there is no section plane", advice="add one first (Section Plane)")
@@ -44,7 +44,7 @@ def _plane_of(operator, context):
 _PLACE = place_property("A point of the plane, in the coordinates of the scene")
 _NORMAL = FloatVectorProperty(
     name="Normal",
-    description="The direction that the plane is square to",
+    description="Normal of the plane",
     subtype="XYZ",
     default=(0.0, -1.0, 0.0),
 )
@@ -103,7 +103,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     )
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
-        description="How many times as high as they are heights are drawn",
+        description="Factor by which heights are exaggerated",
         default=1.0,
         min=0.01,
         max=MOST_EXAGGERATION,
@@ -136,7 +136,7 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
 
     axis: EnumProperty(
         name="Axis",
-        description="The direction that the plane is square to",
+        description="Normal of the plane",
         items=(
             ("Y", "South", "Upright, seen from the south"),
             ("X", "East", "Upright, seen from the east"),

@@ -40,7 +40,7 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
 
     direction: EnumProperty(
         name="Direction",
-        description="Where to look from",
+        description="View direction",
         items=[(key, *_LOOKING[key]) for key in viewpoints.DIRECTIONS],
     )
 
@@ -99,14 +99,14 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
     filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
     width: IntProperty(
         name="Width",
-        description="Pixels across; 0: as the viewport has",
+        description="Width in pixels; 0: that of the viewport",
         min=0,
         max=capture.LARGEST,
         subtype="PIXEL",
     )
     height: IntProperty(
         name="Height",
-        description="Pixels upwards; 0: as the viewport has",
+        description="Height in pixels; 0: that of the viewport",
         min=0,
         max=capture.LARGEST,
         subtype="PIXEL",
@@ -175,7 +175,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
     property_id: IntProperty(name="Property", description="ID of the property in the library; 0: none given")
     action: EnumProperty(
         name="Action",
-        description="What to do with the blocks of the property",
+        description="Hide or show the blocks of the property",
         items=(
             ("TOGGLE", "Toggle", "Hide them where they are shown, show them where they are hidden"),
             ("HIDE", "Hide", "Hide them"),

@@ -10,7 +10,7 @@ from mathutils import Matrix
 from .. import exaggeration, meshes, scene
 from . import replacing
 
-KIND = "realmodel_view"  # on an object: what it is for
+KIND = "realmodel_view"  # on an object: its purpose
 CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
 SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
 
@@ -41,7 +41,7 @@ def put(current, kind, shapes, material=None):
         else:
             item = add(current, kind, f"{block.name} {kind}", shape)
             item[scene.BLOCK] = block.get(scene.BLOCK, "")
-            item.hide_viewport = kind == MARKS  # which viewports draw themselves
+            item.hide_viewport = kind == MARKS  # viewports draw marks themselves
             item.parent = block
         if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
             item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))

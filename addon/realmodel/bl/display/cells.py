@@ -10,7 +10,7 @@ from ..threads import threads
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen
-_kept = caches.new(most=1)  # by what the cells are of: {(rock mass, block): PolygonMesh}
+_kept = caches.new(most=1)  # by the state that they are made from: {(rock mass, block): PolygonMesh}
 
 
 def made_of(scene, stage, apart=False):

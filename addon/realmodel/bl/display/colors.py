@@ -15,7 +15,7 @@ from ...core.drawing.overlay import ColorKey
 from .. import compartments, library_rows, materials, settings, viewports
 from . import bodies, modes, shades, stages
 
-KEY = "realmodel_colour"  # on a material: what it stands for; .blend files hold this name
+KEY = "realmodel_colour"  # on a material: the value that it shows; .blend files contain this name
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 _FAULTS = "#c8504a"
 _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value at the ends of the ages

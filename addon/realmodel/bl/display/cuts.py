@@ -27,8 +27,8 @@ from ..debounce import DebouncedJob
 from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
 
-REST_SECONDS = 0.08  # without a movement of the plane, after which it is cut
-_halves = caches.new(most=1)  # by what it was cut from and where: the half as a Model
+REST_SECONDS = 0.08  # pause after a movement of the plane, before it cuts
+_halves = caches.new(most=1)  # by model and plane: the half as a Model
 
 
 def is_on(current):

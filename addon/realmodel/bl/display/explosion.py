@@ -52,7 +52,7 @@ def move(item, shift):
     else:
         del item[KEY]
         if np.abs(np.array(item.delta_location)).max() < 1e-6 * max(np.abs(before).max(), 1.0):
-            item.delta_location = (0.0, 0.0, 0.0)  # what single precision has left over
+            item.delta_location = (0.0, 0.0, 0.0)  # remainders of single precision
 
 
 def set_bounds(scene, low, high):

@@ -18,7 +18,7 @@ from . import bodies, cells, cuts, shown_models, stages
 from .visible import WANTED, want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
-SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are in sight
+SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are visible
 DRAWN = ("POINTS", "LINES")
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 

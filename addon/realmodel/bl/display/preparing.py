@@ -13,7 +13,7 @@ from . import cells, modes, replacing, shown_models
 def lacks(scene, stage, mode):
     """Whether something is yet to be made to show a scene at a stage in a display mode; stage: None where the
     blocks have their shapes already. Where a window would freeze for it, it is begun."""
-    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without which nothing is kept
+    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without a stamp nothing is cached
         return False
     if not _is_missing(scene, stage, mode):
         return False
@@ -112,7 +112,7 @@ def stop():
     _slices.clear()
 
 
-_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
+_SLICE = 0.05  # seconds of making meshes, before the window is updated again
 _slices = {}  # by the name of a scene: the meshes that are being made for it
 _show_all = None
 _work = DebouncedJob(lambda: 0.0, _begin, _finish, hand_over=_hand_over)

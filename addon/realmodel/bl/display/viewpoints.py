@@ -23,8 +23,8 @@ DIRECTIONS = {  # as Blender's own axis views
 }
 _MARGIN = 1.1
 _MOST_KEPT = 50
-_history = caches.new(list)  # views that were left, and the one that is shown, the oldest first
-_at = -1  # which of them is shown
+_history = caches.new(list)  # earlier views, and the present one, the oldest first
+_at = -1  # index of the present view
 
 
 @dataclass(frozen=True)

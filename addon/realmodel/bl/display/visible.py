@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Showing and hiding the model's objects, without taking back what the user hides or shows by hand."""
 
-WANTED = "realmodel_shown"  # on an object: what was last wanted of it in the viewport
-RENDER_HIDDEN = "realmodel_render_hidden"  # on an object that the view took out of renders
+WANTED = "realmodel_shown"  # on an object: whether the view last showed it in the viewport
+RENDER_HIDDEN = "realmodel_render_hidden"  # on an object that the view excluded from renders
 
 
 def show(scene, item, shown):

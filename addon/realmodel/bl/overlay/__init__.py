@@ -12,7 +12,7 @@ from .. import caches, exaggeration, project_settings
 from ..display import colors, ensembles, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
-_drawings = caches.new(most=8)  # by what they are made of: a viewport is drawn again and again
+_drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
 
 
 def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..work import native_module
 
-_PLAIN = (0.7, 0.7, 0.7)  # of what has no property
+_PLAIN = (0.7, 0.7, 0.7)  # for parts without a property
 
 
 @dataclass(frozen=True, eq=False)

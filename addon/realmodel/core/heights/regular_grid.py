@@ -20,7 +20,7 @@ from .interpolation import Result, Task
 
 # Of a cell: how far a point may lie from its place in the grid (coordinates are written with few digits).
 _OFF_GRID = 0.02
-_ON_LINE = 1e-9  # of a cell: what is so near a line of the grid lies on it, but for rounding
+_ON_LINE = 1e-9  # of a cell: nearer points lie on a line of the grid, up to rounding
 _SAMPLE = 200  # points whose neighbours show the grid's directions
 _MOST_EMPTY = 100  # nodes of the grid for each point
 _NEAR = 16  # points, in the mean, in a cell where neighbours are looked for

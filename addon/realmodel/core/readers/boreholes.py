@@ -52,7 +52,7 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
             missing += 1
             continue
         if column == "depth":
-            # Depths, and what a hole has gone sideways, are in the unit of z.
+            # Depths, and horizontal offsets along a hole, are in the unit of z.
             way = holes.way_to(row) * (1.0, 1.0, -1.0) * (scale[2] / scale)
             place = (begin + way) * scale
         else:

@@ -32,7 +32,7 @@ _FEET = {9002: "ft", 9003: "us-ft"}
 _NONE, _LZW, _DEFLATE, _PACKBITS = 1, 5, (8, 32946), 32773
 _MOST_COMPRESSED = 3000  # bytes of one, of LZW; DEFLATE stays below
 _MOST_WITHOUT_BYTES = 1 << 24  # pixels of a strip or tile that is not stored
-_BYTES_PER_PIXEL = 40  # of the height, of the point made of it, and of what they are made from
+_BYTES_PER_PIXEL = 40  # of the height, of its point, and of their raw data
 _WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 

@@ -41,7 +41,7 @@ COLLARS = {**PICKS, **DIRECTIONS}
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 
-Columns = Mapping[str, Sequence[str]]  # names that a column may have, by what it is
+Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class _Surfaces:
         self._text: list[str] = []
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
-        self._end_text()  # what follows another element is not part of it
+        self._end_text()  # text after another element is not part of it
         if name in ("Metric", "Imperial"):
             self.unit = _UNITS.get(attributes.get("linearUnit", ""), self.unit)
         elif name == "Surface":

@@ -45,7 +45,7 @@ def read_off(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
                 break
             mesh.add_faces(_faces(lines, numbers, file), numbers)
     except InputRefused:
-        text.require(vertices, faces)  # if there are others, what is wrong follows from that
+        text.require(vertices, faces)  # a wrong number of lines is the cause of other errors
         raise
     text.require(vertices, faces)
     return mesh.mesh()

@@ -50,7 +50,7 @@ RASTER_FORMATS = (
     RasterFormat((".gri", ".irap"), is_irap_grid, read_irap_grid),
 )
 RASTER_ENDINGS = tuple(ending for known in RASTER_FORMATS for ending in known.endings)
-# What NumPy raises of a damaged header, which it reads as Python.
+# Errors that NumPy raises for a damaged header, which it parses as Python.
 _DAMAGED_ARRAY = (
     *(ValueError, OSError, EOFError, SyntaxError, TypeError),
     *(tokenize.TokenError, OverflowError, MemoryError, RecursionError),

@@ -34,7 +34,7 @@ class FileBytes:
 
     def __init__(self, file: Path):
         self._file = file
-        self._block, self._begin = b"", 0  # what was read last, and where it stands
+        self._block, self._begin = b"", 0  # the block read last, and its position
         with _read_of(file):
             self._size = file.stat().st_size
 

@@ -135,7 +135,7 @@ def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | 
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
     found = MeshRows(file)
-    if len(faces):  # else this is what is wrong
+    if len(faces):  # without faces another error is reported
         found.add_vertices(vertices)
     found.add_faces(faces, lines)
     return found.mesh()

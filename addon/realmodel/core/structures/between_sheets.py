@@ -11,7 +11,7 @@ from ..algebra import dot, norm
 from .triangles import crossing_pairs
 from .within import Within, box_of, middles_of_parts
 
-_WIDTH = 1e-9  # of the extent of a sheet: what is narrower lies between them by rounding
+_WIDTH = 1e-9  # of the extent of a sheet: narrower gaps are due to rounding
 _INSET = 1e-3  # of a part: its border may lie on another fault, which has no side there
 
 

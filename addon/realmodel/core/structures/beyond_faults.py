@@ -7,8 +7,8 @@ import numpy as np
 
 from ..mis_ties import LARGEST_SHARE, heights_apart
 
-_LOOKED_AT = 16  # nearest points that say what sides there are
-_COUNTED = 4  # of each side those whose mean height a point should have
+_LOOKED_AT = 16  # nearest points, whose sides are considered
+_COUNTED = 4  # points of each side, whose mean height is the expected one
 _FAR = 8.0  # mean distances between points: so near the nearest ones are looked for first
 _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
 

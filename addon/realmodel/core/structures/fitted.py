@@ -20,8 +20,8 @@ from ..wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
-_TRIED = 100  # sticks of which each is tried as the first one
-_NEIGHBORS = 3  # on either side of a stick that say where it goes on
+_TRIED = 100  # sticks that are tried as the first one
+_NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
 

@@ -13,8 +13,8 @@ from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
 from .located import OUTSIDE, Locator
 from .triangles import crossing_pairs, distances_of_pairs
 
-_ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
-_LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
+_ROUNDING = 64  # units in the last place of the largest coordinate: nearer points are left undecided
+_LOOKED_AT = 200  # disagreeing points that are tested for rounding
 _SHOWN = 5  # offenders of each test
 _AT_ONCE = 2000  # points between two looks at cancel()
 

@@ -109,7 +109,7 @@ class ReadyMesh:
                     continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
-            left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
+            left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}

@@ -22,7 +22,7 @@ from .sheets import make_sheets
 from .sides import FaultShape, fault_sides
 
 _READ, _MESHED = 0.2, 0.3  # of the time
-_DIVIDED = 0.1  # of what is left: until the parts of space are known
+_DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
 
 

@@ -11,7 +11,7 @@ from ..algebra import dot
 from .exact import orient2d
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
-_ROUNDING = 1e-9  # relative: what is so near to a plane may be on it
+_ROUNDING = 1e-9  # relative: points nearer to a plane may be on it
 _FEW = 16  # triangles: with so many, all others are compared with each
 
 

@@ -13,7 +13,7 @@ from .families import DIES_OUT, Family, keys_of
 from .sides import sides_of
 from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
-_ON = 1e-9  # of the extent of a line: what is so near to a plane is in it
+_ON = 1e-9  # of the extent of a line: nearer points are in a plane
 _LEAST = 1e-12  # of a line: shorter parts are rounding
 
 
