@@ -143,11 +143,14 @@ def test_vtk_reads_the_compartments(tmp_path):
     assert (west, east) == pytest.approx((0.2, 0.3))
 
 
-@pytest.mark.parametrize("cells", ["columns", "blocks"])
-def test_vtk_reads_the_same_model(tmp_path, cells, monkeypatch):
+@pytest.mark.parametrize(("cells", "kind"), [("columns", "Int32"), ("blocks", "Int32"), ("columns", "Int64")])
+def test_vtk_reads_the_same_model(tmp_path, cells, kind, monkeypatch):
     monkeypatch.setattr("realmodel.core.exporters.vtu._CELLS_AT_ONCE", 37)  # several pieces
+    if kind == "Int64":
+        monkeypatch.setattr("realmodel.core.exporters.vtu._LARGEST_INT32", 1000)
     model = build(Project("x", [Rock("rock", crossing_surfaces(), base_elevation=-2.0)]), cells=cells)
     model.save(tmp_path / "m.vtu")
+    assert f'<DataArray type="{kind}" Name="faces"'.encode() in (tmp_path / "m.vtu").read_bytes()
     grid = read_by_vtk(tmp_path / "m.vtu")
     from vtk.util.numpy_support import vtk_to_numpy
 

@@ -198,8 +198,7 @@ bool is_flat(std::span<const Position> corners) {
 bool PartRounding::is_bent(std::size_t piece) const {
     const auto nodes = pieces_.polygons[piece];
     const auto& [face, cells, sides, is_level, parts] = pieces_[piece];
-    const bool is_new = face < 0 || !std::ranges::equal(nodes, model_.face(index(face)));
-    if (nodes.size() <= 3 || !is_new || (is_wall(piece) && !is_level)) return false;
+    if (nodes.size() <= 3 || is_whole_face(piece) || (is_wall(piece) && !is_level)) return false;
     std::vector<Position> corners;
     for (const NodeId node : nodes)
         corners.push_back(at(node));

@@ -94,14 +94,20 @@ void PartRounding::run() {
     drop_empty();
 }
 
+/// Whether a polygon is a face of the model as it was.
+bool PartRounding::is_whole_face(std::size_t piece) const {
+    const std::int32_t face = pieces_[piece].face;
+    return face >= 0 && std::ranges::equal(pieces_.polygons[piece], model_.face(index(face)));
+}
+
 void PartRounding::find_pieces_of_parts() {
     const std::size_t nodes = model_.vertex_count() + new_positions_.size();
     on_base_.assign(nodes, 0);
     on_wall_.assign(nodes, 0);
     is_near_.assign(nodes, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        // of joined models whole cells, too, get new polygons where they end at a structure
-        const bool changed = (joins_models_ && (pieces_[p].face < 0 || pieces_[p].is_level)) ||
+        // of joined models whole cells, too, get new polygons where they meet a structure
+        const bool changed = (joins_models_ && (!is_whole_face(p) || pieces_[p].is_level)) ||
                              std::ranges::any_of(pieces_[p].parts, [this](std::int32_t part) {
                                  return part >= 0 && is_changed(part);
                              });

@@ -38,6 +38,7 @@ private:
     Position& moving(NodeId node) { return new_positions_[index(node) - model_.vertex_count()]; }
     bool is_changed(std::int32_t part) const;
     bool is_wall(std::size_t piece) const;
+    bool is_whole_face(std::size_t piece) const;
     template <class IsIt>
     std::size_t first_where(std::size_t count, const IsIt& is_it) const;
 

@@ -121,7 +121,8 @@ class ReadyMesh:
 
     def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
         """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
-        as at a fault that is nearly level; none where it does not pass between all of these."""
+        as at a fault that is nearly level; none where it does not pass between all of these. Such a place is
+        noted: should the triangles meet in one sheet, this is why."""
         found = np.zeros(len(self.triangles), bool)
         left, right = (np.flatnonzero(own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
         corners = [self.vertices[self.triangles[some]] for some in (left, right)]
@@ -130,8 +131,13 @@ class ReadyMesh:
         if not lines:
             return found
         begin, end = np.concatenate(lines, axis=1)
-        shape = self.entry.structure.faults.shapes[fault]
-        if np.isfinite(hit_shares(begin, end, shape)).all():
+        faults = self.entry.structure.faults
+        is_missed = np.isnan(hit_shares(begin, end, faults.shapes[fault]))
+        if is_missed.any():
+            first = int(is_missed.argmax())
+            place = (begin[first] + end[first]) / 2
+            self.entry.torn[self.number] = _two_heights_beyond(faults.names[fault], place)
+        else:
             found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
         return found
 
@@ -141,12 +147,7 @@ class ReadyMesh:
             fault, within = family.dying[number], self._within(family)
             place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
             if place is not None:
-                name, near = faults.names[fault], place_text(place)
-                raise InputRefused(
-                    f"it has two heights beyond the tip of fault '{name}' near {near}",
-                    advice="extend the fault, or give data beyond the tip that agree",
-                    place=tuple(place.tolist()),
-                )
+                raise _two_heights_beyond(faults.names[fault], place)
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
@@ -200,3 +201,11 @@ class ReadyMesh:
         """The triangles of the sheets are no longer those of the file."""
         if len(sheets) > 1 or sheets[0][1] is not self.triangles:
             self.entry.file_faces[self.number] = None
+
+
+def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:
+    return InputRefused(
+        f"it has two heights beyond the tip of fault '{fault}' near {place_text(place)}",
+        advice="extend the fault, or give data beyond the tip that agree",
+        place=tuple(place.tolist()),
+    )

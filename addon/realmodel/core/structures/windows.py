@@ -281,7 +281,7 @@ class Windows:
             for surface, (vertices, triangles) in zip(entry.rock.surfaces, surfaces, strict=True)
         ]
         stub = replace(entry.rock, surfaces=given)
-        return RockInput(stub, surfaces, region, nothing, nothing, structure=found)
+        return RockInput(stub, surfaces, region, nothing, nothing, structure=found, torn=entry.torn)
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
