@@ -55,7 +55,7 @@ class SectionRequest:
         return model.section(self.what[:3], self.what[3:], threads)
 
     def run(self, model, outputs, threads: int, progress) -> str:
-        """Makes the section and stages its file; what there is to say about it."""
+        """Makes the section and stages its file. Returns the summary for the terminal."""
         progress(1.0, f"cutting {self.file.name}")
         found = self.cut(model, threads)
         with outputs.file(self.file) as file:
@@ -122,7 +122,7 @@ class CutRequest:
         return []
 
     def read(self) -> None:
-        """Reads the surface and builds the other model, where there is one. Raises what that raises."""
+        """Reads the surface and builds the other model, if any. Raises their errors."""
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:

@@ -24,7 +24,7 @@ from .cuts import BoreholeRequest, SectionRequest, borehole_request, fence_reque
 
 @dataclass
 class ProbabilityRequests:
-    """The files that the options ask for. size: of cells."""
+    """The requested files. size: of cells."""
 
     made: list[SectionRequest | BoreholeRequest | GridRequest]
     size: Sequence[float] | None

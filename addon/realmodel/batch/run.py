@@ -130,7 +130,7 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
 
 @contextlib.contextmanager
 def _client(options: argparse.Namespace, progress):
-    """The client that --scheduler asks for, or None."""
+    """The client for --scheduler, or None."""
     from ..distributed.workers import connected
 
     client = None if options.scheduler is None else connected(options.scheduler)
@@ -179,8 +179,8 @@ def _erosion(options: argparse.Namespace, model, progress):
 
 
 def _validation(options: argparse.Namespace, model, progress):
-    """The proof of the model, where it is asked for or goes into the report. One that was asked for and
-    failed keeps anything from being written."""
+    """The proof of the model, if it is requested or part of the report. If a requested one fails, nothing is
+    written."""
     if not options.check_model and options.report is None:
         return None
     report = model.validate(
@@ -222,7 +222,7 @@ def _requests(options: argparse.Namespace) -> list:
 
 
 def _cleaned_cells(options: argparse.Namespace, model, progress):
-    """The cells of the model that --cell-tolerance asks for, or None."""
+    """The cells of the model for --cell-tolerance, or None."""
     if options.cell_tolerance is None or not any(format_for(path).has_cells for path in options.export):
         return None
     return model.cleaned_cells(

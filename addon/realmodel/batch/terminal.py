@@ -34,9 +34,9 @@ class TimeLeft:
 
 
 class TerminalProgress:
-    """progress(fraction, text) for people. A terminal sees a bar, drawn again in its line; a file gets a
-    line for each new phase, and another every two seconds of a long one. Quiet: nothing at all. time_left:
-    the text says how long it may take yet."""
+    """progress(fraction, text) as text. A terminal shows a bar, redrawn in its line; a file gets a line for
+    each new phase, and another every two seconds in a long one. Quiet: nothing at all. time_left: the text
+    contains the remaining time."""
 
     def __init__(self, stream: TextIO, quiet: bool = False, time_left: bool = False):
         self.stream = stream

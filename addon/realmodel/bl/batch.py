@@ -55,9 +55,9 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
 
 @contextlib.contextmanager
 def without_chatter():
-    """Keep what Blender itself prints (a line per sample of a render) out of our output.
+    """Suppress Blender's own output (a line per sample of a render).
 
-    What it has to say of a failure comes as RuntimeError too.
+    Its errors are raised as RuntimeError, too.
     """
     sys.stdout.flush()
     kept = os.dup(1)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A built model into the scene of its settings, in place of the one before.
+"""Puts a built model into the scene of its settings, in place of the previous one.
 
-Objects stay the same ones where their block or surface is still there: what the user did to them - selection,
-other materials, constraints, their place in the outliner - stays. The tree and the custom properties are
-those that `scene` describes. What the model's own objects are is known by the pointers in the settings, so
-copies, appended models and other scenes are left alone.
+Objects whose block or surface still exists are kept: so the user's changes to them (selection, other
+materials, constraints, place in the outliner) stay. `scene` describes the tree and the custom properties. The
+model's own objects are found by the pointers in the settings, so copies, appended models and other scenes are
+not touched.
 """
 
 from dataclasses import dataclass, field
@@ -69,8 +69,8 @@ class Prepared:
 
 
 def prepare(model, composed, stage=None, threads=0):
-    """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
-    is not the whole. threads: as for `build`."""
+    """Prepares the arrays of a model; may run in another thread. stage: the stage that will be shown, if not
+    the whole model. threads: as for `build`."""
     origin = composed.origin
     if not composed.has_origin and composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)

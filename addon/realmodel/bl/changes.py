@@ -62,7 +62,7 @@ def edge_length(rock, _context):
 
 
 def triangles(rock, context):
-    """The number of triangles: of point spacing it is what that is scaled to."""
+    """The number of triangles was changed. Sizes from the spacing of points are scaled to it."""
     if not settings.is_filling() and rock.edges_by == "AUTO":
         rock.use_triangles = True
     setting(rock, context)
@@ -109,7 +109,7 @@ def source(surface, context):
 
 
 def reading(row, context):
-    """A file is to be read in another way: what was read before is worth nothing."""
+    """The import options of a file were changed: the stored data are discarded."""
     if settings.is_filling():
         return
     surface = settings.surface_of(row)
@@ -126,7 +126,7 @@ def fitted(fault, context):
 
 
 def fit_variogram(surface, context):
-    """Whoever wants a variogram of their own begins with the one that was fitted."""
+    """The fitting of the variogram was switched off: the settings begin with the fitted one."""
     if settings.is_filling():
         return
     fitted = (surface_figures.read(surface) or {}).get("variogram")

@@ -22,10 +22,10 @@ _ORIGIN = "realmodel_data_origin"  # on an object: the origin that its mesh was 
 
 
 def update(scene, read=None):
-    """Makes what is missing, and removes what is of no setting any more.
+    """Makes missing objects, and removes those without a setting.
 
-    read: {what `file_key` says of a row: (P, 3) float64}, which the caller has read already. What cannot be
-    read is not shown: the build will say what is wrong.
+    read: {`file_key` of a row: (P, 3) float64}, points that the caller has read already. Files that cannot be
+    read are not shown: the build will report the error.
     """
     wanted = {}
     if scene.realmodel.show_data and scene.library is None:
@@ -64,8 +64,8 @@ def place(scene):
 
 
 def begin(scene, points):
-    """The origin of a scene is that of the first data (P, 3) that arrive, unless objects of the user say
-    where the model stands."""
+    """Sets the origin of a scene at the first data (P, 3), unless objects of the user determine the position
+    of the model."""
     if ORIGIN_KEY not in scene and not project_settings.user_objects(scene) and len(points):
         scene[ORIGIN_KEY] = [float(value) for value in choose_origin(points)]
 
@@ -93,7 +93,8 @@ def _row_points(scene, row, depsgraph):
 
 
 def _read_points(scene, row):
-    """(P, 3) of a surface's file of points, or what the .blend keeps of it; None where it has neither."""
+    """(P, 3) of a surface's file of points, or of the data stored in the .blend; None where there are
+    neither."""
     if row.stored:
         return stored_arrays.unpack(row.stored)["points"]
     path = project_settings.absolute(row.filepath)

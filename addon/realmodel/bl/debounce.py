@@ -58,8 +58,8 @@ class DebouncedJob:
             bpy.app.timers.unregister(self._timer)
 
     def look(self):
-        """The timer: finishes what is done, begins what waits. Returns the seconds until the next look, None
-        when there is nothing to do."""
+        """The timer: finishes jobs that are done, and begins jobs whose pause is over. Returns the seconds
+        until the next call, None when there is nothing to do."""
         if not hasattr(bpy.types.Scene, "realmodel"):
             return None
         if not self._may_begin():

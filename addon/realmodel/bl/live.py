@@ -134,8 +134,8 @@ def _begin(name, _changed_at):
 
 
 def _tell(scene, error):
-    """The panel shows what is wrong with the model of a scene, or no longer is; nothing is selected or moved
-    for it."""
+    """Shows the error of a scene's model in the panel, or removes it; the selection and the view do not
+    change."""
     problems.forget()
     if scene is not None:
         problems.remember(scene, error)

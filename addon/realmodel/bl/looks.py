@@ -2,12 +2,12 @@
 """Procedural materials of rock, for Cycles and Eevee: nodes made from the recipes of realmodel.core.looks.
 
 Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
-the model, so that it goes on from block to block.
+the model, so that it is continuous from block to block.
 
-What other programs can read of a material, they should find. Blender's exporters take the value of the
-shader's Base Color where what is linked to it says nothing to them; that of glTF one of two colors that are
-multiplied; that of USD would take the first attribute on the way, so these are in a group, into which it does
-not look. Textures themselves have to be baked (scene_export.py).
+Other programs should find the color of a material. Blender's exporters take the value of the shader's Base
+Color if they cannot interpret its links; the exporter of glTF takes one of two colors that are multiplied;
+that of USD would take the first attribute on the way, so attributes are in a group, which it does not search.
+Textures themselves have to be baked (scene_export.py).
 """
 
 import bpy
@@ -204,9 +204,9 @@ def _laminae(nodes, place, above, lamina):
 
 
 def _bands(nodes, along):
-    """Numbers of the bands, of irregular width and about 1 on average, that a coordinate is in, and how far
-    the border of one is, from 0 to 0.5. Voronoi textures would say so too, but take Eevee minutes to compile
-    where there are several."""
+    """Numbers of the bands, of irregular width and about 1 on average, at a coordinate, and the distance from
+    the border of the band, from 0 to 0.5. Voronoi textures would give the same, but several of them take
+    Eevee minutes to compile."""
     bent = along
     for often, far in (
         (1.9, 0.32),
@@ -344,7 +344,7 @@ def suiting(row):
 
 
 def of_row(row):
-    """The key in LOOKS of the look of a row of the library; None where it says none."""
+    """The key in LOOKS of the look of a row of the library; None where it has none."""
     if row.look == AUTO:
         return suiting(row)
     return None if row.look == library_rows.NO_LOOK else row.look
@@ -356,8 +356,8 @@ def diagonal(scene):
 
 
 def follow(scene, rows=None, anew=False):
-    """The materials of the library's rows - all, or some - get the looks that the rows say, where they have
-    others. anew: those too that have it already."""
+    """Updates the looks of materials from the library's rows, all or some, where they have changed. anew:
+    also those that have not."""
     for row in scene.realmodel.library if rows is None else rows:
         look = of_row(row)
         if look is None:

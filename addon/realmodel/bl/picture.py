@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Camera, sun and sky for pictures of a model, and the picture that build_model.py writes.
+"""Camera, sun and sky for pictures of a model, and the render of build_model.py.
 
-The camera looks from the south-east, the sun stands further east. What build_model.py renders is set up in a
-scene of its own that is removed afterwards: the model is cut by one upright plane, which is where it meets
-the most blocks.
+The camera looks from the south-east, the sun is further east. For build_model.py the picture is set up in a
+scene of its own that is removed afterward: the model is cut by one vertical plane, where it meets the most
+blocks.
 """
 
 import contextlib
@@ -90,7 +90,7 @@ def set_up(
 
 
 def turntable_of(current):
-    """The empty that the camera of a scene's turntable hangs from, or None."""
+    """The empty that is the parent of the camera of a scene's turntable, or None."""
     return next((item for item in current.objects if item.get(KEY) == TURNTABLE), None)
 
 
@@ -105,7 +105,7 @@ def _remove_turntable(current):
 
 
 def _own(current, kind, data):
-    """The object of a kind that belongs to the picture of a scene, new where there is none."""
+    """The object of a kind that belongs to the picture of a scene; made if it does not exist."""
     item = next((item for item in current.objects if item.get(KEY) == kind), None)
     if item is None:
         made = data()
@@ -229,8 +229,8 @@ def exaggeration_of(extent):
 
 
 def _opened(model):
-    """The model without what is before an upright plane: of some planes the one that takes the fewest blocks
-    away, meets the most, and of these the smallest in the largest area."""
+    """The model without the part in front of a vertical plane: of some planes the one that removes the fewest
+    blocks, meets the most, and shows the smallest of these in the largest area."""
     ahead = np.array(towards(OPEN_AZIMUTH, 0.0))
     reach = model.vertices @ ahead
     nearest = np.full(len(model.blocks) + 1, np.inf)

@@ -38,10 +38,10 @@ _OF_INTERPOLATED = ("minimum_thickness", "correlation")  # of surfaces; a ready 
 
 @dataclass
 class Composed:
-    """A project as the scene has it. read: by place (settings.row_at) the stamp of the file that it is yet to
-    be read from. origin_is_free: no object of the user says where the model stands. has_origin: the origin
+    """The project of a scene. read: by place (settings.row_at) the stamp of the file that is still to be
+    read. origin_is_free: no object of the user determines the position of the model. has_origin: the origin
     was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
-    and therefore count as they are."""
+    and are used as they are."""
 
     project: Project
     origin: np.ndarray
@@ -80,11 +80,11 @@ def absolute(path):
 
 
 def compose(scene, depsgraph, whole=True):
-    """The project of a scene's settings.
+    """Composes the project from a scene's settings.
 
-    depsgraph: the evaluated one, in which modifiers have been applied. whole: look whether files have
-    changed; otherwise (live) what the .blend keeps of them is taken where it does. Raises InputRefused,
-    naming the rock mass and the surface, for what cannot be built from.
+    depsgraph: the evaluated one, in which modifiers have been applied. whole: check whether files have
+    changed; otherwise (live) the data stored in the .blend are used if there are any. Raises InputRefused,
+    naming the rock mass and the surface, for invalid input.
     """
     origin = model_origin(scene)
     group = scene.realmodel
@@ -210,7 +210,7 @@ def _stored_key(row):
 
 
 def stored_shape(row):
-    """The text in which the .blend keeps what a row's file had; "" where it keeps nothing."""
+    """The text in which the .blend stores the data of a row's file; "" where it has none."""
     return getattr(row, _stored_key(row))
 
 
@@ -256,7 +256,8 @@ def _from_object(composed, place, surface, row, depsgraph):
 
 
 def _made_of(scene, place, row):
-    """The arrays, in full digits, that an interface was made of: kept ones, or those of the model at hand."""
+    """The arrays, in full digits, that an interface was made from: stored ones, or those of the cached
+    model."""
     if row.source == "MESH_FILE" and row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)
     model = built_models.current(scene)

@@ -65,7 +65,7 @@ def start(current):
 
 
 def state():
-    """(fraction done, what is being done) while something is under way, else None."""
+    """(fraction done, text) of the running job, else None."""
     return _working["job"].state() if _working else None
 
 
@@ -107,7 +107,7 @@ def _keep(key, recipe, made):
 
 
 def _look():
-    """The timer: takes what was found."""
+    """The timer: takes the results of jobs."""
     job = _working["job"]
     viewports.redraw_sidebars()
     if not job.done:
@@ -148,7 +148,7 @@ def lines(quality, chart, unit):
 
 
 def icon(current, chart, pixels):
-    """The icon of a chart of the active surface as a picture so many pixels wide and high, or None."""
+    """The icon of a chart of the active surface as a picture of this size in pixels, or None."""
     global _pictures
     quality = found(current)
     key = f"{_key(current, settings.active_rock(current), settings.active_surface(current))} {chart} {pixels}"

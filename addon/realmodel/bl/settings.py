@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of `scene.realmodel`: which is active, what they may point to, names, numbers in full
-precision."""
+"""The rows of `scene.realmodel`: the active one, valid pointers, names, numbers in full precision."""
 
 import json
 from contextlib import contextmanager
@@ -175,10 +174,10 @@ def free_name(rows, wanted, own=None):
 
 
 def number(row, key):
-    """A number of a row in full: Blender's properties hold 32 bits, about seven digits.
+    """A number of a row in full precision: Blender's properties have 32 bits, about seven digits.
 
-    What was set by `set_number` comes back as it was, as long as the property still shows it; what was typed
-    comes as the shortest decimal that the property stands for, so 0.1 is 0.1.
+    A number from `set_number` is returned unchanged while the property still shows it; a typed number is
+    returned as the shortest decimal that the property stands for, so 0.1 is 0.1.
     """
     shown = np.float32(getattr(row, key))
     exact = json.loads(row.exact).get(key) if row.exact else None

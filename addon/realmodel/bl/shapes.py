@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of the scene as what a model is built from: triangulations, points, outlines.
+"""Objects of the scene as input of a model: triangulations, points, outlines.
 
 All coordinates are model coordinates: object coordinates in the world, plus the model origin. Modifiers and
-geometry nodes count: the evaluated mesh is taken, and an edit that is under way in edit mode with it.
+geometry nodes count: the evaluated mesh is used, including an edit in progress in Edit Mode.
 """
 
 import hashlib
@@ -101,8 +101,9 @@ def digest(given, triangles):
 
 
 def with_full_digits(given, triangles, model_origin, stored_vertices, stored_triangles):
-    """(V, 3) float64 model coordinates of a mesh that was made from stored ones: what nobody moved keeps all
-    the digits that it had before Blender rounded it; what was moved is taken as it stands."""
+    """(V, 3) float64 model coordinates of a mesh that was made from stored ones: vertices that were not moved
+    keep all the digits that they had before Blender rounded them; moved ones have their present
+    coordinates."""
     moved = given + model_origin
     if stored_vertices is None or stored_vertices.shape != given.shape:
         return moved

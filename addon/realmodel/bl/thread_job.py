@@ -31,7 +31,7 @@ class ThreadJob:
         return self._job.done
 
     def state(self):
-        """(fraction done, what is being done)."""
+        """(fraction done, text)."""
         return self._job.state()
 
     def cancel(self):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The 3D viewports on the screens.
 
-What a user asks for in one viewport happens in that one: its `space_data` is the context's. From another
-editor, a menu of the top bar, or a script it happens in the largest viewport of the window; in background
-mode, where nobody looks, in all of them.
+An operator acts on the viewport in which it was called: its context has the `space_data`. Called from another
+editor, a menu of the top bar, or a script, it acts on the largest viewport of the window; in background mode,
+on all of them.
 """
 
 import math
@@ -99,8 +99,8 @@ def frame_items(items, shown):
 
 
 def show_status():
-    """The status bar of each window has the message of work that goes on by itself for its scene, which no
-    operator reports."""
+    """Shows in the status bar of each window the message of background work for its scene, which no operator
+    reports."""
     problem = bpy.context.window_manager.realmodel.problem
     for window in bpy.context.window_manager.windows:
         group, key = window.scene.realmodel, window.as_pointer()
@@ -119,14 +119,14 @@ def forget_status():
 
 
 def redraw():
-    """The viewports, their sidebars, and the status bar show what has changed."""
+    """Redraws the viewports, their sidebars, and the status bar."""
     show_status()
     for area in areas():
         area.tag_redraw()
 
 
 def redraw_sidebars():
-    """The sidebars show what has changed; the scene is not drawn anew for it."""
+    """Redraws the sidebars, but not the 3D viewports."""
     for area in areas():
         for region in area.regions:
             if region.type == "UI":

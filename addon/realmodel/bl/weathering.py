@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weathering for pictures: a modifier of geometry nodes on blocks. Their meshes stay as they are.
+"""Weathering for pictures: a geometry nodes modifier on blocks. Their meshes do not change.
 
-Faces that are exposed - ground and walls - are worn: edges round off, soft rock falls back behind hard rock,
-layer by layer, and grass and scree lie on the ground where it is level enough. What the nodes ask for are the
-attributes of blocks (realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same
-hardness meet as before.
+Exposed faces (ground and walls) are worn: edges are rounded, soft rock recedes behind hard rock, layer by
+layer, and grass and scree lie on level ground. The nodes use the attributes of blocks
+(realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same hardness still meet.
 """
 
 import math

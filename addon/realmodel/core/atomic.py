@@ -75,7 +75,7 @@ class Outputs:
     @contextmanager
     def folder(self, target: str | Path, renewed: str) -> Iterator[Path]:
         """A folder to write into. `renewed` is a folder in it: if an earlier run left the target, only that
-        is replaced, and of the rest what is missing is added, so that what a user changed stays.
+        is replaced, and missing files are added, so that files changed by the user stay.
 
         Raises OutputFailed in the place of OSError, and where the target is a folder without `renewed`.
         """

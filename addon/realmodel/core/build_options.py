@@ -10,7 +10,7 @@ CELL_KINDS = ("columns", "blocks")
 
 
 def check_cells(cells) -> None:
-    """Raises UsageError for a kind of cells that there is not."""
+    """Raises UsageError for an unknown kind of cells."""
     if cells not in CELL_KINDS:
         raise UsageError(f"cells must be 'columns' or 'blocks', not {cells!r}")
 

@@ -122,7 +122,7 @@ def _block_number(model: Model, block: int | str) -> int:
 
 
 def _cut(model: Model, call, threads: int, progress: Progress | None, cancel: Cancel | None) -> Cut:
-    """The cut that call(native), a native function and what follows the model, makes."""
+    """The cut made by call(native), a native function and its arguments after the model."""
     threads = check_threads(threads)
     native = native_module()
 

@@ -31,17 +31,18 @@ class Erosion:
 
     @property
     def by_surface(self) -> np.ndarray:
-        """(S,) what each surface removed in all."""
+        """(S,) the total volume that each surface eroded."""
         return self.volume.sum(axis=1)
 
     @property
     def by_block(self) -> np.ndarray:
-        """(B,) what was removed of each block in all."""
+        """(B,) the total volume of each block that was eroded."""
         return self.volume.sum(axis=0)
 
     @property
     def deposited(self) -> np.ndarray:
-        """(B,) what was laid down of each block: what is left, and what was removed or taken since."""
+        """(B,) the deposited volume of each block: the remaining volume, and all that was eroded or taken
+        since."""
         return self.remaining + self.by_block + self.taken.sum(axis=0)
 
     @property

@@ -22,11 +22,11 @@ class RealModelError(Exception):
 
 
 class InputRefused(RealModelError):
-    """The input cannot be built from.
+    """The input is invalid.
 
-    what: what is wrong. file, line: where it stands (line counts from 1). item: the thing meant, such
-    as "rock 'base', surface 'S1'". advice: what to do about it. triangles: numbers of the triangles
-    at fault, from 0 in the order of the input. place: (x, y, z) or (x, y) in model units.
+    what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
+    surface 'S1'". advice: what to do about it. triangles: numbers of the wrong triangles, from 0 in the order
+    of the input. place: (x, y, z) or (x, y) in model units.
     """
 
     def __init__(
@@ -85,9 +85,9 @@ class BuildFailed(RealModelError):
 
 
 class NotEnoughMemory(BuildFailed):
-    """The build would not fit the memory, and was not begun.
+    """The build would need too much memory, and was not begun.
 
-    needed: bytes that it would take; available: bytes that there are, or that were allowed.
+    needed: its memory in bytes; available: the free or allowed memory.
     """
 
     def __init__(self, what: str, *, needed: int, available: int, advice: str):
@@ -98,7 +98,7 @@ class NotEnoughMemory(BuildFailed):
 
 
 class Cancelled(RealModelError):
-    """The caller's cancel() said yes."""
+    """The caller's cancel() returned True."""
 
 
 class UsageError(RealModelError):

@@ -47,8 +47,8 @@ def thickness(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, thr
 
 
 def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, threads: int = 0) -> np.ndarray:
-    """(N,) float64: what the third coordinates of a triangulation (V, 3), (T, 3) are at places in plan
-    (N, 2), linear within triangles; NaN where there are none."""
+    """(N,) float64: the third coordinate of a triangulation (V, 3), (T, 3) at places in plan (N, 2), linear
+    within triangles; NaN where there is none."""
     if not len(triangles):
         return np.full(len(plan), np.nan)
     found = native_module().surface_heights(

@@ -226,7 +226,7 @@ def _aligned(size: int) -> int:
 
 
 def read_mapped(path: Path) -> dict[str, np.ndarray]:
-    """The arrays of a file of write_mapped; what is written to them stays in memory. Raises BuildFailed."""
+    """The arrays of a file of write_mapped; changes of them stay in memory. Raises BuildFailed."""
     try:
         content = np.memmap(path, np.uint8, "c")
         start = _NUMBER + int.from_bytes(content[:_NUMBER].tobytes(), "little")

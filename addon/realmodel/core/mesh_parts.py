@@ -64,8 +64,8 @@ class Source:
 
 @dataclass(eq=False)
 class MeshParts:
-    """A mesh of polygons (its coordinates in double precision), and what it has of each operand. meeting:
-    (K,) the edges between polygons of one and of the other."""
+    """A mesh of polygons (coordinates in double precision), and its parts from each operand. meeting: (K,)
+    the edges between polygons of the two operands."""
 
     vertices: np.ndarray
     offsets: np.ndarray

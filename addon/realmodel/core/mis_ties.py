@@ -18,11 +18,11 @@ _AT_ONCE = 1 << 18  # points among which those at one place are looked for
 def without_mis_ties(
     points: np.ndarray, room: Room = np.zeros, gather: Gather = in_memory
 ) -> tuple[np.ndarray, str | None]:
-    """Points with one height at each place, and what was done, as a sentence (None: nothing).
+    """Points with one height at each position, and a warning (None: nothing was changed).
 
-    points: (P, 3) float64, which may be in a file. Where heights at one place differ by no more than a
-    twentieth of the height range of all points, their mean takes the place of the first of them; larger
-    contradictions are left in. room, gather: where arrays are kept.
+    points: (P, 3) float64, which may be in a file. Where heights at one position differ by no more than a
+    twentieth of the height range of all points, their mean replaces the first of them; larger contradictions
+    are left in. room, gather: where arrays are kept.
     """
     found = _Places(points, room, is_once=False)
     return found.kept(gather), found.warning()

@@ -88,6 +88,6 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
 
 
 def _versions(package: Path, system: System) -> list[str]:
-    """The versions of Python that there are modules for on a system, e.g. ["3.11", "3.13"]."""
+    """The versions of Python that have modules for a system, e.g. ["3.11", "3.13"]."""
     named = [re.fullmatch(rf"_native\.{system.module}", path.name) for path in package.glob("_native.*")]
     return [f"3.{minor}" for minor in sorted({int(found[1]) for found in named if found})]

@@ -32,7 +32,7 @@ def map_layer(given) -> MapLayer | None:
 
 
 def layer_files(given) -> list[Path]:
-    """The files that are read for what is given in plan."""
+    """The files of a region, of constraints or of sizes."""
     layer = map_layer(given)
     return [] if layer is None else [Path(layer.file), *map_companions(Path(layer.file))]
 

@@ -99,8 +99,7 @@ class PointFile:
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A ready mesh in units of its own and with its own z axis, as those of a PointFile; None: units of the
-    model."""
+    """A ready mesh with its own units and z axis, as of a PointFile; None: units of the model."""
 
     file: str | Path
     units: str | Mapping | None = None

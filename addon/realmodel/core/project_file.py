@@ -129,7 +129,7 @@ def _is_list_of_rings(region: list) -> bool:
 
 
 def _read_layer(table: Table, key: str, given, folder: Path):
-    """A file, well-known text, or a table that says more about a file."""
+    """Reads a file, well-known text, or a table with a file and its options."""
     if isinstance(given, str) and is_wkt(given):
         return given
     if not isinstance(given, dict):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A project to a project file, with its library, meshes and points in files beside it.
+"""Writes a project to a project file, with its library, meshes and points in files beside it.
 
-The numbers are written with as many digits as it takes: what is read back is the same project, bit for bit.
+Numbers have as many digits as they need: the project that is read back is the same, bit for bit.
 """
 
 from __future__ import annotations

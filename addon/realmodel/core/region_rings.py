@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rings that bound a region in plan: checked, and what is wrong with them in words."""
+"""Checks of the rings that bound a region in plan, and their error messages."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _without_repetition(corners: np.ndarray) -> np.ndarray:
 
 
 def is_several(outline) -> bool:
-    """Whether what is given as an outline is a list of them."""
+    """Whether a given outline is a list of several."""
     if isinstance(outline, np.ndarray):
         return outline.ndim == 3
     try:

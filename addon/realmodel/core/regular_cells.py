@@ -97,7 +97,7 @@ def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]
 
 
 def _triangles(model, block: int) -> np.ndarray:
-    """(T, 3, 3): the boundary of a block, without what is upright."""
+    """(T, 3, 3): the boundary of a block, without vertical triangles."""
     shape = model.block_boundary(block)
     if not len(shape.faces):
         return np.empty((0, 3, 3))

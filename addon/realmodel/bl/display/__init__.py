@@ -81,7 +81,7 @@ def show_all(scene):
 
 
 def opened():
-    """A .blend was opened, which may have been saved before all that its settings ask for was made."""
+    """A .blend was opened: updates the display, which may not have been complete when it was saved."""
     for scene in bpy.data.scenes:
         group = scene.realmodel
         different = {
@@ -273,8 +273,8 @@ def _applied(scene):
 
 
 def _show(scene, has_shapes=False, **wanted):
-    """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
-    have the shapes of the stage already."""
+    """Updates the display for all settings, or for some that can be animated, by their names. has_shapes: the
+    blocks have the shapes of the stage already."""
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
         return

@@ -27,9 +27,9 @@ def _listed(current, kind):
 
 
 def put(current, kind, shapes, material=None):
-    """Makes the bodies of a kind, in place of those that are there.
+    """Makes the bodies of a kind, in place of the present ones.
 
-    shapes: for each block that has one (block object, PolygonMesh). material: where it is not the block's.
+    shapes: for each block that has one (block object, PolygonMesh). material: if it is not the block's.
     """
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
@@ -90,7 +90,7 @@ def remove_collection_if_empty(current):
 
 
 def view_collection(current):
-    """The collection of what is only for viewing; made and linked where it is not there."""
+    """The collection of objects for display only; made and linked if it does not exist."""
     view, group = current.realmodel.view, current.realmodel
     collection = view.collection
     if collection is None or collection.library is not None:

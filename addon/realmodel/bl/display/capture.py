@@ -74,8 +74,8 @@ def _draw(context, path, size):
 
 
 def _window_matrix(region, view, size):
-    """The viewport's projection, with as much to the right and left, or above and below, as a picture of
-    another shape asks for."""
+    """The viewport's projection, widened to the right and left, or above and below, for a picture of another
+    aspect ratio."""
     matrix = view.window_matrix.copy()
     wider = (size[0] / size[1]) / (region.width / region.height)
     if wider >= 1.0:

@@ -62,7 +62,7 @@ class Recipe:
 
 
 def of_scene(scene, stage, apart=False):
-    """The meshes of the cells, made in this thread if they are not at hand. Raises RealModelError."""
+    """The meshes of the cells, made in this thread if they are not in the cache. Raises RealModelError."""
     recipe = Recipe(scene, stage, apart)
     shapes = recipe.make()
     recipe.keep()

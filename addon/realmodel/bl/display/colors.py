@@ -60,7 +60,7 @@ def take_off(scene):
 
 
 def key(scene):
-    """The core's ColorKey of what is in sight, or None where nothing is."""
+    """The core's ColorKey of the visible objects, or None where nothing is visible."""
     by, group = scene.realmodel.color_by, scene.realmodel
     if by in shades.TITLES:
         low, high = shades.limits(scene)
@@ -88,8 +88,8 @@ def key(scene):
 
 
 def shade_viewports(by, before):
-    """The viewport in use shows the colors of vertices in solid shading while these are what is to be seen;
-    all show those of materials again afterwards. before: the settings that were shown before."""
+    """Sets solid shading in the active viewport to vertex colors while these are displayed; resets all
+    viewports to material colors afterward. before: the settings that were shown before."""
     wanted, was = by in shades.IN_MESH, before.get("color_by") in shades.IN_MESH
     if wanted == was:
         return
@@ -135,7 +135,7 @@ def _can_take(item):
 
 
 def _entry(scene, by, row):
-    """(name, "#rrggbb") of what a block is colored by."""
+    """(name, "#rrggbb") of the color of a block."""
     if by == "ROCK":
         number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
         return f"Rock mass {row.rock}", _hue(number)

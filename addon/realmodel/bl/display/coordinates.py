@@ -179,7 +179,7 @@ def remember(scene, place):
 
 
 def last(scene):
-    """The Place that was asked for last, or None."""
+    """The last requested Place, or None."""
     text = scene.realmodel.view.place
     return Place(**json.loads(text)) if text else None
 

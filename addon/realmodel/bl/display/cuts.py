@@ -32,13 +32,13 @@ _halves = caches.new(most=1)  # by model and plane: the half as a Model
 
 
 def is_on(current):
-    """Whether a scene asks for the cut."""
+    """Whether the cut of a scene is switched on."""
     view = current.realmodel.view
     return view.use_section and plane_of(current) is not None and len(current.realmodel.results) > 0
 
 
 def is_shown(current):
-    """Whether the cut was made and is what is to be seen."""
+    """Whether the cut was made and is displayed."""
     return is_on(current) and bool(current.realmodel.view.cut)
 
 
@@ -83,7 +83,7 @@ def _square(size):
 
 
 def remove_plane(current):
-    """Removes the plane where it was made for this, lets go of it where it is an object of the user's."""
+    """Removes the plane if it was made for the cut; an object of the user stays."""
     view, item = current.realmodel.view, current.realmodel.view.plane
     with settings.filling():
         view.plane, view.use_section = None, False
@@ -102,8 +102,8 @@ def _state(current, stage, matrix=None):
 
 
 def known_half(state, cells=None):
-    """The half that is left by a cut, as a realmodel.core.Model; None where it is not at hand. state: as
-    `view.cut` has it."""
+    """The remaining half of a cut, as a realmodel.core.Model; None where it is not in the cache. state: as of
+    `view.cut`."""
     model = _halves.get(state)
     return model if cells is None or (model is not None and model.cell_kind == cells) else None
 
@@ -134,7 +134,7 @@ def follow(current, depsgraph):
 
 
 def refresh(current, stage=None):
-    """Makes the cut anew: at once where nobody waits for the window, else after a short pause."""
+    """Updates the cut: at once in background mode, otherwise after a short pause."""
     if replacing.nobody_waits():
         cut_now(current, stage)
     else:

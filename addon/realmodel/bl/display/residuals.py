@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points of surfaces as small bodies, colored by point minus surface; and what that is in numbers."""
+"""The residuals of surfaces: points as small bodies, colored by point minus surface; and their statistics."""
 
 import json
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model that is drawn: the built one, or a stage of it. Stages are kept once they were asked for.
+"""The displayed model: the built one, or a stage of it. Requested stages are cached.
 
-A stage costs about as much as building the surfaces up to it anew with whole blocks as cells; to show it,
-only the blocks that differ go to Blender.
+A stage costs about as much as building the surfaces up to it with whole blocks as cells; to show it, only the
+blocks that differ are transferred to Blender.
 """
 
 from ...core import build, polygon_mesh
@@ -107,7 +107,7 @@ def shapes_at_stage(scene, stage):
 
 
 def has_shapes(scene, stage):
-    """Whether the shapes of the blocks at a stage are at hand."""
+    """Whether the shapes of the blocks at a stage are in the cache."""
     return (scene.realmodel.built_stamp, stage) in _shapes
 
 

@@ -32,8 +32,8 @@ def draw():
 
 
 def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=None):
-    """Draws the overlay of a scene into what is bound, so many pixels large. view: RegionView3D. scale:
-    pixels for a point. projection: where it is not that of the view."""
+    """Draws the overlay of a scene into the bound framebuffer, size in pixels. view: RegionView3D. scale:
+    pixels per point. projection: if it is not that of the view."""
     projection = view.window_matrix if projection is None else projection
     size = width / scale, height / scale
     found = drawing_for(scene, projection, view.view_matrix, view.is_perspective, size, margins)
@@ -42,7 +42,7 @@ def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=N
 
 
 def draw_items(drawing, scale):
-    """Draws a Drawing with the lower left corner of what is bound as its own."""
+    """Draws a Drawing, its lower left corner at that of the bound framebuffer."""
     import gpu  # not there in Blender's background mode before 4.0
 
     if not _batches or _batches[-1][:2] != (drawing, scale):

@@ -55,7 +55,7 @@ class Axes:
     size: float = 8.0  # of texts
 
     def at(self, points) -> np.ndarray:
-        """(N, 2) in points of what is at x and y (N, 2)."""
+        """(N, 2) positions in points of x and y (N, 2)."""
         low = np.array([self.x_range[0], self.y_range[0]])
         extent = np.array([self.x_range[1], self.y_range[1]]) - low
         x, y, width, height = self.box
@@ -104,7 +104,7 @@ def legend(
     size=8.0,
     layer="",
 ) -> None:
-    """A title that says what the names are, then boxes of color with their names, the first on top.
+    """A title, then boxes of color with their names, the first on top.
 
     x, y: the upper left corner.
     """

@@ -54,7 +54,8 @@ class Eye:
         return self.back[3] != 0.0
 
     def at(self, places) -> np.ndarray:
-        """(N, 2): where places of the world (N, 3) are in the picture, in points; NaN for what is behind."""
+        """(N, 2): the positions of places of the world (N, 3) in the picture, in points; NaN for places
+        behind the eye."""
         places = np.asarray(places, np.float64).reshape(-1, 3)
         found = np.column_stack([places, np.ones(len(places))]) @ self.projection.T
         ahead = np.where(found[:, 3:] > 1e-12, found[:, 3:], np.nan)
@@ -86,7 +87,7 @@ def draw_overlay(
     axes: bool,
     margins: tuple[float, float] = (0.0, 0.0),
 ) -> Drawing:
-    """A Drawing as large as the picture. keys: its legends. margins: what is covered at the left and
+    """A Drawing as large as the picture. keys: its legends. margins: the widths covered at the left and
     right, in points."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN

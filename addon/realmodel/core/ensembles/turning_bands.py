@@ -149,7 +149,8 @@ def _process(spectrum: np.ndarray, samples: int, noise: Noise, line: int) -> np.
 
 
 def _directions() -> np.ndarray:
-    """(LINES, 2) float64: what the plan sees of directions that are spread evenly over a half sphere."""
+    """(LINES, 2) float64: the projections to the plan of directions that are spread evenly over a half
+    sphere."""
     number = np.arange(LINES)
     height = (number + 0.5) / LINES
     around = number * math.pi * (3 - math.sqrt(5))  # the golden angle

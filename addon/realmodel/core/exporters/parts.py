@@ -41,7 +41,7 @@ class Part:
 
 
 def model_parts(model) -> list[Part]:
-    """The closed boundary of every block that there is, named after it."""
+    """The closed boundary of each existing block, named after it."""
     names = distinct_names(block.name for block in model.blocks)
     materials, colors = block_materials(model), model.block_colors.tolist()
     parts = []

@@ -174,7 +174,7 @@ class _Holes:
 
 
 def _depth_column(row: Row) -> str:
-    """The column that says where a surface was met."""
+    """The column with the position of a pick."""
     for column in ("depth", "elevation", "z"):
         if column in row.columns:
             return column

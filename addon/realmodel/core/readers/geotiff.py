@@ -42,7 +42,7 @@ def is_tiff(head: bytes) -> bool:
 
 
 def world_file(file: Path) -> Path | None:
-    """The file beside a TIFF that says where it lies, if there is one."""
+    """The world file beside a TIFF, which has its position, if there is one."""
     beside = (file.with_suffix(ending) for ending in _WORLD_FILES)
     return next((path for path in beside if path.is_file()), None)
 
@@ -169,7 +169,7 @@ def _bands(file: Path, tifffile, tiff, page, step: Step) -> Iterator[np.ndarray]
 def _divided(
     file: Path, places: list[tuple[int, int]], high: int, rows: int, row: int
 ) -> tuple[int, list[tuple[int, int]]]:
-    """Strips of so many rows that are not compressed as lower ones, and how high these are. row: bytes."""
+    """Divides uncompressed strips into lower ones of this many rows; and the height of these. row: bytes."""
     lower = max(1, ROWS_AT_ONCE * 8 // row)
     if lower >= high:
         return high, places

@@ -83,7 +83,7 @@ class HoleDirections:
         return {hole: self._path(hole, stations, sign) for hole, stations in self._stations.items()}
 
     def _downward(self) -> float:
-        """The sign of dips that go down: as said, or that of all of them."""
+        """The sign of downward dips: as given, or that of all dips."""
         said = self._given.downward_dip
         if said is not None:
             return -1.0 if said == "negative" else 1.0

@@ -118,7 +118,7 @@ def _parts(body: str, separator: str):
 
 
 def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
-    """The numbers of the columns that a table has, by what they are."""
+    """The numbers of the columns of a table, by their meaning."""
     names = [plain_name(name) for name in table.layout.names or ()]
     as_written = [name.strip().lower() for name in table.layout.names or ()]
     columns: dict[str, int] = {}

@@ -75,8 +75,8 @@ def read_shapes(
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:
-    """The rings (N, 2) float64 of all polygons of a file, not repeated at their end, as they are; they count
-    even-odd. Lines and points have no area: they are left out, and the second result says so.
+    """The rings (N, 2) float64 of all polygons of a file, not repeated at their end, unchecked, for the
+    even-odd rule; and warnings about lines and points, which have no area and are left out.
 
     Raises InputRefused naming the file and the line, or the feature.
     """

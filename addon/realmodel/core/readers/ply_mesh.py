@@ -172,7 +172,7 @@ def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: 
 
 
 def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
-    """The corners of so many faces, and where they end."""
+    """The corners of this number of faces, and their end."""
     _, sizes, _ = _face(body, at, properties, key)
     fields = []
     for (name, length, form), size in zip(properties, sizes, strict=True):

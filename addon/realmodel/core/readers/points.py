@@ -60,7 +60,7 @@ class PointRows:
 
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
-    """(P, 3) float64 points of a table of text; read_point_rows with nothing said about it."""
+    """(P, 3) float64 points of a table of text: read_point_rows with default options."""
     return read_point_rows(file, step=step).points
 
 
@@ -102,7 +102,7 @@ def read_point_rows(
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text that was opened: what it holds, and how it is written."""
+    """An open table of text: its content and its layout."""
 
     file: Path
     raw: Content
@@ -242,7 +242,8 @@ def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> 
 def _in_order(
     pool: Executor, function: Callable, pieces: Iterable[tuple[int, bytes]], most: int
 ) -> Iterator[tuple[int, Future]]:
-    """Where each piece ends, and what function gives of it; so many are under way."""
+    """For each piece its end and its result of the function, in order; at most this many are processed at a
+    time."""
     waiting: deque[tuple[int, Future]] = deque()
     for begin, piece in pieces:
         waiting.append((begin + len(piece), pool.submit(function, piece)))

@@ -21,7 +21,7 @@ _END = b"endfacet"
 
 
 def begins_as_stl(head: bytes, size: int) -> bool:
-    """Whether a file of so many bytes that begins so is an STL, as text or binary."""
+    """Whether a file of this size that begins with these bytes is an STL, as text or binary."""
     if head.lstrip().startswith(b"solid") and b"facet" in head:
         return True
     count = int.from_bytes(head[_HEAD - 4 : _HEAD], "little")

@@ -129,8 +129,8 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
 
 
 def _header(headings, commented, wanted, known) -> tuple[int | None, tuple[str, ...] | None]:
-    """The line whose names are those of the columns: the one that has what is wanted, if any; a comment
-    counts only if it has all of it."""
+    """The line with the names of the columns: the one that has the requested names, if any; a comment counts
+    only if it has all of them."""
     asked = [name.strip().lower() for name in wanted]
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:

@@ -29,8 +29,7 @@ def no_step(_fraction: float) -> None:
 
 
 class FileBytes:
-    """What a file holds, as far as readers take it for bytes: read where it is asked for, and not kept.
-    Raises InputRefused."""
+    """The bytes of a file for readers: read on demand, not cached. Raises InputRefused."""
 
     def __init__(self, file: Path):
         self._file = file
@@ -109,7 +108,7 @@ def text_content(file: Path) -> Content:
 
 
 def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
-    """Whole lines one after another, few at once: where they begin, and what they are."""
+    """Whole lines in pieces: the position of each piece, and its bytes."""
     while begin < len(content):
         last = min(begin + BYTES_AT_ONCE, len(content))
         end = content.find(b"\n", last - 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact cells without what is too small for solvers: Model.cleaned_cells."""
+"""The exact cells without details too small for solvers: Model.cleaned_cells."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def _part_between(triangle: np.ndarray, lower: np.ndarray, upper: np.ndarray) ->
 
 def common_lines(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(2, K, 3) the ends of vertical lines from one triangle (3, 3) to another, just within each corner of
-    what they have in common in plan."""
+    their common area in plan."""
     polygon = _clipped(one, _walls(other))
     if len(polygon):
         polygon = polygon + _INSET * (polygon.mean(axis=0) - polygon)

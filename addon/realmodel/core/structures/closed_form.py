@@ -71,8 +71,8 @@ class ClosedForm:
         return found
 
     def _sides(self, shape: FaultShape, points: np.ndarray) -> np.ndarray:
-        """(N,) the side of a fault on which each point lies; where its border is nearest, that of what it is
-        continued by."""
+        """(N,) the side of a fault on which each point lies; where its border is nearest, the side of its
+        continuation."""
         corners = shape.vertices[shape.triangles]
         nearest = corners[_nearest_triangles(points, corners)]
         sides = orient3d(*nearest.transpose(1, 0, 2), points)
@@ -85,7 +85,7 @@ class ClosedForm:
 
     @staticmethod
     def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
-        """A fault with what it is continued by beyond its border."""
+        """A fault with its continuation beyond its border."""
         if not len(points):
             return shape.vertices, shape.triangles
         box = np.array([points.min(axis=0), points.max(axis=0)])

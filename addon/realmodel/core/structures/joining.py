@@ -212,7 +212,7 @@ def _part_model(
 
 def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
     """The arguments of build_rock_masses for voids, by name; {} where there are no voids. stacks: each with
-    whether what is below the oldest surface stays."""
+    whether the rock below the oldest surface stays."""
     if not any(stack.emptied for stack, _ in stacks):
         return {}
     tops = [

@@ -178,6 +178,6 @@ def _same_plan(one: Triangulation, other: Triangulation) -> bool:
 
 
 def level(plan: Triangulation, height: float) -> Triangulation:
-    """A level surface over what a sheet or a region covers."""
+    """A level surface over the area of a sheet or a region."""
     vertices, triangles = plan
     return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles

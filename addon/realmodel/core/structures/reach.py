@@ -63,7 +63,8 @@ class Reach:
         return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:
-        """A region in plan: these columns and a little around them, and what is beyond the last ones."""
+        """A region in plan: these columns, a small margin around them, and everything beyond the last
+        ones."""
         lines = []
         for axis, (count, step) in enumerate(zip(columns.shape, self.step[:2], strict=True)):
             at = self.low[axis] + step * (np.arange(count + 1)[:, None] + _MARGIN * np.array([-1.0, 1.0]))
@@ -103,7 +104,7 @@ class Reach:
         return first, last
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The first and the last cells of boxes; what is only beside a cell counts as in it."""
+        """The first and the last cells of boxes; a box beside a cell counts as in it."""
         n = low.shape[1]
         near = 1e-6 * self.step[:n]
         first = np.floor((low - near - self.low[:n]) / self.step[:n])
@@ -152,7 +153,7 @@ class Reach:
 
 
 def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """(K, 3, 3) triangles that cover what others cover of a box, no edge longer than `longest`."""
+    """(K, 3, 3) triangles that cover the same part of a box as others, with no edge longer than `longest`."""
     done = [np.empty((0, 3, 3))]
     while len(pieces):
         away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)

@@ -172,7 +172,7 @@ class ReadyMesh:
         return Within(self.work, self.entry, self.number, family, self.threads)
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-        """(N,) heights: those that are known, and where they are NaN what the method makes of them."""
+        """(N,) heights: the known ones, and where they are NaN those of the method."""
         if self.tiling.nodes is not plan:
             same = welded(plan)
         elif self.same_places is None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sheets of a rock mass's surfaces: each surface once for each combination of sides of the faults that
-displace it, from what lies in these compartments."""
+displace it, from the data in these compartments."""
 
 from __future__ import annotations
 
