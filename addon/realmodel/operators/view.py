@@ -305,7 +305,7 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
         name="Origin",
         description="The point that distances are measured from",
         items=(
-            ("PLACE", "Last Place", "The coordinates that were asked for last"),
+            ("PLACE", "Last Place", "The last requested coordinates"),
             ("CURSOR", "3D Cursor", "Where the 3D cursor is"),
             ("NONE", "None", "No distances"),
         ),
