@@ -201,43 +201,25 @@ def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path
     assert seen == [0] * len(tiled.tiles) == [0] * 16
 
 
-def jittered(n, number, faults, throw):
-    """A surface over the unit square with triangles of its own, displaced by planes."""
-    rng = np.random.default_rng(number)
-    vertices, triangles = lattice(n, lambda x, y: 0.1 * number + 0.03 * np.sin(7 * x + number), 1.0)
-    inside = ((vertices[:, :2] > 0) & (vertices[:, :2] < 1)).all(axis=1)
-    vertices[inside, :2] += rng.uniform(-0.3, 0.3, (int(inside.sum()), 2)) / n
-    for fault in faults:
-        a, b, c = fault.vertices[:3]
-        vertices[:, 2] += throw * ((vertices - a) @ np.cross(b - a, c - a) > 0)
-    return vertices, triangles
-
-
-def test_rounding_is_judged_alike_in_all_tiles(tmp_path, monkeypatch):
-    """Tiles in the southwest have smaller coordinates, and so finer ones."""
-    faults = []
-    for number, (x, lean, turned) in enumerate(
-        [(0.175, 0.3, False), (0.425, -0.2, False), (0.43, 0.1, True)]
-    ):
-        corners = np.array([[x - lean * z, y, z] for z, y in ((-2, -1), (-2, 2), (2, 2), (2, -1))], float)
-        if turned:
-            corners = corners[:, [1, 0, 2]]
-        faults.append(Fault(f"F{number}", corners, np.array([[0, 1, 2], [0, 2, 3]])))
-    surfaces = [Surface(f"S{k}", *jittered(40, k, faults, 0.02)) for k in range(8)]
-    project = Project("leaning", [Rock("rock", surfaces)], faults=faults)
-    asked, found = [], []
-    real = Windows.window
-
-    def look(self, work, tile, farther=0):
-        asked.append(farther)
-        return real(self, work, tile, farther)
-
-    monkeypatch.setattr(Windows, "window", look)
-    for size in (2.0, 0.501):
-        tiled = build_tiles(project, tmp_path / f"{size}", (size, size))
+def test_rounding_is_judged_alike_in_all_tiles(tmp_path):
+    """Nodes of one rock mass are nearer to a fault than rounding is in the other one, far in the east."""
+    corners = np.array([[x, 0.25, z] for x, z in ((-1, -9), (2000, -9), (2000, 9), (-1, 9))], float)
+    fault = Fault("F", corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    rocks = []
+    for name, begin in (("west", 0.0), ("east", 1000.0)):
+        surfaces = []
+        for k in range(3):
+            nodes, triangles = lattice(4, lambda x, y, k=k: k + 0.1 * np.sin(7 * x + 5 * y + k), size=1.0)
+            nodes[nodes[:, 1] == 0.25, 1] += 3e-14
+            nodes[:, 0] += begin
+            surfaces.append(Surface(f"{name} {k}", nodes, triangles))
+        rocks.append(Rock(name, surfaces))
+    project = Project("far apart", rocks, faults=[fault])
+    found = []
+    for width in (2000.0, 500.3):
+        tiled = build_tiles(project, tmp_path / f"{width}", (width, 2.0))
         found.append({key for tile in tiled.tiles for key in cell_keys(tile.model())})
     assert found[0] == found[1]
-    assert asked == [0] * 5
 
 
 def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):

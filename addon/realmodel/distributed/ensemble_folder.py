@@ -48,11 +48,11 @@ def ensemble(
     OutputFailed.
     """
     check_request(realizations, seed, correlation)
-    told = progress or (lambda _share, _text: None)
+    progress = progress or (lambda _share, _text: None)
     model = build(
         project,
         cells="blocks",
-        progress=lambda share, text: told(_BUILT * share, text),
+        progress=lambda share, text: progress(_BUILT * share, text),
         cancel=cancel,
     )
     points = places_of(model, places)
@@ -66,7 +66,9 @@ def ensemble(
             for numbers, sums in workers.in_any_order(_batch, (realizer, points), todo, cancel):
                 store.put(numbers, sums)
                 done += len(numbers)
-                told(_BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations")
+                progress(
+                    _BUILT + (1 - _BUILT) * done / realizations, f"{done} of {realizations} realizations"
+                )
     found = Ensemble.of(realizer, added(map(store.get, batches(realizations))), points)
     write_ensemble(found, folder, also)
     store.remove()

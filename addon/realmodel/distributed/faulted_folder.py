@@ -33,15 +33,17 @@ _WINDOW = "window.pickle"
 
 
 def build_faulted(
-    project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, told, cancel
+    project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, progress, cancel
 ) -> TiledModel:
-    """tile_folder.build for a project with faults or bodies. size: of tiles; told: the progress."""
+    """tile_folder.build for a project with faults or bodies. size: of tiles."""
 
     def prepared(work: Work):
         inputs, structures, warnings = structured_inputs(work, project, 0)
         return Windows(work, inputs, structures, 0), structures, warnings
 
-    windows, structures, warnings = run(prepared, lambda share, text: told(_PREPARED * share, text), cancel)
+    windows, structures, warnings = run(
+        prepared, lambda share, text: progress(_PREPARED * share, text), cancel
+    )
     inputs = windows.inputs
     frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
     digest = _digest(frame, windows)
@@ -62,7 +64,7 @@ def build_faulted(
     listed = store.listed(frame.grid, lambda: _write_windows(windows, frame, store, cancel))
     waiting = [name for name in listed if not store.has("joined", name)]
     for times in range(_ROUNDS + 1):
-        _build_tiles((store, frame, whole), waiting, len(listed), workers, told, cancel)
+        _build_tiles((store, frame, whole), waiting, len(listed), workers, progress, cancel)
         asked = _farther(store, listed)
         if not asked:
             break
@@ -112,11 +114,11 @@ def _write_window(windows: Windows, store: Store, name: Name, cancel, farther: i
         pickle.dump(window, file, pickle.HIGHEST_PROTOCOL)
 
 
-def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, told, cancel) -> None:
+def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, progress, cancel) -> None:
     done = count - len(waiting)
     for _ in workers.in_any_order(_build, shared, waiting, cancel):
         done += 1
-        told(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
+        progress(_PREPARED + (_BUILT - _PREPARED) * done / count, f"{done} of {count} tiles built")
 
 
 def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
@@ -157,7 +159,7 @@ def _farther(store: Store, names: list[Name]) -> dict[Name, str]:
     asked = {
         name: f"cells of tile {name[0]}, {name[1]} reach too far beyond it; make tiles larger"
         for name in names
-        if not store.told("joined", name)["is_within"]
+        if not store.read_record("joined", name)["is_within"]
     }
     for one, other, ours, theirs in _seams(store, names):
         if not ours.matches(theirs):
@@ -203,9 +205,9 @@ def _catalog(
             both = np.column_stack([ours.part[which, column], theirs.part[which, column]])
             for a, b in np.unique(both, axis=0).tolist():
                 into.join((*one, a), (*other, b))
-    told = [store.told("joined", name) for name in names]
+    records = [store.read_record("joined", name) for name in names]
     found = dict.fromkeys(warnings)
-    for record in told:
+    for record in records:
         for each in record["warnings"]:
             found[BuildWarning(**{**each, "items": tuple(each["items"])})] = None
     return Catalog(
@@ -213,8 +215,8 @@ def _catalog(
         frame.cell_kind,
         digest,
         frame.grid,
-        blocks_of(frame, told, parts, cells),
-        [entry_of(name, record) for name, record in zip(names, told, strict=True)],
+        blocks_of(frame, records, parts, cells),
+        [entry_of(name, record) for name, record in zip(names, records, strict=True)],
         faces,
         0,
         list(found),

@@ -89,7 +89,7 @@ class Store:
         with Outputs() as outputs, outputs.file(self.record(kind, name)) as file:
             file.write(json.dumps(record).encode())
 
-    def told(self, kind: str, name: Name) -> dict:
+    def read_record(self, kind: str, name: Name) -> dict:
         try:
             return json.loads(self.record(kind, name).read_text())
         except (OSError, ValueError) as error:
@@ -192,17 +192,17 @@ class Parts:
         return np.bincount(np.array(roots, np.int64), minlength=blocks)
 
 
-def blocks_of(frame: Frame, told: list[dict], parts: Parts, whole_cells: Parts) -> list[Block]:
-    """The blocks of the whole. told: the records of tiles; parts: the connected parts; whole_cells: the cells
+def blocks_of(frame: Frame, records: list[dict], parts: Parts, whole_cells: Parts) -> list[Block]:
+    """The blocks of the whole. records: of tiles; parts: the connected parts; whole_cells: the cells
     of whole blocks."""
-    if not told:
+    if not records:
         return []
-    of_tiles = [[Block(**block) for block in record["blocks"]] for record in told]
+    of_tiles = [[Block(**block) for block in record["blocks"]] for record in records]
     components, of_blocks = (each.count(len(of_tiles[0])) for each in (parts, whole_cells))
     blocks = []
     for number, block in enumerate(of_tiles[0]):
         volume = math.fsum(blocks_[number].volume for blocks_ in of_tiles)
-        cells = sum(record["cells"][number] for record in told)
+        cells = sum(record["cells"][number] for record in records)
         if frame.cell_kind == "blocks":
             cells = int(of_blocks[number])
         blocks.append(replace(block, volume=volume, cells=cells, components=int(components[number])))

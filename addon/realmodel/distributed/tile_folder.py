@@ -90,12 +90,12 @@ def build(
     check_cells(cells)
     size = checked_size(tile_size)
     folder = Path(folder)
-    told = progress or (lambda _share, _text: None)
+    progress = progress or (lambda _share, _text: None)
     require_own(folder)
     is_finished = (folder / CATALOG).exists()
     if project.faults or project.bodies:
         with no_workers() if is_finished else workers_of(client, workers) as done_by:
-            return build_faulted(project, folder, size, cells, done_by, told, cancel)
+            return build_faulted(project, folder, size, cells, done_by, progress, cancel)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
         with _mapped_arrays(folder) as arrays:
             found = prepared(
@@ -104,7 +104,7 @@ def build(
                 cells,
                 arrays,
                 done_by,
-                lambda share, text: told(_PREPARED * share, text),
+                lambda share, text: progress(_PREPARED * share, text),
                 cancel,
             )
             if is_finished:
@@ -114,7 +114,7 @@ def build(
                 found.frame.grid, lambda: divided(found, arrays, done_by, store.parts, cancel)
             )
             found = found.let_go()
-        _build_all(store, found.frame, names, done_by, told, cancel)
+        _build_all(store, found.frame, names, done_by, progress, cancel)
     catalog = _catalog(found, store, names)
     write_index(store, [f"{TILES}/{stem(name)}.vtu" for name in names])
     write_catalog(catalog, folder)
@@ -122,7 +122,7 @@ def build(
     return tiled_model(catalog, folder)
 
 
-def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, told, cancel) -> None:
+def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, progress, cancel) -> None:
     """Builds all tiles, and joins each as soon as those around it are built."""
     everywhere = frozenset(names)
     built = {name for name in names if store.has("built", name)}
@@ -146,7 +146,7 @@ def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, 
         (built if kind == "built" else joined).add(name)
         done = (_BUILT * len(built) + (1 - _BUILT) * len(joined)) / len(names)
         text = f"{len(built)} of {len(names)} tiles built, {len(joined)} joined"
-        told(_PREPARED + (_JOINED - _PREPARED) * done, text)
+        progress(_PREPARED + (_JOINED - _PREPARED) * done, text)
 
 
 def _step(shared: tuple[Store, Frame, frozenset], task: tuple[str, Name]) -> None:
@@ -284,14 +284,14 @@ def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
             patches += [match.patches, match.unequal]
             for one, another in match.cells.tolist():
                 parts.join((*name, one), (*other, another))
-    told = [store.told("joined", name) for name in names]
+    records = [store.read_record("joined", name) for name in names]
     return Catalog(
         frame.project,
         frame.cell_kind,
         found.digest,
         frame.grid,
-        blocks_of(frame, told, parts, parts),
-        [entry_of(name, record) for name, record in zip(names, told, strict=True)],
+        blocks_of(frame, records, parts, parts),
+        [entry_of(name, record) for name, record in zip(names, records, strict=True)],
         *patches.tolist(),
         [*warnings, *_warnings(frame, store, names)],
     )
@@ -303,12 +303,12 @@ def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarnin
     wrong: dict[tuple[str, int, int], WrongPoints] = {}
     heights: dict[tuple[int, int], PartHeights] = {}
     for name in names:
-        record = store.told("built", name)
-        for told in record["warnings"]:
-            key = (told["kind"], told["rock"], told["surface"])
-            if told["kind"] != "no_area":
-                key = (*key, told["text"])
-            items.setdefault(key, set()).update(told["items"])
+        record = store.read_record("built", name)
+        for warning in record["warnings"]:
+            key = (warning["kind"], warning["rock"], warning["surface"])
+            if warning["kind"] != "no_area":
+                key = (*key, warning["text"])
+            items.setdefault(key, set()).update(warning["items"])
         for side in ("below", "above"):
             _join_each(wrong, [((side, r, k), WrongPoints(**own)) for r, k, own in record[side]])
         _join_each(heights, [((r, k), PartHeights(**own)) for r, k, own in record["heights"]])

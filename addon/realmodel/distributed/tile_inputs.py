@@ -100,10 +100,10 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
         numbers = flat(entry.rock)
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
         for k in (k for k in interpolation_order(entry.rock) if k in fitted):
-            found, near[r, k], told = fitted[k]
+            found, near[r, k], texts = fitted[k]
             local[r, k] = linked(found, entry.rock, k)
             warnings += [
-                BuildWarning(text, "points", entry.rock.name, entry.rock.surfaces[k].name) for text in told
+                BuildWarning(text, "points", entry.rock.name, entry.rock.surfaces[k].name) for text in texts
             ]
         if numbers:
             own |= {
@@ -142,8 +142,10 @@ def _fitted(
         stub = replace(surface, points=None)
         tasks.append((k, entry.rock.name, stub, points, extent, len(nodes), *surface.method_options()))
     found = {}
-    for (k, *_), (local, points, told) in workers.in_any_order(_fit, arrays.folder, tasks, cancel, here=True):
-        found[k] = local, arrays.opened(points), told
+    for (k, *_), (local, points, texts) in workers.in_any_order(
+        _fit, arrays.folder, tasks, cancel, here=True
+    ):
+        found[k] = local, arrays.opened(points), texts
     return found
 
 
@@ -154,8 +156,8 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
 
     def fitted(work: Work):
         given = np.ascontiguousarray(arrays.opened(points))
-        found, left, told = local_heights(work, given, extent, nodes, method, settings, 1, arrays)
-        return found, points if left is given else arrays.place(left), told
+        found, left, texts = local_heights(work, given, extent, nodes, method, settings, 1, arrays)
+        return found, points if left is given else arrays.place(left), texts
 
     try:
         return run(fitted)
@@ -208,8 +210,8 @@ def _kept(rock: tuple, arrays: MappedArrays) -> tuple:
 
 
 def _joined(surfaces: SurfaceSet, cancel):
-    """The rock masses with their borders joined and what to tell of it; None where there is nothing to join.
-    No height matters to that. Nor is anything joined of surfaces on one mesh that was made for them."""
+    """The rock masses with their borders joined, and the text of a warning; None where nothing has to be.
+    Heights do not matter. Surfaces on one mesh that was made for them have nothing to join."""
     if _have_one_mesh(surfaces.rock_inputs):
         return None
     native, rocks = native_module(), [entry.native() for entry in surfaces.rock_inputs]
@@ -219,7 +221,7 @@ def _joined(surfaces: SurfaceSet, cancel):
             try:
                 return work.native(native.join_rock_masses, rocks)
             except native.InputError:
-                return None  # the tile where it is tells of it in the user's names
+                return None  # the tile there refuses it with the names of the project
 
     return run(task, cancel=cancel)
 

@@ -195,7 +195,9 @@ class PlanGrid:
         self.low, self.high = functools.reduce(np.minimum, plan), functools.reduce(np.maximum, plan)
         if not len(corners):
             return
-        self.origin, self.last = self.low.min(axis=0), self.high.max(axis=0)
+        # min(axis=0) would take several times as long
+        self.origin = np.array([axis.min() for axis in self.low.T])
+        self.last = np.array([axis.max() for axis in self.high.T])
         size = self.last - self.origin
         # no cells that are much smaller than polygons: where many lie over each other there would be too many
         usual = (self.high - self.low).mean(axis=0)

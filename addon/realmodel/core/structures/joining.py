@@ -67,7 +67,7 @@ def build_joined(
                 structures.native(),
                 divides,
                 continued=structures.continued or [],
-                largest=_largest(structures),
+                largest=structures.largest,
                 threads=threads,
             )
         except native.InputError as error:
@@ -76,13 +76,6 @@ def build_joined(
     _merge_blocks_of_bodies(joined, inputs, structures, divides)
     joined["warnings"] = list(warnings)
     return joined
-
-
-def _largest(structures: Structures) -> float:
-    """The largest coordinate of the whole around a tile; 0 where the model is a whole itself."""
-    if structures.continued is None:
-        return 0.0
-    return float(max(np.abs(structures.box).max(), *map(abs, structures.ends)))
 
 
 def _renumbered(built: dict, there: np.ndarray, part: np.ndarray, count: int) -> dict:

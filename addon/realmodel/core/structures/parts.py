@@ -44,6 +44,13 @@ class Structures:
         return len(self.faults) + len(self.bodies)
 
     @property
+    def largest(self) -> float:
+        """The largest coordinate of the whole that a window is a part of; 0 for a whole itself."""
+        if self.continued is None:
+            return 0.0
+        return float(max(np.abs(self.box).max(), *map(abs, self.ends)))
+
+    @property
     def names(self) -> list[str]:
         return [each.name for each in (*self.faults, *self.bodies)]
 

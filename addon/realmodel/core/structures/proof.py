@@ -116,14 +116,9 @@ def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
 
 def _is_near(model, forms: list[ClosedForm], locator: Locator, point: np.ndarray) -> bool:
     """Whether something that divides rock is nearer to a point than rounding may move it."""
-    near = _ROUNDING * np.spacing(np.abs(model.vertices).max())
-    for move in np.vstack([np.eye(3), -np.eye(3)]) * near:
-        moved = (point + move)[None]
-        if _said(forms, moved)[0] != _said(forms, point[None])[0]:
-            return True
-        if (locator.cells(moved) != locator.cells(point[None])).any():
-            return True
-    return False
+    moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
+    blocks, cells = _said(forms, point + moves), locator.cells(point + moves)
+    return bool((blocks != blocks[0]).any() or (cells != cells[0]).any())
 
 
 def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
@@ -145,10 +140,10 @@ def _check_faces(model, places: int, random) -> dict:
     began = time.perf_counter()
     faces = np.flatnonzero(model.face_surface >= 0)
     faces = np.sort(random.choice(faces, min(len(faces), places), replace=False))
-    sums = np.add.reduceat(model.vertices[model.face_vertices], model.face_offsets[:-1])
-    points = (sums / np.diff(model.face_offsets)[:, None])[faces]
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    points = np.add.reduceat(model.vertices[corners], offsets[:-1]) / np.diff(offsets)[:, None]
     away = np.full(len(faces), np.inf)
-    allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
+    allowed = _rounding(model) * (1 + _steepness(model))
     for number in np.unique(model.face_surface[faces]):
         own = np.flatnonzero(model.face_surface[faces] == number)
         vertices, triangles = model.surface(number)
@@ -194,6 +189,11 @@ def _distances_within(points: np.ndarray, triangles: np.ndarray, allowed: float)
     for n in np.flatnonzero(found > allowed)[:_SHOWN]:
         found[n] = distances_of_pairs(np.broadcast_to(points[n], (len(triangles), 3)), triangles).min()
     return found
+
+
+def _rounding(model) -> float:
+    """How far rounding may move a vertex: by the coordinates of the whole, where this is a part of one."""
+    return _ROUNDING * float(np.spacing(max(np.abs(model.vertices).max(), model.structures.largest)))
 
 
 def _steepness(model) -> float:

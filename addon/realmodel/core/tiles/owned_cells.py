@@ -20,7 +20,9 @@ _KEY = "V16"
 
 def owners(model, grid: TileGrid) -> np.ndarray:
     """(C, 2) int64: column and row of the tile that each cell belongs to."""
-    order, rank = _ranks(model.vertices)
+    order = np.lexsort(model.vertices.T[::-1])
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
     size = np.diff(model.face_offsets)
     lowest = np.full(len(size), len(order), np.int64)
     np.minimum.at(lowest, np.repeat(np.arange(len(size)), size), rank[model.face_vertices])
@@ -37,14 +39,6 @@ def owners(model, grid: TileGrid) -> np.ndarray:
     return np.column_stack(at)
 
 
-def _ranks(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The vertices in order of x, y and z; and (V,) the place of each in it."""
-    order = np.lexsort(vertices.T[::-1])
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    return order, rank
-
-
 def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
     """A box in plan around some cells, (C,) bool, and those that share a face with one."""
     faces = np.append(mine, False)[model.face_cells].any(axis=1)
@@ -54,7 +48,8 @@ def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
     faces = near[model.face_cells].any(axis=1)
     corners = model.face_vertices[np.repeat(faces, np.diff(model.face_offsets))]
     plan = model.vertices[corners, :2]
-    return *plan.min(axis=0).tolist(), *plan.max(axis=0).tolist()
+    x, y = plan.T  # min(axis=0) would take several times as long
+    return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
 
 @dataclass(frozen=True)
@@ -117,14 +112,15 @@ class Seam:
 
 def face_keys(model, faces: np.ndarray) -> np.ndarray:
     """(F,) of 16 bytes: the same for the same polygon on the same surface, whichever cell it is seen from."""
-    _, rank = _ranks(model.vertices)
     found = []
     for face in faces.tolist():
-        corners = model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]
-        corners = np.roll(corners, -int(rank[corners].argmin()))
-        if rank[corners[1]] > rank[corners[-1]]:
-            corners = np.roll(corners[::-1], 1)
-        digest = hashlib.blake2b(np.ascontiguousarray(model.vertices[corners] + 0.0), digest_size=16)
+        numbers = model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]
+        corners = [tuple(place) for place in (model.vertices[numbers] + 0.0).tolist()]  # -0.0 is 0.0
+        first = corners.index(min(corners))
+        corners = corners[first:] + corners[:first]
+        if corners[1] > corners[-1]:
+            corners[1:] = corners[:0:-1]
+        digest = hashlib.blake2b(np.array(corners).tobytes(), digest_size=16)
         digest.update(int(model.face_surface[face]).to_bytes(4, "little", signed=True))
         found.append(digest.digest())
     return np.frombuffer(b"".join(found), _KEY)

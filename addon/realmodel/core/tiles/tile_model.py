@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -119,12 +120,21 @@ def write_windows(
     tile."""
     part, names = _part(rock, f"{surface}-near"), list(boxes)
     windows = PointWindows(points, list(boxes.values()), local.needed, local.grid, local.reach)
-    with TileLists(folder_of, part, np.empty((0, 3))) as near:
-        for number, piece in enumerate(in_pieces(points)):
-            for box, which in windows.of(piece, number == 0):
-                near.add(names[box], piece[which])
+    with _listed(points, windows, names, TileLists(folder_of, part, np.empty((0, 3)))) as near:
         for name in near.tiles:
             _write({"points": near.of(name)}, folder_of(name) / part)
+
+
+@contextmanager
+def _listed(
+    points: np.ndarray, windows: PointWindows, names: list[Name], lists: TileLists
+) -> Iterator[TileLists]:
+    """The points in the window of each tile, in `lists`, which are deleted at the end."""
+    with lists:
+        for number, piece in enumerate(in_pieces(points)):
+            for window, which in windows.of(piece, number == 0):
+                lists.add(names[window], piece[which])
+        yield lists
 
 
 def write_certain_heights(
@@ -143,10 +153,7 @@ def write_certain_heights(
     while boxes:
         names = list(boxes)
         windows = PointWindows(points, list(boxes.values()), local.needed, wider=wider)
-        with TileLists(folder_of, part, np.empty((0, 3))) as near:
-            for number, piece in enumerate(in_pieces(points)):
-                for box, which in windows.of(piece, number == 0):
-                    near.add(names[box], piece[which])
+        with _listed(points, windows, names, TileLists(folder_of, part, np.empty((0, 3)))) as near:
             for number, name in enumerate(names):
                 nodes = _read_part(folder_of(name), rock, PLAN).vertices[:, :2]
                 z = heights.setdefault(name, np.empty(len(nodes)))
