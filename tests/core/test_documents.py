@@ -171,16 +171,24 @@ def test_scripts_and_options_in_commands_exist(document):
                     assert option in source, f"{document.name}: {name} has no {option}"
 
 
+def table_of(document):
+    """The lines of the table of blocks that a document shows, which its first command prints."""
+    shown = re.search(
+        r"^```text\n(block .*?)^```", document.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
+    return [line.rstrip() for line in shown[1].splitlines()] if shown else []
+
+
 RUNNABLE = [
-    pytest.param(command, id=f"{document.name}-{number}")
+    pytest.param(command, table_of(document) if number == 1 else [], id=f"{document.name}-{number}")
     for document in DOCUMENTS
     for number, command in enumerate(commands(document), 1)
     if command[:2] == ["python3", "build_model.py"] and command[2].startswith("blend_samples/")
 ]
 
 
-@pytest.mark.parametrize("command", RUNNABLE)
-def test_commands_run(command, tmp_path):
+@pytest.mark.parametrize(("command", "table"), RUNNABLE)
+def test_commands_run(command, table, tmp_path):
     (tmp_path / "blend_samples").symlink_to(ROOT / "blend_samples")
     (tmp_path / "build_model.py").symlink_to(ROOT / "build_model.py")
     run = subprocess.run(
@@ -188,6 +196,7 @@ def test_commands_run(command, tmp_path):
     )
     assert run.returncode == 0, run.stderr
     assert len(list(tmp_path.iterdir())) > 2, "it wrote nothing"
+    assert set(table) <= {line.rstrip() for line in run.stdout.splitlines()}
 
 
 def test_the_project_that_is_shown_is_the_example():

@@ -187,21 +187,25 @@ def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
     }
 
 
-def box_around(inputs: list, structures: Structures) -> np.ndarray:
-    """(2, 3) corners of a box around all rock that there may be: around RockInputs and bodies, with a margin
-    for what is not interpolated yet."""
+def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -> np.ndarray:
+    """(2, 3) corners of a box around all rock that there may be: around RockInputs, or their sheets where
+    these are made, and bodies, with a margin for what is not interpolated yet."""
     x, y, z = [], [], [body.vertices[:, 2] for body in structures.bodies]
+    is_known = True
     for entry in inputs:
         if entry.region is not None:
             x.append(entry.region[0][:, 0])
             y.append(entry.region[0][:, 1])
-        for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
-            given = surface.points if shape is None else shape[0]
-            given = np.asarray(given, np.float64).reshape(-1, 3)
-            z.append(given[:, 2])
-            if entry.region is None:
-                x.append(given[:, 0])
-                y.append(given[:, 1])
+        for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
+            sheets = entry.structure.distinct(number) if has_sheets else [None]
+            shapes = [shape] if None in sheets else sheets  # None: younger than the stage
+            is_known &= None not in shapes
+            for given in (surface.points if shape is None else shape[0] for shape in shapes):
+                places = np.asarray(given, np.float64).reshape(-1, 3)
+                z.append(places[:, 2])
+                if entry.region is None:
+                    x.append(places[:, 0])
+                    y.append(places[:, 1])
         if entry.rock.base_elevation is not None:
             z.append(np.array([entry.rock.base_elevation]))
     if not any(map(len, z)):
@@ -210,8 +214,7 @@ def box_around(inputs: list, structures: Structures) -> np.ndarray:
         np.array([corner([corner(each) for each in axis if len(each)]) for axis in (x, y, z)])
         for corner in (np.min, np.max)
     )
-    made = all(shape is not None for entry in inputs for shape in entry.surfaces)
-    margin = np.array([0.0, 0.0, 0.0 if made else _BEYOND * (high[2] - low[2])])
+    margin = np.array([0.0, 0.0, 0.0 if is_known else _BEYOND * (high[2] - low[2])])
     margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
     box = np.array([low - margin, high + margin])
     bases = [entry.rock.base_elevation for entry in inputs]

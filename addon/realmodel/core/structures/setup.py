@@ -18,6 +18,7 @@ from .entries import Body, Fault
 from .parts import Structures, add_compartments, box_around, divide, structures_of
 from .reading import read_structures
 from .refusals import refused_structure
+from .rock_structure import joined
 from .sheets import make_sheets
 from .sides import FaultShape, fault_sides
 
@@ -36,11 +37,13 @@ def make_structures(
     stage: int | None,
     start: float,
     end: float,
+    joins: bool = True,
 ) -> Structures:
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space. Progress goes from `start` to `end`.
 
-    faults, bodies: those of the project, with arrays. Raises InputRefused.
+    faults, bodies: those of the project, with arrays. joins: whether `entry.surfaces` gets the sheets of each
+    surface, one after another. Raises InputRefused.
     """
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
@@ -54,7 +57,7 @@ def make_structures(
         add_compartments(structures, inputs)
         for entry, begin, finish in zip(inputs, steps[:-1], steps[1:], strict=True):
             make_sheets(work, entry, begin, finish, threads, stage)
-        wider = box_around(inputs, structures)
+        wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
             break
         box = np.array([np.minimum(wider[0], box[0]), np.maximum(wider[1], box[1])])
@@ -62,14 +65,20 @@ def make_structures(
         structures = divide(work, structures, box, threads)
         if np.array_equal(structures.sides, before):
             break
+    if joins:
+        for entry in inputs:
+            for number in range(len(entry.surfaces)):
+                sheets = entry.structure.distinct(number)
+                if None not in sheets:  # not younger than the stage
+                    entry.surfaces[number] = joined(sheets)
     return structures
 
 
 def structured_inputs(
     work: Work, project: Project, threads: int
 ) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
-    """Reads, meshes and interpolates a project with faults or bodies. Returns its rock masses with their
-    sheets, its structures, and warnings. Raises InputRefused."""
+    """Reads, meshes and interpolates a project with faults or bodies: its rock masses with sheets in the
+    place of surfaces, its structures, and warnings. Raises InputRefused."""
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project)
         faults, bodies, warnings = read_structures(work, project, threads)
@@ -77,7 +86,9 @@ def structured_inputs(
     for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
-    structures = make_structures(work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0)
+    structures = make_structures(
+        work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False
+    )
     return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 
 

@@ -18,13 +18,12 @@ from ..wrong_sides import points_too_low
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
-from .rock_structure import joined
 from .sides import sides_of
 
 
 def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage: int | None = None) -> None:
-    """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`;
-    `entry.surfaces` gets all sheets of a surface one after another. Progress goes from `start` to `end`.
+    """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
+    Progress goes from `start` to `end`.
 
     Raises InputRefused for a surface that has data in no compartment.
     """
@@ -115,9 +114,7 @@ def _make(entry, number: int, surface) -> list:
         drawn = _drawn_together(surface, together, sheets)
         for compartment, sides in together.members.items():
             structure.sheets[compartment][number] = drawn[sides]
-    sheets = structure.distinct(number)
-    entry.surfaces[number] = joined(sheets)
-    surface.finish(sheets)
+    surface.finish(structure.distinct(number))
     return warnings
 
 
