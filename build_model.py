@@ -30,7 +30,7 @@ def main(arguments: list[str]) -> int:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that lacks a letter of a name stops no build
     if hasattr(signal, "SIGXFSZ"):
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing too much becomes an error that is told
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # exceeding the size limit of files becomes an OSError
     try:
         options = parse(arguments)
     except SystemExit as leaving:
@@ -76,7 +76,7 @@ if __name__ == "__main__":
         exit_status = main(_arguments())
     except KeyboardInterrupt:
         exit_status = say("interrupted: nothing was written", INTERRUPTED)
-    except Exception:  # a defect: told in full, and with a status that Blender too hands on
+    except Exception:  # a defect: print it in full; Blender hands on this exit status, too
         traceback.print_exc()
         exit_status = REFUSED
     with contextlib.suppress(BrokenPipeError):

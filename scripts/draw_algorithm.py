@@ -38,7 +38,7 @@ def middle(*points):
     return tuple(sum(p[axis] for p in points) / len(points) for axis in (0, 1))
 
 
-# --- what a border tells (300 x 190)
+# --- the border of a cover (300 x 190)
 
 CORNERS = dict(zip("ABCD", [(2, 2), (298, 2), (298, 188), (2, 188)], strict=True))
 CORNERS |= zip("abcdef", [(70, 46), (170, 26), (244, 70), (232, 142), (136, 172), (58, 124)], strict=True)
@@ -259,15 +259,15 @@ def draw_bounds(d):
         (x0, y0), (x1, y1) = points[i], points[i + 1]
         return x0, min(y0, y1), x1 - x0, abs(y1 - y0)
 
-    told = {0: BLUE, 1: BLUE, 2: BLUE, 3: RED, 4: RED, 5: GREY}
-    for i, color in told.items():
+    colors = {0: BLUE, 1: BLUE, 2: BLUE, 3: RED, 4: RED, 5: GREY}
+    for i, color in colors.items():
         x, y, width, height = span(LOWER, i)
         fill = {BLUE: "#dbe7ef", RED: "#f3d9d6", GREY: PALE}[color]
         d.rect(x + 1, y - 2, width - 2, round(height + 4, 1), fill, color, "3 2", 0)
     d.path(ENVELOPE, INK, 2)
     for point in ENVELOPE:
         d.dot(point, INK, 2.6)
-    for i, color in told.items():
+    for i, color in colors.items():
         d.path(LOWER[i : i + 2], color, 2.2)
     for point in LOWER:
         d.dot(point, INK, 2.6)
@@ -388,7 +388,7 @@ PICTURES = {
     ),
     "algorithm_blocks": (
         (
-            "Bounds tell most triangles apart",
+            "Bounds decide most triangles",
             draw_bounds,
             "In section. A triangle of S wholly below what lies over it becomes a facet as it is, one "
             "wholly above is gone. Only what may meet is looked at exactly.",

@@ -62,7 +62,7 @@ def draw(path):
         plan.set_aspect("equal")
         plan.set_axis_off()
         plan.set_title(f"{mesher}: {len(triangles):,} triangles")
-        told = figures(vertices, triangles, _EDGE, False)
+        quality = figures(vertices, triangles, _EDGE, False)
         histogram.hist(
             ratios, bins=np.linspace(0, 1, _ROWS + 1), weights=np.full(len(ratios), 100 / len(ratios))
         )
@@ -72,8 +72,8 @@ def draw(path):
         histogram.text(
             0.03,
             0.9,
-            f"mean {told['mean_ratio']:.3f}\nleast angle {told['least_angle']:.0f}°\n"
-            f"six neighbours {100 * told['six']:.0f} %",
+            f"mean {quality['mean_ratio']:.3f}\nleast angle {quality['least_angle']:.0f}°\n"
+            f"six neighbours {100 * quality['six']:.0f} %",
             transform=histogram.transAxes,
             verticalalignment="top",
         )

@@ -57,7 +57,7 @@ for preset in "${presets[@]}"; do
     step 20m "$preset: tests" ctest --preset "$preset" -j 2
     environment=()
     if [[ $preset == tsan ]]; then
-        # as ctest sets them: what OpenMP synchronises is told by archer
+        # as ctest sets them: archer reports OpenMP's synchronization
         archer=$(sed -n 's/^ARCHER_LIBRARY:FILEPATH=//p' build/tsan/CMakeCache.txt)
         environment=("OMP_TOOL_LIBRARIES=$archer" "TSAN_OPTIONS=ignore_noninstrumented_modules=1 halt_on_error=1")
     fi

@@ -19,7 +19,8 @@ bl_info = {
 
 
 def register():
-    """Called by Blender when the add-on is enabled. What needs Blender is imported here and not before."""
+    """Called by Blender when the add-on is enabled. Modules that need Blender are imported here, not
+    before."""
     if sys.version_info < (3, 11):  # noqa: UP036 (in Blender it is not ours to choose)
         raise RuntimeError(
             "RealModel needs Python 3.11 or newer, and this Blender has "
@@ -68,8 +69,8 @@ def unregister():
 
 
 def _at_exit(wanted):
-    """Blender disables its add-ons when it ends; as the module bpy it does not, and then takes a minute to
-    free what they have registered."""
+    """Blender disables its add-ons when it ends. The module bpy does not, and then takes a minute to free
+    registered data."""
     import atexit
 
     import bpy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What RealModel does when Blender opens, saves or undoes: registered once, and all taken out again."""
+"""Handlers for opening, saving and undo in Blender: registered once, all removed again."""
 
 import functools
 import sys
@@ -20,8 +20,8 @@ _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
 
 
 def _patient(handler):
-    """Has a handler of renders wait for the window. While Blender draws a panel in Python nobody may write,
-    not even the thread of a render, whose handlers run beside the window."""
+    """Makes a handler of renders wait for the window. While Blender draws a panel in Python no other thread
+    may write data, not even that of a render, whose handlers run beside the window."""
 
     @functools.wraps(handler)
     def patient(scene, *arguments):
@@ -29,7 +29,7 @@ def _patient(handler):
             return handler(scene, *arguments)
         until, interval = time.monotonic() + _PATIENCE, sys.getswitchinterval()
         while True:
-            sys.setswitchinterval(_PATIENCE)  # a panel that is begun now would get in between
+            sys.setswitchinterval(_PATIENCE)  # no panel may start to draw in between
             try:
                 scene.realmodel.view.message = scene.realmodel.view.message
                 return handler(scene, *arguments)
@@ -93,7 +93,7 @@ def _frame_changed(scene, depsgraph=None, *_arguments):
 
 
 def migrate_all():
-    """Brings every scene of the file up to date; one that cannot be is left as it is, and said so."""
+    """Migrates every scene of the file; a scene that cannot be migrated stays as it is, with a report."""
     for scene in bpy.data.scenes:
         try:
             versioning.migrate(scene)
@@ -133,7 +133,7 @@ _HANDLERS = (
 
 
 def _migrate_at_start():
-    """Once, when Blender lets its data be changed: an add-on that is enabled may not do so yet."""
+    """Called once, when Blender allows changes of data: not yet while an add-on is enabled."""
     if hasattr(bpy.types.Scene, "realmodel"):
         migrate_all()
 

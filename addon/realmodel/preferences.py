@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edit > Preferences > Add-ons > RealModel: what holds for all files of a user.
-
-Where the add-on runs without being enabled, as in a script that registers it, the defaults hold.
-"""
+"""Edit > Preferences > Add-ons > RealModel: settings for all files of a user. Where the add-on runs without
+being enabled, as in a script that registers it, the defaults are used."""
 
 from types import SimpleNamespace
 
@@ -37,7 +35,7 @@ class RealModelPreferences(bpy.types.AddonPreferences):
     )
     memory_limit: FloatProperty(
         name="Memory Limit",
-        description="Gigabytes that a build may use; one that needs more is refused before it begins. "
+        description="Memory that a build may use, in gigabytes; a build that needs more is refused. "
         "0: the memory that is free",
         min=0.0,
         soft_max=256.0,
@@ -86,7 +84,7 @@ def current():
 
 
 def build_memory():
-    """Bytes that a build may use; None: what is free."""
+    """Memory that a build may use, in bytes; None: the free memory."""
     return round(current().memory_limit * _GIGABYTE) or None
 
 

@@ -91,7 +91,7 @@ class RealModelProperty(bpy.types.PropertyGroup):
     )
     hardness: FloatProperty(
         name="Hardness",
-        description="How well the rock withstands weathering in pictures, at most 1; 0: as its look does",
+        description="Resistance of the rock to weathering in pictures, at most 1; 0: that of its look",
         min=0.0,
         max=1.0,
         update=changes.property_hardness,
@@ -139,7 +139,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     origin: FloatVectorProperty(
         name="Origin",
-        description="What is added to the coordinates of the scene to get those of the model",
+        description="Vector added to the coordinates of the scene to get those of the model",
         size=3,
         subtype="XYZ",
         precision=1,
@@ -277,7 +277,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
 
 
 class RealModelActivity(bpy.types.PropertyGroup):
-    """`window_manager.realmodel`: what goes on at the moment; not saved."""
+    """`window_manager.realmodel`: running work; not saved."""
 
     running: BoolProperty(options={"SKIP_SAVE"})
     progress: FloatProperty(

@@ -13,11 +13,11 @@ _MOST_OF_SLIDER = 100
 
 
 class RealModelEnsemble(bpy.types.PropertyGroup):
-    """How many realizations, and how they are shown."""
+    """Settings of an ensemble, and of its display."""
 
     realizations: IntProperty(
         name="Realizations",
-        description="How often the model is built, each time with other elevations between the points",
+        description="Number of builds of the model, each with other elevations between the points",
         default=40,
         min=2,
         max=MOST,
@@ -26,7 +26,7 @@ class RealModelEnsemble(bpy.types.PropertyGroup):
     )
     seed: IntProperty(
         name="Seed",
-        description="Of the random numbers: another one gives other realizations",
+        description="Seed of the random numbers: another one gives other realizations",
         min=0,
         options=set(),
     )

@@ -81,7 +81,7 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     )
     region_stored: StringProperty(options={"HIDDEN"})
     region_stamp: StringProperty(options={"HIDDEN"})
-    hole_picks: StringProperty(options={"HIDDEN"})  # JSON of what the boreholes met
+    hole_picks: StringProperty(options={"HIDDEN"})  # JSON of the picks of boreholes
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     constraints: CollectionProperty(type=RealModelConstraint)
     constraints_stored: StringProperty(options={"HIDDEN"})

@@ -40,7 +40,7 @@ def _shape_properties(sources):
             name="Object",
             type=bpy.types.Object,
             poll=settings.is_mesh_object,
-            description="Mesh object that is the shape, with its modifiers",
+            description="Mesh object with the shape, including its modifiers",
             update=changes.source,
         ),
         **interface_properties(),

@@ -110,14 +110,14 @@ class RealModelSurface(
     )
     fit_variogram: BoolProperty(
         name="Fit Variogram",
-        description="Fit the variogram to the points; turn off to start from what the last build fitted",
+        description="Fit the variogram to the points; turn off to edit the variogram of the last build",
         default=True,
         update=changes.fit_variogram,
         options=set(),
     )
     structures: CollectionProperty(type=RealModelStructure)
     stored: StringProperty(options={"HIDDEN"})
-    other_options: StringProperty(options={"HIDDEN"})  # JSON: heights that stand in a project file
+    other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file
     reading: StringProperty(options={"HIDDEN"})  # of versions 0 to 3
 
 

@@ -21,7 +21,7 @@ SUBJECTS = (
 
 
 class RealModelView(bpy.types.PropertyGroup):
-    """How the model is looked at."""
+    """Settings of the view."""
 
     subject: EnumProperty(
         name="Geometry",
@@ -31,7 +31,7 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
     )
     hidden: StringProperty(options={"HIDDEN"})  # JSON list of the property IDs whose blocks are hidden
-    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})  # of what is only for viewing
+    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})  # of objects for display only
     plane: PointerProperty(
         name="Section Plane",
         type=bpy.types.Object,
@@ -46,7 +46,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
-        description="Display the model so many times higher than it is; measures and exports stay true",
+        description="Factor by which heights are exaggerated in the display; measures and exports stay true",
         default=1.0,
         min=1.0,
         soft_max=20.0,
@@ -68,7 +68,7 @@ class RealModelView(bpy.types.PropertyGroup):
     )
     surviving_of: StringProperty(
         options={"HIDDEN"}
-    )  # JSON of what the bodies of kind "surviving" are made of
+    )  # JSON of the state that the bodies of kind "surviving" were made from
     show_boreholes: BoolProperty(
         name="Boreholes",
         description="Show the boreholes as tubes, in the color of the layer below each pick",
@@ -81,7 +81,7 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.residuals,
     )
-    residuals: StringProperty(options={"HIDDEN"})  # JSON: what the residuals of each surface are
+    residuals: StringProperty(options={"HIDDEN"})  # JSON: statistics of the residuals of each surface
     show_legend: BoolProperty(
         name="Legend",
         description="Show what the colors mean, in the viewport and in pictures",
@@ -107,13 +107,15 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.overlay,
     )
-    compartments: StringProperty(options={"HIDDEN"})  # JSON of what a build told of compartments and faults
+    compartments: StringProperty(options={"HIDDEN"})  # JSON, see bl/compartments.py
     shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
-    cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of
+    cells_of: StringProperty(
+        options={"HIDDEN"}
+    )  # JSON of the state that the bodies of kind "cells" were made from
     applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show
-    place: StringProperty(options={"HIDDEN"})  # JSON of the last coordinates that were asked for
-    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are told from
+    place: StringProperty(options={"HIDDEN"})  # JSON of the last requested coordinates
+    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are measured from
     message: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     bounds_low: FloatVectorProperty(options={"HIDDEN"})
     bounds_high: FloatVectorProperty(options={"HIDDEN"})

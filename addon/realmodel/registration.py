@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the parts of the add-on are made known to Blender: the CLASSES of modules in their order, then what a
-module's own register() does; and taken back the other way round."""
+"""Registers the parts of the add-on with Blender: the CLASSES of modules in their order, then a module's own
+register(); unregisters them in reverse order."""
 
 import bpy
 

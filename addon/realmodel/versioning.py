@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Older .blend files brought up to date, one step for each version of the settings.
+"""Migration of older .blend files, one step for each version of the settings.
 
 Version 0 is a scene that build_model.py wrote: it had a stored project and the objects, but no settings.
 tests/data/versions has a file of each version.
@@ -20,7 +20,7 @@ def _from_0(scene):
 
 
 def _from_1(scene):
-    """Nested variograms and places of shorter edges had no rows of their own."""
+    """Before, nested variograms and local edge lengths had no rows of their own."""
     with settings.filling():
         for rock in scene.realmodel.rocks:
             plan_mesh.take_up_sizes(rock)
@@ -29,7 +29,8 @@ def _from_1(scene):
 
 
 def _from_2(scene):
-    """Scenes had Blender's usual unit, whatever the unit of the model; entries of the library had one ID."""
+    """Before, scenes had Blender's default unit, whatever the unit of the model; entries of the library had
+    one ID."""
     units.set_up(scene, scene.realmodel.units)
     with settings.filling():
         for entry in scene.realmodel.library:
@@ -37,7 +38,7 @@ def _from_2(scene):
 
 
 def _from_3(scene):
-    """How files are read, and how large triangles are, stood in texts."""
+    """Before, import options and the size of triangles were stored as texts."""
     with settings.filling():
         for rock in scene.realmodel.rocks:
             given = json.loads(rock.mesh_options) if rock.mesh_options and not rock.edge_length > 0.0 else {}
@@ -50,7 +51,7 @@ def _from_3(scene):
 
 
 def _from_4(_scene):
-    """There were no faults and bodies."""
+    """Before, there were no faults and bodies."""
 
 
 _STEPS = (_from_0, _from_1, _from_2, _from_3, _from_4)  # step n makes version n + 1 of version n
@@ -64,8 +65,8 @@ def needs_migration(scene):
 
 
 def migrate(scene):
-    """Brings the settings of a scene up to date. Raises RealModelError where what they hold is damaged; then
-    they stay as they were."""
+    """Migrates the settings of a scene. Raises RealModelError where they are damaged; then they stay as they
+    were."""
     if not needs_migration(scene) or scene.library is not None:
         return
     steps = _STEPS[scene.realmodel.version :] if scene.realmodel.exists else _STEPS[:1]

@@ -3,7 +3,7 @@
 
     blender -b --factory-startup -P tests/blender/make_version_fixture.py
 
-Run it once when settings.VERSION goes up, and keep the file; what is in it is told in test_panel_versions.py.
+Run it once when settings.VERSION goes up, and keep the file; test_panel_versions.py lists what is in it.
 Version 0 is what build_model.py wrote before there were settings; nothing writes that one any more.
 """
 

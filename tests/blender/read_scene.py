@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tells as JSON what a program that knows nothing of us sees in a 3D file.
+"""Prints as JSON the objects that another program reads from a 3D file.
 
     python read_scene.py FILE
 
@@ -28,7 +28,7 @@ def linear(values):
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
 
-def told(vertices, faces, material, color, image, uv, properties):
+def described(vertices, faces, material, color, image, uv, properties):
     """faces: (T, 3) corners; uv: of vertices, or None."""
     solid = trimesh.Trimesh(vertices, faces, process=True, merge_norm=True, merge_tex=True)
     picture = None
@@ -65,7 +65,7 @@ def read_gltf(path):
         edge = scene.graph.transforms.edge_data[scene.graph.base_frame, name]
         vertices = trimesh.transform_points(mesh.vertices, matrix)
         uv = None if image is None else mesh.visual.uv
-        yield name, told(vertices, mesh.faces, material.name, color, image, uv, edge.get("metadata", {}))
+        yield name, described(vertices, mesh.faces, material.name, color, image, uv, edge.get("metadata", {}))
 
 
 def read_obj(path):
@@ -84,7 +84,7 @@ def read_obj(path):
         color = np.ones(3) if image is not None else np.asarray(material.diffuse[:3]) / 255.0
         uv = None if image is None else mesh.visual.uv
         name = objects[material.name]
-        yield name, told(mesh.vertices, mesh.faces, material.name, color, image, uv, {})
+        yield name, described(mesh.vertices, mesh.faces, material.name, color, image, uv, {})
 
 
 def read_usd(path):
@@ -118,7 +118,7 @@ def read_usd(path):
         }
         yield (
             name,
-            told(vertices[corners], np.array(faces), own, color, image, uv, properties),
+            described(vertices[corners], np.array(faces), own, color, image, uv, properties),
         )
 
 

@@ -155,7 +155,7 @@ class Layers(BooleanCase):
         self.assertAlmostEqual(lengths["sharp"], math.pi + 2 * math.pi, delta=0.06)
         self.assertAlmostEqual(lengths["seam"], math.pi + 2 * math.pi, delta=0.06)
 
-    def test_another_kind_of_the_same_name_is_told(self):
+    def test_the_first_of_two_kinds_with_one_name_is_kept(self):
         a, b = cube("A"), cube("B", (1.0, 1.0, 1.0))
         made = a.data.attributes.new("x", "FLOAT", "POINT")
         made.data.foreach_set("value", np.ones(8, np.float32))

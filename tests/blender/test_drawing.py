@@ -160,7 +160,7 @@ class States(PanelCase):
         settings.active_surface(self.scene).object = None
         self.refused(ops.build, "")
         activity = bpy.context.window_manager.realmodel
-        activity.problem = "surface 'S1': a problem that takes more than one line of the sidebar to be told"
+        activity.problem = "surface 'S1': a problem that takes more than one line of the sidebar to be shown"
         activity.problem_object = "S0"
         drawing = self.draw()
         self.assertIn("problem", " ".join(drawing.labels))

@@ -66,7 +66,7 @@ class MeshExport(PanelCase):
         self.refused(ops.export_mesh, "there is no folder", filepath=nowhere)
         self.assertEqual(list(self.folder.iterdir()), [])
 
-    def test_a_job_tells_progress_and_stops(self):
+    def test_a_job_reports_progress_and_stops(self):
         self.open_two_layers()
         model = shown_models.whole(self.scene)
         path = self.folder / "m.vtu"

@@ -190,7 +190,7 @@ class Surfaces(PanelCase):
             self.assertAlmostEqual(self.volumes()["top block"] / 75e3, 1.0, places=6, msg=source)
             self.assertEqual(top.interface["realmodel_surface"], "top")
 
-    def test_files_are_told_apart_and_refused(self):
+    def test_formats_are_detected_and_files_refused(self):
         (self.folder / "p.csv").write_bytes(points_text(POINTS))
         ops.surface_add(filepath=str(self.folder / "p.csv"))
         row = self.rock().surfaces[0]

@@ -79,7 +79,7 @@ class Live(PanelCase):
         self.assertTrue(self.block().select_get())
         self.assertEqual(bpy.context.view_layer.objects.active, self.block())
 
-    def test_a_refusal_is_told_and_mended(self):
+    def test_a_refusal_is_shown_and_mended(self):
         vertices = self.items[1].data.vertices
         vertices[6].co.x += 60.0
         raise_by(self.items[1], 0.0)

@@ -40,9 +40,9 @@ class Preferences(PanelCase):
         self.assertEqual(threads(is_short=True), 0)
         self.chosen.threads = 3
         self.assertEqual((threads(), threads(is_short=True)), (3, 3))
-        told = []
-        work.start(lambda _: told.append(threads())).wait()
-        self.assertEqual(told, [3])
+        found = []
+        work.start(lambda _: found.append(threads())).wait()
+        self.assertEqual(found, [3])
         stack(0.0, 10.0)
         ops.build()
         from realmodel.bl import built_models

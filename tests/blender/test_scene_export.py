@@ -24,7 +24,7 @@ SAND, COAL = (0.8, 0.6, 0.3), (0.2, 0.15, 0.1)
 
 
 def seen_in(path):
-    """What the reader tells of a file: see read_scene.py. Skips the test where it is not there."""
+    """The output of read_scene.py for a file. Skips the test where it is not there."""
     if not READER.is_file():
         raise unittest.SkipTest(f"there is no {READER}: scripts/test.sh makes it")
     command = [str(READER), str(FOLDER / "read_scene.py"), str(path)]

@@ -375,11 +375,11 @@ class Built(StructureCase):
 
     def test_saved_reopened_undone(self):
         self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
-        before, told = self.volumes(), self.model.view.compartments
+        before, stored = self.volumes(), self.model.view.compartments
         self.save_and_open()
-        self.assertEqual((self.volumes(), self.model.view.compartments), (before, told))
+        self.assertEqual((self.volumes(), self.model.view.compartments), (before, stored))
         ops.build()
-        self.assertEqual((self.volumes(), self.model.view.compartments), (before, told))
+        self.assertEqual((self.volumes(), self.model.view.compartments), (before, stored))
         ops.new()
         self.assertEqual((len(self.model.faults), len(self.model.bodies)), (0, 0))
         self.assertIn("F1", bpy.data.objects)

@@ -50,8 +50,8 @@ class Surviving(Case):
         self.settings.display, self.settings.view.surfaces = "SURFACES", "SURVIVING"
         for name, item in self.bodies().items():
             row = next(row for row in self.settings.rocks[0].surfaces if row.interface.name == name)
-            told = surface_figures.read(row)["area"]
-            self.assertAlmostEqual(area_in_plan(item.data), told, delta=1e-3 * told, msg=name)
+            expected = surface_figures.read(row)["area"]
+            self.assertAlmostEqual(area_in_plan(item.data), expected, delta=1e-3 * expected, msg=name)
 
     def test_at_a_stage_of_the_cut_and_after_a_build(self):
         self.settings.display, self.settings.view.surfaces = "SURFACES", "SURVIVING"

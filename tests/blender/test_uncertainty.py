@@ -22,15 +22,15 @@ class Uncertainty(PanelCase):
         interfaces = scene.model_objects(bpy.context.scene, "interface")
         self.assertEqual(len(interfaces), 3)
         for number, item in enumerate(interfaces):
-            told = model.surface_attributes(number)
+            attributes = model.surface_attributes(number)
             distance = values(item.data, "distance")
-            np.testing.assert_allclose(distance, told["distance"], rtol=1e-6)
+            np.testing.assert_allclose(distance, attributes["distance"], rtol=1e-6)
             self.assertGreater(distance.max(), 1.0)
-            if number == 2:  # inverse distance tells no variance
+            if number == 2:  # inverse distance gives no variance
                 self.assertNotIn("variance", item.data.attributes)
                 continue
             variance = values(item.data, "variance")
-            np.testing.assert_allclose(variance, told["variance"], rtol=1e-6)
+            np.testing.assert_allclose(variance, attributes["variance"], rtol=1e-6)
 
     def test_ready_meshes_have_none(self):
         batch.write_scene(build(two_rocks()))

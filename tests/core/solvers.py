@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-# Debian keeps OpenFOAM's settings here and nothing tells its programs so
+# Debian's folder of OpenFOAM's settings, which its programs do not find alone
 _FOAM_SETTINGS = Path("/usr/share/openfoam")
 _SCALAR = "FoamFile {{ version 2.0; format ascii; class {kind}; object {name}; }}\n"
 

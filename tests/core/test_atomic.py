@@ -115,7 +115,7 @@ def test_places_that_cannot_be_written_to_are_named(out):
 
 
 def _write_once(out, number):
-    """Three outputs, each filled with one character that tells the round."""
+    """Three outputs, each filled with the character of its round."""
     text = bytes([65 + number % 26]) * SIZE
     with Outputs() as outputs:
         with outputs.file(out / f"new{number % 50}") as file:
@@ -157,7 +157,7 @@ def test_ctrl_c_at_any_moment_leaves_nothing(out):
         assert [name for name in names(out) if name.startswith(".")] == []
 
 
-def test_ctrl_c_while_folders_are_removed_is_told_and_they_are_removed(out, monkeypatch):
+def test_ctrl_c_while_folders_are_removed_is_reported_and_they_are_removed(out, monkeypatch):
     rmtree = shutil.rmtree
 
     def interrupted(folder, ignore_errors):
@@ -208,7 +208,7 @@ def outcomes_of(target, *arguments):
     return found
 
 
-def test_a_size_limit_is_told_in_one_line_and_leaves_nothing(out):
+def test_a_size_limit_is_reported_in_one_line_and_leaves_nothing(out):
     for message in outcomes_of(_fill, out):
         assert "large: cannot be written: File too large; make room" in message
         assert "\n" not in message
@@ -226,7 +226,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", str(folder)], check=True)
 
 
-def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk):
+def test_a_full_disk_is_reported_in_one_line_and_leaves_nothing(small_disk):
     for message in outcomes_of(_write_too_much, small_disk):
         assert "large: cannot be written: No space left on device; make room" in message
     assert names(small_disk) == []

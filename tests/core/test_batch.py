@@ -215,7 +215,7 @@ def test_missing_project(out):
     assert "none.toml: cannot be read: No such file" in refused(run("none.toml", cwd=out))
 
 
-def test_outputs_that_cannot_be_written_are_told_before_the_build(layers, out):
+def test_outputs_that_cannot_be_written_are_refused_before_the_build(layers, out):
     project = layers([0, 1])
     assert "there is no folder" in refused(run(project, "--export", out / "none" / "m.npz"))
     folder = out / "m.npz"

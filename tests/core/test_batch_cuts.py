@@ -40,8 +40,8 @@ def test_sections_fences_and_halves_are_written(layers, out):  # noqa: F811
     assert last[3] == "borehole b.csv: 2 intervals, 3.00 of rock"
     assert last[4].startswith("cut by the plane: volume ")
     with (out / "b.csv").open() as file:
-        told = [(row["block"], float(row["top"]), float(row["bottom"])) for row in csv.DictReader(file)]
-    assert told == [("1", 3, 1), ("0", 1, 0)]
+        found = [(row["block"], float(row["top"]), float(row["bottom"])) for row in csv.DictReader(file)]
+    assert found == [("1", 3, 1), ("0", 1, 0)]
     whole = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("below", "above"))
     assert arrays(out / "inside.npz")["block_volume"][0] == 0
     parts = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("inside", "outside"))
@@ -180,7 +180,7 @@ def test_a_file_that_is_no_polyline(tmp_path, text, words):
         read_polyline(tmp_path / "line.csv")
 
 
-def test_a_missing_cutter_is_told_before_the_build(layers, out):  # noqa: F811
+def test_a_missing_cutter_is_refused_before_the_build(layers, out):  # noqa: F811
     project = layers([0, 1])
     assert "gone.off" in refused(run(project, "--cut", f"gone.off={out / 'a.npz'}"))
     assert "gone.csv" in refused(run(project, "--fence", f"gone.csv={out / 'a.csv'}"))

@@ -110,7 +110,7 @@ def test_a_measured_mesh_has_the_figures_it_should(graded):
     assert 1e7 < found["resident"] < 1e10
 
 
-def test_figures_of_a_mesh_that_can_be_told_by_hand():
+def test_statistics_of_a_mesh_by_hand():
     hexagon = np.array([[0, 0], *((np.cos(a), np.sin(a)) for a in np.arange(6) * np.pi / 3)])
     fan = np.array([[0, i, i % 6 + 1] for i in range(1, 7)])
     found = meshing.figures(hexagon, fan, 0.5, False)

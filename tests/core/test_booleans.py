@@ -353,9 +353,9 @@ def test_scanned_solids_in_random_positions(first, second):
 @pytest.mark.parametrize("operation", OPERATIONS)
 def test_an_open_surface_is_refused_where_a_solid_is_needed(operation):
     found = intersect(solids.torus(), solids.sheet())
-    with pytest.raises(InputRefused, match=r"the second surface: it is open, for example near \(") as told:
+    with pytest.raises(InputRefused, match=r"the second surface: it is open, for example near \(") as refused:
         getattr(found, operation)()
-    assert max(abs(value) for value in told.value.place[:2]) == 5.0
+    assert max(abs(value) for value in refused.value.place[:2]) == 5.0
     with pytest.raises(InputRefused, match="the first surface: it is open"):
         getattr(intersect(solids.sheet(), solids.torus()), operation)()
 
@@ -406,13 +406,15 @@ def test_wrong_use():
 
 def test_progress_and_cancel():
     a, b = solids.torus(700, 350), solids.moved(solids.torus(700, 350), (0.5, 0.1, 0.2), TURN)
-    told = []
+    calls = []
     began = time.perf_counter()
     with pytest.raises(Cancelled):
-        intersect(a, b, progress=lambda share, text: told.append((share, text)), cancel=lambda: len(told) > 5)
+        intersect(
+            a, b, progress=lambda share, text: calls.append((share, text)), cancel=lambda: len(calls) > 5
+        )
     assert time.perf_counter() - began < 5
-    assert all(text == "intersecting" for _, text in told)
-    assert [share for share, _ in told] == sorted(share for share, _ in told)
-    assert told[-1][0] < 1
+    assert all(text == "intersecting" for _, text in calls)
+    assert [share for share, _ in calls] == sorted(share for share, _ in calls)
+    assert calls[-1][0] < 1
     others = [thread for thread in threading.enumerate() if thread.name == "realmodel work"]
     assert len(others) <= 1, "only the one that frees what it has taken"

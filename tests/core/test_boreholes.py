@@ -75,7 +75,7 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
     assert any("1 picks have no depth" in text for text in met.warnings)
 
 
-def test_inclined_holes_are_told(write):
+def test_inclined_holes_are_a_warning(write):
     lines = COLLARS.split()
     angles = ["Dip", "-90", "-60", "90", "", "-75"]
     collars = "\n".join(f"{line},{angle}" for line, angle in zip(lines, angles, strict=True))

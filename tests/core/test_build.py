@@ -202,14 +202,14 @@ def test_what_protects_itself_is_not_cut(rule, left):
     assert [block.volume for block in model.blocks] == pytest.approx([left, 0.0])
 
 
-def test_a_region_that_meets_no_surface_is_told():
+def test_a_region_that_meets_no_surface_is_a_warning():
     project = rock(level("S0", 0.0), level("S1", 1.0), region=np.array([[5.0, 5], [6, 5], [6, 6]]))
     model = build(project)
     assert len(model.cell_block) == 0
     assert [warning.kind for warning in model.warnings] == ["no_block"]
 
 
-def test_coordinates_joined_by_rounding_are_told():
+def test_coordinates_joined_by_rounding_are_a_warning():
     nudged = level("S1", 1.0)
     nudged.vertices[nudged.vertices[:, 0] == 1.0, 0] = np.nextafter(1.0, 2.0)
     model = build(rock(level("S0", 0.0), nudged))
@@ -335,7 +335,7 @@ def test_progress_of_a_build(long_build):
 def counted_after_cancel(project, share, monkeypatch):
     """What native work counts of itself, 1 being a whole call, after cancel() has said yes; it does so once
     this share of the build is done."""
-    controls, told, asked = [], [0.0], []
+    controls, fractions, asked = [], [0.0], []
     control = _native.Control
 
     def recorded():
@@ -346,7 +346,7 @@ def counted_after_cancel(project, share, monkeypatch):
         return sum(one.fraction for one in controls)
 
     def cancel():
-        if told[-1] < share:
+        if fractions[-1] < share:
             return False
         asked.append(counted())
         return True
@@ -354,7 +354,7 @@ def counted_after_cancel(project, share, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(_native, "Control", recorded)
         with pytest.raises(Cancelled):
-            build(project, progress=lambda fraction, text: told.append(fraction), cancel=cancel)
+            build(project, progress=lambda fraction, text: fractions.append(fraction), cancel=cancel)
         run(lambda work: None)  # waits for the work that was stopped
     assert len(asked) == 1
     return counted() - asked[0]

@@ -250,4 +250,4 @@ def test_cutting_is_cancelled():
             model.cut_by_plane((0.5, 0.5, 0.3), (0, 0.2, 1), cancel=lambda: True, progress=lambda *_: None)
         except Cancelled:
             return
-    pytest.fail("cut to the end, though told to stop from the first moment on")
+    pytest.fail("cut to the end, though asked to stop from the first moment on")

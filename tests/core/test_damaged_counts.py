@@ -121,7 +121,7 @@ def test_meshes_of_meshio(tmp_path, kind, binary):
     assert found.count("refused") >= 20
 
 
-def test_a_count_of_nodes_that_are_not_there_is_told(tmp_path):
+def test_a_count_of_nodes_that_are_not_there_is_refused(tmp_path):
     (tmp_path / "m.msh").write_bytes(MSH.replace(b"2 1 0 3\n", b"2 1 0 4000000000\n"))
     with pytest.raises(InputRefused, match="4000000000 entries are announced, the file is cut off"):
         read_mesh(tmp_path / "m.msh")

@@ -132,7 +132,7 @@ def test_tables(write, survey, keys):
     met = read(write, survey, picks=picks, **keys)
     np.testing.assert_allclose(met.points["clay"], [[600, 700, -150], [100, 200, 30]], **NEAR)
     np.testing.assert_allclose(met.points["sand"], [[500, 700, -50]], **NEAR)
-    # A quarter of a circle between two stations is more than a hole bends: told, with its line.
+    # A quarter of a circle between two stations is more than a hole can bend: a warning, with its line.
     assert [text for text in met.warnings if "line 2: hole 'B1' turns by 90 degrees" in text]
 
 
@@ -170,7 +170,7 @@ def test_depths_in_feet(write):
     np.testing.assert_allclose(met.points["sand"], [[500 + side, 700, 50 * 0.3048 - side]], **NEAR)
 
 
-def test_what_is_told(write):
+def test_surveys_without_a_match_are_a_warning(write):
     met = read(write, "hole,depth,azimuth,dip\nB1,0,90,-60\nB7,0,90,-60\n")
     assert any("no direction for B2: taken as vertical" in text for text in met.warnings)
     assert any("B7 have no collar" in text for text in met.warnings)

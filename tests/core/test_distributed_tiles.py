@@ -167,9 +167,9 @@ def test_files_are_read_by_workers(client, tmp_path):
     project = load_project(PROJECT)
     (tmp_path / "bad.csv").write_text("x,y,z\n1,2,three\n")
     project.rocks[0].surfaces[1].points = tmp_path / "bad.csv"
-    with pytest.raises(InputRefused, match=r"bad\.csv.*surface 'ground'") as told:
+    with pytest.raises(InputRefused, match=r"bad\.csv.*surface 'ground'") as refused:
         build_tiles(project, tmp_path / "t", (35, 30), client)
     with pytest.raises(InputRefused) as here:
         build(project)
-    assert str(told.value) == str(here.value)
+    assert str(refused.value) == str(here.value)
     assert not (tmp_path / "t").exists()

@@ -149,9 +149,9 @@ def test_a_fixed_border():
     assert (result.z[border] == 290).all()
     rows = np.vstack([weights_of(points, NODES, TRIANGLES), np.eye(len(NODES))[border]])
     heights = np.concatenate([points[:, 2], np.full(border.sum(), 290)])
-    told = held(rows, heights - 290) + 290
+    expected = held(rows, heights - 290) + 290
     assert result.warnings == ()
-    assert result.z == pytest.approx(told, abs=1e-4)
+    assert result.z == pytest.approx(expected, abs=1e-4)
 
 
 @pytest.mark.parametrize("option", ["above", "below"])
@@ -190,33 +190,33 @@ def test_bounds_from_surfaces():
         dsi(POINTS, above=305, border=302)
 
 
-def test_points_beyond_a_bound_are_told():
+def test_points_beyond_a_bound_are_a_warning():
     """The bound goes before them; those outside the mesh never counted."""
     points = np.vstack([POINTS, [[*(UTM - 10), 200.0]]])
     wrong = POINTS[:, 2] < 298
     assert 0 < wrong.sum() < len(POINTS)
     result = dsi(points, above=298)
     worst = int(POINTS[:, 2].argmin())
-    told = [text for text in result.warnings if "lie below 298, but the surface is kept above it" in text]
-    assert len(told) == 1 and told[0].startswith(f"{wrong.sum()} of 16 points")
-    assert f"point {worst} at" in told[0]
+    warnings = [text for text in result.warnings if "lie below 298, but the surface is kept above it" in text]
+    assert len(warnings) == 1 and warnings[0].startswith(f"{wrong.sum()} of 16 points")
+    assert f"point {worst} at" in warnings[0]
     assert not any("cannot all be honored" in text for text in result.warnings)
     assert result.z.min() == 298
     assert dsi(POINTS, above=POINTS[:, 2].min() - 50).warnings == ()
 
 
-def test_heights_far_beyond_the_points_are_told():
+def test_heights_far_beyond_the_points_are_a_warning():
     """Three points of a triangle that differ by chance make a slope that goes on to the border."""
     middle = NODES[TRIANGLES[7]].mean(axis=0)
     plan = np.add(middle, [[0, 0], [0.2, 0.1], [0.1, 0.2]])
     points = np.column_stack([plan, [10.0, 13.0, 11.0]])
-    told = dsi(points).warnings
-    assert any("go far beyond those of its points, 10 to 13; " in text for text in told)
+    warnings = dsi(points).warnings
+    assert any("go far beyond those of its points, 10 to 13; " in text for text in warnings)
     assert not any("far beyond" in text for text in dsi(points, border=0).warnings)
     assert not any("far beyond" in text for text in dsi(POINTS).warnings)
 
 
-def test_what_cannot_be_met_is_told():
+def test_constraints_that_cannot_be_met_are_a_warning():
     corner = NODES[TRIANGLES[0]].mean(axis=0)
     cluster = np.column_stack([corner + RNG.normal(0, 0.2, (8, 2)), RNG.normal(300, 1, 8)])
     result = dsi(np.vstack([POINTS, cluster]))
@@ -250,13 +250,13 @@ def test_unused_nodes_and_parts_without_points_follow_the_plane():
 
 
 def test_cross_validation_and_refusals():
-    told = cross_validate(POINTS, "dsi", folds=5, mesh=(NODES, TRIANGLES))
+    found = cross_validate(POINTS, "dsi", folds=5, mesh=(NODES, TRIANGLES))
     out = np.arange(15) % 5 == 1
     z = dsi(POINTS[~out]).z
     expected = interpolate(
         None, PLAN[out], "parallel", to=(np.column_stack([NODES, z]), TRIANGLES), thickness=0
     ).z
-    assert told.z[out] == pytest.approx(expected)
+    assert found.z[out] == pytest.approx(expected)
     with pytest.raises(UsageError, match="give the triangles"):
         interpolate(POINTS, NODES, "dsi")
     with pytest.raises(UsageError, match="needs mesh"):

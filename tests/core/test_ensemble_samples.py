@@ -120,43 +120,43 @@ def written(path, kind, found):
 
 @pytest.mark.parametrize("kind", ["section", "grid", "borehole"])
 def test_tables(found, kind):
-    samples, told = found[kind]
+    samples, probabilities = found[kind]
     rows = list(csv.DictReader(io.StringIO(written("a.csv", kind, found).decode())))
-    kept = told.probability.sum(axis=1) > 0
+    kept = probabilities.probability.sum(axis=1) > 0
     assert 0 < len(rows) == kept.sum() < len(samples.places)
     assert ("distance" in rows[0]) == (kind == "section")
     low = np.array([float(row["probability base block"]) for row in rows])
-    assert low == pytest.approx(told.probability[kept, 0])
+    assert low == pytest.approx(probabilities.probability[kept, 0])
     assert [float(row["z"]) for row in rows] == samples.places[kept, 2].tolist()
     assert {row["block"] for row in rows} <= {"base block", "High & dry block", ""}
 
 
 @pytest.mark.parametrize("kind", ["section", "grid", "borehole"])
 def test_arrays(found, kind):
-    samples, told = found[kind]
+    samples, probabilities = found[kind]
     with np.load(io.BytesIO(written("a.npz", kind, found))) as arrays:
         assert np.array_equal(arrays["places"], samples.places)
-        assert np.array_equal(arrays["probability"], told.probability)
-        assert np.array_equal(arrays["entropy"], told.entropy())
+        assert np.array_equal(arrays["probability"], probabilities.probability)
+        assert np.array_equal(arrays["entropy"], probabilities.entropy())
 
 
 @pytest.mark.parametrize(("kind", "ending"), [("section", ".vtu"), ("grid", ".vti")])
 def test_cells_for_paraview(found, kind, ending, tmp_path):
     pyvista = pytest.importorskip("pyvista")
-    samples, told = found[kind]
+    samples, probabilities = found[kind]
     path = tmp_path / f"a{ending}"
     path.write_bytes(written(path, kind, found))
     read = pyvista.read(path)
     assert read.n_cells == len(samples.places)
     assert np.allclose(read.cell_centers().points, samples.places)
-    assert np.array_equal(read["probability High & dry block"], told.probability[:, 1])
-    assert np.array_equal(read["entropy"], told.entropy())
-    assert np.array_equal(read["block"], told.likeliest())
+    assert np.array_equal(read["probability High & dry block"], probabilities.probability[:, 1])
+    assert np.array_equal(read["entropy"], probabilities.entropy())
+    assert np.array_equal(read["block"], probabilities.likeliest())
 
 
 def test_drawings(found):
-    samples, told = found["section"]
-    drawing = draw_probabilities(samples, told, 2.0)
+    samples, probabilities = found["section"]
+    drawing = draw_probabilities(samples, probabilities, 2.0)
     cells = [item for item in drawing.items if item.layer == "Cells"]
     assert 0 < len(cells) < len(samples.places)
     assert all(item.fill is None for item in drawing.items if item.layer == "base block")

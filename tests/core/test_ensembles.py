@@ -182,7 +182,7 @@ def test_a_surface_parallel_to_a_drawn_one_follows_it():
         assert np.abs(heights(model) - heights(realizer.model)).max() > 0.1
 
 
-def test_thicknesses_are_drawn_where_points_tell_them():
+def test_thicknesses_are_drawn_where_points_have_them():
     points = POINTS + np.array([0, 0, 3.0]) + np.random.default_rng(5).uniform(0, 1, (12, 1)) * [[0, 0, 1]]
     base = parallel(points, thickness_method="kriging")
     realizer, nodes = Realizer(base), base.rock_inputs[0].region[0]
@@ -269,9 +269,9 @@ def test_blocks_at_points():
 
 def test_an_ensemble_says_what_its_realizations_say():
     places = np.array([[50.0, 50.0, 1.0], [50.0, 50.0, heights(build(project())).mean()], [50.0, 50.0, 50.0]])
-    told = []
-    found = ensemble(project(), 20, seed=2, places=places, progress=lambda share, _: told.append(share))
-    assert told == sorted(told) and told[-1] == 1.0
+    calls = []
+    found = ensemble(project(), 20, seed=2, places=places, progress=lambda share, _: calls.append(share))
+    assert calls == sorted(calls) and calls[-1] == 1.0
     realizer = Realizer(found.model, 2)
     every = [realizer.realization(n) for n in range(20)]
     assert found.volumes[:, 0].tolist() == [model.blocks[0].volume for model in every]

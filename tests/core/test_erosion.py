@@ -65,7 +65,7 @@ def test_the_ground_cuts_sand_and_clay(rules, clay, sand, cells):
 
 
 def test_nothing_is_nothing_exactly():
-    """Rounding differs from stage to stage; what it makes is not told as erosion."""
+    """Rounding differs from stage to stage; what it makes is not reported as erosion."""
     rng = np.random.default_rng(3)
     nodes, third = rng.uniform(4.5e6, 4.5e6 + 1000, (60, 2)), 1 / 3
     corners = 4.5e6 + np.array([[0, 0], [1000, 0], [1000, 1000], [0, 1000]])
@@ -79,7 +79,7 @@ def test_nothing_is_nothing_exactly():
     assert (build(Project("plain", [rock])).eroded().volume == 0).all()
 
 
-def test_each_surface_is_told_apart():
+def test_each_surface_has_its_own_volumes():
     """Two valleys, one after the other; the second cuts deeper on one half."""
     valleys = [
         square("old top", [10, 10, 10, 10]),
@@ -227,12 +227,12 @@ def test_table_and_report():
     assert [float(figure) for figure in soil.split()[-2:]] == pytest.approx([0, 8])
     assert [float(figure) for figure in sand.split()[-2:]] == pytest.approx([6, 0])
     assert [float(figure) for figure in lines[-1].split()[-2:]] == pytest.approx([8, 8])
-    told = json.loads(json.dumps(model_report(model, erosion=erosion), allow_nan=False))["erosion"]
-    assert told["total"] == pytest.approx(8)
-    assert [block["name"] for block in told["blocks"]] == ["clay", "sand", "soil"]
-    assert [block["deposited"] for block in told["blocks"]] == pytest.approx([32, 16, 8])
-    assert told["surfaces"][2]["rock"] == "hill" and told["surfaces"][0]["blocks"] == []
-    assert {entry["block"]: entry["eroded"] for entry in told["surfaces"][2]["blocks"]} == {
+    report = json.loads(json.dumps(model_report(model, erosion=erosion), allow_nan=False))["erosion"]
+    assert report["total"] == pytest.approx(8)
+    assert [block["name"] for block in report["blocks"]] == ["clay", "sand", "soil"]
+    assert [block["deposited"] for block in report["blocks"]] == pytest.approx([32, 16, 8])
+    assert report["surfaces"][2]["rock"] == "hill" and report["surfaces"][0]["blocks"] == []
+    assert {entry["block"]: entry["eroded"] for entry in report["surfaces"][2]["blocks"]} == {
         "clay": pytest.approx(2),
         "sand": pytest.approx(6),
     }

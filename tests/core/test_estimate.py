@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build will take, told before it: counts against the build itself, and refusals."""
+"""The estimate of a build: compared with the build itself, and refusals."""
 
 import numpy as np
 import pytest
@@ -56,12 +56,12 @@ def of_points(**rock):
 def test_triangles_are_those_of_the_build_and_memory_holds_its_arrays(make):
     project = make()
     for cells in ("columns", "blocks"):
-        told, model = estimate(project, cells), build(project, cells)
-        assert told.triangles == len(model.surface_triangles)
+        estimated, model = estimate(project, cells), build(project, cells)
+        assert estimated.triangles == len(model.surface_triangles)
         arrays = (model.vertices, model.face_offsets, model.face_vertices, model.face_cells)
-        assert told.memory >= sum(array.nbytes for array in arrays)
-        assert told.fits
-        assert told.seconds > 0
+        assert estimated.memory >= sum(array.nbytes for array in arrays)
+        assert estimated.fits
+        assert estimated.seconds > 0
 
 
 def test_one_plan_mesh_and_whole_blocks_take_less_memory():
@@ -70,7 +70,7 @@ def test_one_plan_mesh_and_whole_blocks_take_less_memory():
     assert estimate(own, "blocks").memory < estimate(own).memory
 
 
-def test_a_stage_is_told_as_a_stage():
+def test_a_stage_is_estimated_as_a_stage():
     project = waves(4, 20)
     assert estimate(project, stage=1).triangles == 2 * estimate(waves(1, 20)).triangles
     with pytest.raises(UsageError, match="stage 9"):
@@ -79,13 +79,13 @@ def test_a_stage_is_told_as_a_stage():
 
 def test_a_build_that_would_not_fit_is_refused_before_it_begins():
     project = waves()
-    told = estimate(project).memory
-    limit = round(0.8 * told)
+    memory = estimate(project).memory
+    limit = round(0.8 * memory)
     with pytest.raises(NotEnoughMemory) as refused:
         build(project, memory=limit)
     error = refused.value
     assert isinstance(error, BuildFailed)
-    assert (error.available, error.needed) == (limit, told)
+    assert (error.available, error.needed) == (limit, memory)
     assert f"{memory_text(limit)} are allowed" in str(error)
     assert "triangles in all instead of 25,000" in error.advice
     assert 'cells="blocks"' in error.advice
@@ -93,7 +93,7 @@ def test_a_build_that_would_not_fit_is_refused_before_it_begins():
     with pytest.raises(NotEnoughMemory) as refused:
         build(project, memory=limit // 20)
     assert "blocks" not in refused.value.advice
-    assert build(project, memory=told).volume > 0
+    assert build(project, memory=memory).volume > 0
 
 
 def test_a_longer_edge_is_proposed_where_a_region_is_meshed():
@@ -130,9 +130,9 @@ def test_the_table_reads_well():
 
 @pytest.mark.parametrize("make", [waves, of_points, lambda: of_points(base_elevation=-1.0)])
 def test_the_progress_of_a_build_rises_to_1_through_all_its_phases(make):
-    told = []
-    build(make(), progress=lambda share, text: told.append((share, text)))
-    shares = [share for share, _ in told]
+    calls = []
+    build(make(), progress=lambda share, text: calls.append((share, text)))
+    shares = [share for share, _ in calls]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
-    assert told[-1][1] == "assembling the model"
+    assert calls[-1][1] == "assembling the model"

@@ -91,7 +91,7 @@ def test_unknown_endings_are_refused_with_those_known(model, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_steps_tell_the_share_written(model, tmp_path):
+def test_progress_is_the_share_written(model, tmp_path):
     for ending in FORMATS:
         shares = []
         save_model(model, tmp_path / f"m{ending}", shares.append)

@@ -53,8 +53,8 @@ def test_sticks_of_a_real_reservoir():
     horizon = Surface("top", points=PointFile(REAL / "TopVolantis.poi", z_axis="down"))
     region = np.array([[457000.0, 5927000], [467000, 5927000], [467000, 5939000], [457000, 5939000]])
     project = Project("real", [Rock("r", [horizon], region=region, edge_length=200.0)], faults=faults)
-    read, _, told = run(lambda work: read_structures(work, project))
-    assert told == []
+    read, _, warnings = run(lambda work: read_structures(work, project))
+    assert warnings == []
     for fault in read:
         lines = (REAL / f"{fault.name}.pol").read_text().split("\n")
         points = {

@@ -120,11 +120,11 @@ def test_convex_hull():
 
 def test_a_file_of_sticks(write):
     file = write("f.pol", "1 2 3\n1 2 5\n999.000 999.000 999.000\n4 5 6\n4 5 7\n4 5 9\n999 999 999\n")
-    sticks, told = read_fault_points(PointFile(file, z_axis="down", units={"z": "ft"}), model_unit="ft")
-    assert [stick.tolist() for stick in sticks] != [] and told == []
+    sticks, warnings = read_fault_points(PointFile(file, z_axis="down", units={"z": "ft"}), model_unit="ft")
+    assert [stick.tolist() for stick in sticks] != [] and warnings == []
     assert sticks[1][:, 2].tolist() == [-6, -7, -9]
     assert len(sticks) == 2
-    as_text = write("f.txt", file.read_text())  # told from its content
+    as_text = write("f.txt", file.read_text())  # detected from its content
     assert len(read_fault_points(PointFile(as_text))[0]) == 2
 
 

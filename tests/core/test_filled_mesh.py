@@ -118,8 +118,8 @@ def test_a_cut_model(faulted, tmp_path):
 
 def check_mesh_finds_few_flat_elements(mesh, folder, most):
     save_mesh(mesh, folder / "case.foam")
-    told = run_foam("checkMesh", folder / "case.foam", "-allGeometry", "-allTopology")
-    faults = [line for line in told.splitlines() if "***" in line]
+    output = run_foam("checkMesh", folder / "case.foam", "-allGeometry", "-allTopology")
+    faults = [line for line in output.splitlines() if "***" in line]
     assert all("small determinant" in line and int(line.split()[-1]) <= most for line in faults), faults
 
 

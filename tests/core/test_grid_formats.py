@@ -34,7 +34,7 @@ def test_grids_of_other_programs(name):
     assert warnings == []
 
 
-def test_what_a_grid_is_is_told_from_its_content(tmp_path):
+def test_the_format_of_a_grid_is_detected_from_its_content(tmp_path):
     for number, path in enumerate(sorted(GRIDS.iterdir())):
         (tmp_path / f"{number}.txt").write_bytes(path.read_bytes())
         assert len(read_point_file(PointFile(tmp_path / f"{number}.txt"))[0]) == 11

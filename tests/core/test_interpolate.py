@@ -256,12 +256,12 @@ def test_outlines_that_cross_are_refused_at_their_place(basin):
     assert "crosses" in str(raised.value)
 
 
-def test_mis_ties_are_averaged_and_told(basin, write):
+def test_mis_ties_are_averaged_with_a_warning(basin, write):
     path = basin()
     build(load_project(path))
     write("top.csv", "0,0,1\n10,8,3\n0,0,1.06\n5,5,2\n5,5,2\n")
     model = build(load_project(path))
-    # The diagonal of middle.off runs through nodes of the mesh, up to rounding: that is told as well.
+    # The diagonal of middle.off runs through nodes of the mesh, up to rounding: a warning, too.
     (warning,) = (w for w in model.warnings if w.kind != "joined")
     assert (warning.kind, warning.rock, warning.surface) == ("points", "basin", "top")
     assert "1 position has several heights, up to 0.06 apart (at (0, 0)): their mean is used" in str(warning)
@@ -323,8 +323,8 @@ def test_an_anisotropy_is_found_and_can_be_given_again():
     assert anisotropy["azimuth"] == pytest.approx(35, abs=10)
     without = interpolate(others, places, anisotropy={"ratio": 1, "azimuth": 0})
     assert without.variogram.anisotropy is None
-    told, told_without = (np.sqrt(np.mean((r.z - points[-100:, 2]) ** 2)) for r in (found, without))
-    assert told < 0.8 * told_without
+    error, error_without = (np.sqrt(np.mean((r.z - points[-100:, 2]) ** 2)) for r in (found, without))
+    assert error < 0.8 * error_without
     # As a report writes it, and a project file reads it.
     settings = json.loads(json.dumps(found.variogram.settings()))
     for given in (settings, found.variogram):

@@ -49,7 +49,7 @@ def point(place):
 
 @needs_pyshp
 def test_heights_of_positions(write, tmp_path):
-    """Each format, its z; a plain position beside them has none and is told."""
+    """Each format, its z; a plain position beside them has none, with a warning."""
     geojson = write("a.geojson", features(*[({}, point(spot)) for spot in SPOTS], ({}, point([9, 9]))))
     wkt = write("a.wkt", "MULTIPOINT Z ((1 2 10), (3 4 12.5))\nLINESTRING(5 1 11, 9 9 nan)\n")
     with shapefile.Writer(str(tmp_path / "a.shp"), shapeType=shapefile.POINTZ) as writer:
@@ -58,11 +58,11 @@ def test_heights_of_positions(write, tmp_path):
             writer.pointz(*spot)
             writer.record(1)
     package = write_geopackage(tmp_path / "a.gpkg", {"spots": [(packed(1001, spot), None) for spot in SPOTS]})
-    for file, told in ((geojson, 1), (wkt, 1), (tmp_path / "a.shp", 0), (package, 0)):
+    for file, count in ((geojson, 1), (wkt, 1), (tmp_path / "a.shp", 0), (package, 0)):
         points, warnings = read_point_file(PointFile(file))
         assert points.tolist() == [list(spot) for spot in SPOTS], file
-        assert len(warnings) == told
-        assert not told or "1 points have no value and are left out" in warnings[0]
+        assert len(warnings) == count
+        assert not count or "1 points have no value and are left out" in warnings[0]
     measures = write("m.wkt", "LINESTRING M (1 2 7, 3 4 8)")
     with pytest.raises(InputRefused, match=r"no height.*height = "):
         read_point_file(PointFile(measures))

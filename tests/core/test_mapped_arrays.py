@@ -24,7 +24,7 @@ def test_what_is_kept_is_in_a_file_until_the_end(tmp_path):
     assert not (tmp_path / "run" / "inputs").exists()
 
 
-def test_a_full_disk_is_told_in_one_line(monkeypatch, tmp_path):
+def test_a_full_disk_is_reported_in_one_line(monkeypatch, tmp_path):
     def full(*_):
         raise OSError(28, "No space left on device")
 

@@ -192,8 +192,8 @@ def read(path, layer=None):
     """Fields and shapes of a layer, by GDAL."""
     pyogrio = pytest.importorskip("pyogrio", reason=f"pyogrio is {WHY}")
     shapely = pytest.importorskip("shapely", reason=f"shapely is {WHY}")
-    told, _, shapes, fields = pyogrio.raw.read(path, layer=layer)
-    return told, dict(zip(told["fields"], fields, strict=True)), shapely.from_wkb(shapes)
+    properties, _, shapes, fields = pyogrio.raw.read(path, layer=layer)
+    return properties, dict(zip(properties["fields"], fields, strict=True)), shapely.from_wkb(shapes)
 
 
 @pytest.mark.parametrize("ending", [".gpkg", ".geojson"])
@@ -203,11 +203,11 @@ def test_gdal_reads_the_files(name, ending, tmp_path):
     model.save(tmp_path / f"m{ending}", contour_interval=2.0)
     areas = geological_map(model)
     if ending == ".gpkg":
-        told, fields, shapes = read(tmp_path / "m.gpkg", "geology")
-        assert told["crs"] is None or "ndefined" in told["crs"]
-        assert told["geometry_type"] == "MultiPolygon"
-        told, lines, line_shapes = read(tmp_path / "m.gpkg", "contours")
-        assert told["geometry_type"] == "LineString"
+        properties, fields, shapes = read(tmp_path / "m.gpkg", "geology")
+        assert properties["crs"] is None or "ndefined" in properties["crs"]
+        assert properties["geometry_type"] == "MultiPolygon"
+        properties, lines, line_shapes = read(tmp_path / "m.gpkg", "contours")
+        assert properties["geometry_type"] == "LineString"
     else:
         _, fields, shapes = read(tmp_path / "m.geojson")
         is_area = fields["layer"] == "geology"

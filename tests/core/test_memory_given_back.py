@@ -27,10 +27,10 @@ build(project(4, None))  # what the first build leaves behind for all later ones
 # large enough that the tens of megabytes which allocators keep for their threads are a small share
 given = project(200, 0.0 if sys.argv[3] == "refused" else None)  # base_elevation is looked at last of all
 before = resident()
-told = []
+calls = []
 try:
     late = sys.argv[3] == "cancelled"
-    build(given, progress=lambda share, _: told.append(share), cancel=lambda: late and told[-1] > 0.6)
+    build(given, progress=lambda share, _: calls.append(share), cancel=lambda: late and calls[-1] > 0.6)
     how = "built"
 except Cancelled:
     how = "cancelled"
@@ -54,5 +54,5 @@ def test_memory_is_given_back(how):
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["how"] == how
-    assert found["taken"] > 300 * MEGABYTE, "enough to tell"
+    assert found["taken"] > 300 * MEGABYTE, "enough to measure"
     assert found["kept"] < 0.2 * found["taken"]

@@ -132,12 +132,12 @@ def test_landxml_and_its_unit(write):
     path = write("m.xml", landxml())
     mesh = read_mesh(path)
     assert facets(mesh) == expected()
-    vertices, told = mesh.in_model(MeshFile(path), "m")
+    vertices, warnings = mesh.in_model(MeshFile(path), "m")
     assert vertices == pytest.approx(VERTICES * 0.3048)
-    assert told == [f"{path}: its lengths are in ft, according to the file"]
-    vertices, told = mesh.in_model(MeshFile(path, units="m"), "m")
+    assert warnings == [f"{path}: its lengths are in ft, according to the file"]
+    vertices, warnings = mesh.in_model(MeshFile(path, units="m"), "m")
     assert vertices == pytest.approx(VERTICES)
-    assert told == []
+    assert warnings == []
     model = build(Project("x", [Rock("r", [Surface("S", mesh=path)])]))
     assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
 
@@ -154,19 +154,19 @@ VTP += '<DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataAr
 VTP += 'Name="offsets" format="ascii">3</DataArray></Polys></Piece></PolyData></VTKFile>'
 
 
-def test_a_unit_in_the_header_of_dxf_is_told_and_converts_nothing(write):
+def test_a_unit_in_the_header_of_dxf_is_a_warning_and_converts_nothing(write):
     face = "0\n3DFACE\n10\n0\n11\n1\n12\n0\n22\n1\n"
     header = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n2\n0\nENDSEC\n"
     text = f"{header}0\nSECTION\n2\nENTITIES\n{face}0\nENDSEC\n0\nEOF\n"
     path = write("m.dxf", text)
     mesh = read_mesh(path)
-    for given, unit, told in (
+    for given, unit, count in (
         (MeshFile(path), "m", 1),
         (MeshFile(path), "ft", 0),
         (MeshFile(path, "ft"), "m", 0),
     ):
         vertices, warnings = mesh.in_model(given, unit)
-        assert len(warnings) == told
+        assert len(warnings) == count
         assert vertices.max() == (0.3048 if given.units else 1.0)
         assert all(
             'its header says ft; it is read in the unit of the model, m: write units = "ft"' in w
@@ -209,7 +209,7 @@ END
 """
 
 
-def test_properties_of_tsurf_are_told(write):
+def test_properties_of_tsurf_are_a_warning(write):
     text = (
         'GOCAD TSurf 1\nHEADER {\nname:a\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "ft" "ft" "ft"\n'
         "ZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM\nPROPERTIES age porosity\nTFACE\n"
@@ -219,8 +219,8 @@ def test_properties_of_tsurf_are_told(write):
     mesh = read_mesh(path)
     assert mesh.vertices[:, 2].tolist() == [-1, -1, -1]
     assert mesh.unit == "ft"
-    _, told = mesh.in_model(MeshFile(path), "ft")
-    assert told == [f"{path}: its properties age, porosity are not read"]
+    _, warnings = mesh.in_model(MeshFile(path), "ft")
+    assert warnings == [f"{path}: its properties age, porosity are not read"]
 
 
 def test_tsurf_of_loopstructural():
@@ -243,7 +243,7 @@ def test_tsurf_of_loopstructural():
         ),
     ],
 )
-def test_what_a_mesh_is_is_told_from_its_content(write, name, content):
+def test_the_format_of_a_mesh_is_detected_from_its_content(write, name, content):
     assert is_mesh_file(write(f"{name}.txt", content))
     assert not is_mesh_file(write("p.txt", "x y z\n0 0 1\n1 0 1\n"))
     assert len(read_mesh(write(f"{name}.txt", content)).triangles) == 1

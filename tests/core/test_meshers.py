@@ -180,7 +180,7 @@ def test_vertices_that_slide_stay_on_the_border_and_nothing_turns_over(outline):
 
 @pytest.mark.parametrize("mesher", MESHERS)
 def test_cancelled_soon(mesher):
-    asked, told_after = [], []
+    asked, after = [], []
 
     def cancel():
         asked.append(True)
@@ -188,12 +188,12 @@ def test_cancelled_soon(mesher):
 
     def progress(fraction, text):
         if len(asked) > 1:
-            told_after.append(fraction)
+            after.append(fraction)
 
     with pytest.raises(Cancelled):
         mesh_region(SQUARE, edge_length=0.02, mesher=mesher, progress=progress, cancel=cancel)
     assert len(asked) == 2  # the first yes is enough
-    assert len(told_after) <= 1
+    assert len(after) <= 1
 
 
 def check_polygon(rings):
@@ -254,7 +254,7 @@ def test_no_polygons(rings, words):
 @given(weird_rings())
 def test_weird_polygons(rings):
     try:
-        mesh_region(rings[0], rings[1:], 1e3)  # tells whether they cross
+        mesh_region(rings[0], rings[1:], 1e3)  # refuses crossing rings
     except InputRefused:
         return
     check_polygon(rings)

@@ -49,15 +49,15 @@ def test_many_are_settled_as_few(points):
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(mis_ties, "_AT_ONCE", at_once)
                 if is_once:
-                    found, told, are_apart = each_place_once(points, np.zeros, in_memory)
+                    found, warning, are_apart = each_place_once(points, np.zeros, in_memory)
                     assert are_apart == (len(np.unique(found[:, :2] + 0.0, axis=0)) == len(found))
                 else:
-                    found, told = without_mis_ties(points)
+                    found, warning = without_mis_ties(points)
             assert found.tobytes() == expected.tobytes()
-            assert (told is None) == (count == 0)
+            assert (warning is None) == (count == 0)
             if count:
-                assert told.startswith("1 position has" if count == 1 else f"{count} positions have")
-                assert f"up to {-worst[0]:.6g} apart" in told
+                assert warning.startswith("1 position has" if count == 1 else f"{count} positions have")
+                assert f"up to {-worst[0]:.6g} apart" in warning
 
 
 def test_the_same_in_files(tmp_path, monkeypatch):
@@ -68,13 +68,13 @@ def test_the_same_in_files(tmp_path, monkeypatch):
     monkeypatch.setattr(mis_ties, "_AT_ONCE", 10_000)
     with MappedArrays(tmp_path / "arrays") as arrays:
         kept = arrays.keep(points)
-        found, told = without_mis_ties(kept, arrays.room, arrays.gather)
-        once, told_of_once, are_apart = each_place_once(kept, arrays.room, arrays.gather)
+        found, warning = without_mis_ties(kept, arrays.room, arrays.gather)
+        once, warning_of_once, are_apart = each_place_once(kept, arrays.room, arrays.gather)
         in_files = [np.array(found), np.array(once)]
     monkeypatch.undo()
     expected = without_mis_ties(points)
     assert in_files[0].tobytes() == expected[0].tobytes()
-    assert told == told_of_once == expected[1]
+    assert warning == warning_of_once == expected[1]
     assert in_files[1].tobytes() == each_place_once(points, np.zeros, in_memory)[0].tobytes()
     assert not are_apart and len(in_files[1]) < len(in_files[0]) < len(points)
 
@@ -82,5 +82,5 @@ def test_the_same_in_files(tmp_path, monkeypatch):
 def test_what_is_apart_is_left_alone():
     points = np.random.default_rng(2).random((100, 3))
     assert without_mis_ties(points)[0] is points
-    found, told, are_apart = each_place_once(points, np.zeros, in_memory)
-    assert found is points and told is None and are_apart
+    found, warning, are_apart = each_place_once(points, np.zeros, in_memory)
+    assert found is points and warning is None and are_apart

@@ -35,7 +35,7 @@ def copy(tmp_path, monkeypatch):
     return explained
 
 
-def test_a_developer_is_told_to_build(copy):
+def test_the_advice_for_a_developer_is_to_build(copy):
     text = copy(checkout=True)
     assert f"scripts/build.sh {sys.executable}" in text
     assert f"Python {VERSION} is missing" in text
@@ -73,7 +73,7 @@ def test_any_version_of_macos_is_known(copy):
     assert "ends with macos-arm64.zip" in text
 
 
-def test_a_system_without_a_zip_is_told_so(copy):
+def test_a_system_without_a_zip(copy):
     text = copy(MINOR, on="macosx-11.0-x86_64")
     assert "these only: Linux on x86-64, Windows on x64, macOS on Apple's processors" in text
 

@@ -94,9 +94,9 @@ def test_the_scale_bar_is_as_long_as_it_says():
     bars = [i.rings[0] for i in drawing.items if isinstance(i, Polygon) and i.fill is None]
     length = np.ptp(bars[-1][:, 0])
     assert length == pytest.approx(float(label.removesuffix(" m")) * SIZE[0] / 600.0)
-    told = texts(draw_overlay(eye(152, 27, perspective=True), shown(3.0), (), False, True, False))
-    assert "at the center of the model" in told
-    assert "vertical exaggeration 3\u00d7" in told
+    shown_texts = texts(draw_overlay(eye(152, 27, perspective=True), shown(3.0), (), False, True, False))
+    assert "at the center of the model" in shown_texts
+    assert "vertical exaggeration 3\u00d7" in shown_texts
 
 
 def test_the_arrow_points_north():

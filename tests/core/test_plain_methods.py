@@ -274,7 +274,7 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, method)
 
 
 @pytest.mark.parametrize("method", ["idw", "spline", "kriging"])
-def test_nodes_without_a_point_within_the_radius_are_told(method):
+def test_nodes_without_a_point_within_the_radius_are_a_warning(method):
     points = np.array([[0.0, 0, 1], [2, 0, 2], [0, 2, 3], [2, 2, 2], [1, 1, 2], [1, 0, 1]])
     nodes = [[1.0, 0.5], [2.0, 1.0], [9.0, 9.0], [2.5, 40.0]]
     variogram = {"variogram": {"model": "spherical", "range": 5, "sill": 1}} if method == "kriging" else {}
@@ -286,7 +286,7 @@ def test_nodes_without_a_point_within_the_radius_are_told(method):
     assert interpolate(points, nodes[:2], method, radius=3.0, **variogram).warnings == ()
 
 
-def test_points_elsewhere_are_told():
+def test_points_elsewhere_are_a_warning():
     """Other coordinates or units: all is extrapolated, and nothing that comes out means anything."""
     (warning,) = interpolate(WAVY, NODES * 3.28, "tin").warnings
     assert warning.startswith("no point lies in the area of the mesh: x of the points is 431250.")

@@ -103,15 +103,15 @@ def test_edges_by_the_density_of_points():
         assert len(made) == pytest.approx(wanted, rel=0.05)
 
 
-def test_it_tells_beforehand_what_it_takes():
-    told = estimate_mesh(SQUARE, [HOLE], 0.5)
+def test_the_estimate_of_a_mesh():
+    estimated = estimate_mesh(SQUARE, [HOLE], 0.5)
     made = mesh_region(SQUARE, [HOLE], 0.5)[1]
-    assert told.triangles == pytest.approx(len(made), rel=0.05)
-    assert told.memory > 40 * len(made)
+    assert estimated.triangles == pytest.approx(len(made), rel=0.05)
+    assert estimated.memory > 40 * len(made)
     size = [{"at": [50.0, 50.0], "length": 0.5, "distance": 10}]
-    told = estimate_mesh(SQUARE, [HOLE], 8, size=size)
-    assert told.triangles == pytest.approx(len(mesh_region(SQUARE, [HOLE], 8, size=size)[1]), rel=0.15)
-    assert estimate_mesh(SQUARE, edge_length=1e-4).memory > 1e11  # told, where meshing refuses it
+    estimated = estimate_mesh(SQUARE, [HOLE], 8, size=size)
+    assert estimated.triangles == pytest.approx(len(mesh_region(SQUARE, [HOLE], 8, size=size)[1]), rel=0.15)
+    assert estimate_mesh(SQUARE, edge_length=1e-4).memory > 1e11  # meshing would refuse it
 
 
 @pytest.mark.parametrize(

@@ -215,7 +215,7 @@ def test_point_files_from_python(write):
         check_project(project)
 
 
-def test_points_without_a_value_are_told(write):
+def test_points_without_a_value_are_a_warning(write):
     text = KEYS.format(top="", surface="nodata = -9999").replace("all.csv", "p.xyz")
     write("p.xyz", "0 0 1\n4 0 1\n4 4 1\n0 4 1\n2 2 -9999\n")
     warnings = build(load_project(write("p.toml", text))).warnings
@@ -239,7 +239,7 @@ def test_other_usual_names_of_columns(write, header):
     assert not warnings
 
 
-def test_names_that_say_nothing_of_coordinates_are_told(write):
+def test_guessed_columns_are_a_warning(write):
     body = "1.5,2.25,3.125\n4,5,-6\n"
     points, warnings = read_point_file(PointFile(write("p.csv", "first,second,third\n" + body)))
     assert points.tolist() == POINTS
@@ -261,7 +261,7 @@ def test_names_that_say_nothing_of_coordinates_are_told(write):
         ((-9999, -9999), None),  # there is no other
     ],
 )
-def test_heights_that_often_stand_for_none_are_told(write, heights, words):
+def test_heights_that_often_mean_no_data_are_a_warning(write, heights, words):
     rows = "".join(f"{k},{2 * k},{z}\n" for k, z in enumerate(heights))
     points, warnings = read_point_file(PointFile(write("p.csv", rows)))
     assert len(points) == len(heights)

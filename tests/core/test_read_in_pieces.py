@@ -49,14 +49,14 @@ def in_a_process(script, *arguments):
 def test_points_are_the_same_in_a_file(tmp_path, name):
     """Larger than a piece; and each height, and only these, at its place."""
     file, expected = write_points(name, 390, 410, tmp_path)
-    points, told = read_point_file(PointFile(file, units={"z": "ft"}, z_axis="down"))
+    points, warnings = read_point_file(PointFile(file, units={"z": "ft"}, z_axis="down"))
     assert np.array_equal(points[:, :2], expected[:, :2])
     assert np.array_equal(points[:, 2], expected[:, 2] * 0.3048 * -1.0)
     with MappedArrays(tmp_path / "arrays") as arrays:
         given = PointFile(file, units={"z": "ft"}, z_axis="down")
-        kept, told_of_kept = read_point_file(given, gather=arrays.gather)
+        kept, warnings_of_kept = read_point_file(given, gather=arrays.gather)
         assert isinstance(kept, np.memmap) and kept.tobytes() == points.tobytes()
-        assert told_of_kept == told
+        assert warnings_of_kept == warnings
 
 
 @pytest.mark.parametrize("name", MESHES)
@@ -325,7 +325,7 @@ def test_points_are_divided_in_less_memory_than_they_take(tmp_path):
 
 @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="a system that cannot reserve room")
 def test_room_on_a_full_disk(monkeypatch, tmp_path):
-    """Is told when the room is made, not when it is written to; disks that reserve nothing do no harm."""
+    """Is warnings when the room is made, not when it is written to; disks that reserve nothing do no harm."""
 
     def refused(number):
         def reserve(*_):

@@ -197,7 +197,9 @@ def test_a_mesh_on_one_side_only():
     (entry,) = prepared(Project("p", [rock], faults=[Fault("F", *plane_fault())]))
     one, other = entry.structure.sheets
     assert one[0] is other[0]
-    assert any("it has no triangles in compartment" in told.text for _, told in entry.structure.warnings)
+    assert any(
+        "it has no triangles in compartment" in warning.text for _, warning in entry.structure.warnings
+    )
 
 
 def test_bays_of_the_outline_are_not_filled():

@@ -150,7 +150,7 @@ def test_polygons_of_several_parts(files, write, kind):
 
 
 def test_by_the_batch_program(package, write, tmp_path):
-    """The layer must be said, and what is there is told; lines beside the polygons are told, too."""
+    """The layer must be named, and the error lists the layers; lines beside the polygons give a warning."""
 
     def run(region):
         path = write("p.toml", PROJECT_OF_REGION.format(region=region))

@@ -293,8 +293,8 @@ def test_hamersley():
     for polygon in shapes.polygons:
         units.setdefault(polygon.item, 0)
         units[polygon.item] += region_area(region_rings(polygon.rings[0], polygon.rings[1:]))
-    region, holes, told = read_rings(MapLayer(path, where={"unitname": "Marra Mamba Iron Formation"}))
-    assert told == []
+    region, holes, warnings = read_rings(MapLayer(path, where={"unitname": "Marra Mamba Iron Formation"}))
+    assert warnings == []
     rings = [region, *holes] if isinstance(region, np.ndarray) else region
     assert region_area(rings) > 0
     _, triangles = mesh_region(rings, edge_length=3000.0)

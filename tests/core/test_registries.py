@@ -71,7 +71,7 @@ def test_a_mesh_of_no_known_format_is_refused(tmp_path):
         read_mesh(file)
 
 
-def test_the_document_tells_who_checks_each_format():
+def test_the_document_names_the_program_that_checks_each_format():
     root = Path(__file__).resolve().parents[2]
     text = (root / "docs" / "dev" / "formats.md").read_text(encoding="utf-8")
     written = text[text.index("## Written") : text.index("## Read")]

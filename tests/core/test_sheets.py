@@ -48,7 +48,7 @@ def test_points_count_in_their_compartment(lean):
         assert np.array_equal(triangles, entry.region[1])
         assert np.abs(vertices[:, 2] - 0.1 * vertices[:, 0] - shift).max() < 1e-6
     assert np.array_equal(entry.surfaces[0][0], joined(entry.structure.distinct(0))[0])
-    assert len(entry.told[0]["distance"]) == len(entry.surfaces[0][0])
+    assert len(entry.attributes[0]["distance"]) == len(entry.surfaces[0][0])
     assert entry.interpolations[0].method == "universal_kriging"
 
 
@@ -83,8 +83,8 @@ def test_a_compartment_without_points_goes_on_as_its_neighbor():
     middle = int(closed.compartments_of(np.array([[5.0, 5, 0]]))[0])
     left = int(closed.compartments_of(np.array([[1.0, 5, 0]]))[0])
     assert entry.structure.sheets[middle][0] is entry.structure.sheets[left][0]
-    told = [text.text for members, text in entry.structure.warnings if middle in members]
-    assert len(told) == 1 and told[0].startswith(
+    warnings = [text.text for members, text in entry.structure.warnings if middle in members]
+    assert len(warnings) == 1 and warnings[0].startswith(
         f"it has no points in compartment '{entry.structure.names[middle]}'"
     )
 
@@ -115,7 +115,7 @@ def test_surfaces_made_from_others_in_their_compartment():
         bottom, middle, top = (sheet[0][:, 2] for sheet in sheets)
         assert np.allclose(middle, bottom + 1.0)
         assert np.allclose(top, np.maximum(0.5, middle + 0.25))
-    assert any("stay 0.25 above 'S1'" in told.text for _, told in entry.structure.warnings)
+    assert any("stay 0.25 above 'S1'" in warning.text for _, warning in entry.structure.warnings)
 
 
 def test_a_younger_surface_parallel_to_a_displaced_one():
@@ -239,7 +239,7 @@ def test_points_on_both_sides_of_a_fault_that_dies_out_at_one_position_in_plan()
 
 
 def test_picks_that_reach_beyond_a_fault_contradict_those_of_the_other_side():
-    """Of two points above one another that which fits the other side is left out, and told."""
+    """Of two points above one another, the one that fits the other side is left out with a warning."""
     shape = plane_fault()
     points = points_of(lambda x, y: np.where(x < 5, -1.0, 1.0))
     wrong = points[(points[:, 0] > 5) & (points[:, 0] < 5.5)] * [1, 1, -1]

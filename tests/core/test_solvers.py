@@ -72,9 +72,9 @@ def model_of(name, folder):
 def test_check_mesh_finds_no_fault(tmp_path, name, edge, thickness, layer):
     mesh = model_of(name, tmp_path).simulation_mesh(edge, thickness, layer_thickness=layer)
     save_mesh(mesh, tmp_path / "case.foam")
-    told = run_foam("checkMesh", tmp_path / "case.foam", "-allGeometry", "-allTopology")
-    assert "Mesh OK." in told, "\n".join(line for line in told.splitlines() if "***" in line)
-    found = re.search(r"non-orthogonality Max: ([0-9.]+)", told)
+    output = run_foam("checkMesh", tmp_path / "case.foam", "-allGeometry", "-allTopology")
+    assert "Mesh OK." in output, "\n".join(line for line in output.splitlines() if "***" in line)
+    found = re.search(r"non-orthogonality Max: ([0-9.]+)", output)
     assert float(found[1]) < 70
     assert least_angles(mesh.plan.vertices, mesh.plan.triangles).min() > 20
 
@@ -95,8 +95,8 @@ def foam_flux(model, folder):
     settings.write_text(settings.read_text().replace("Correctors 5", "Correctors 20"))
     control = case / "system" / "controlDict"
     control.write_text(control.read_text().replace("binary", "ascii"))
-    told = run_foam("laplacianFoam", case)
-    last = [line for line in told.splitlines() if "Solving for T" in line][-1]
+    output = run_foam("laplacianFoam", case)
+    last = [line for line in output.splitlines() if "Solving for T" in line][-1]
     assert float(last.split("Initial residual = ")[1].split(",")[0]) < 1e-8, last
     times = [path for path in case.iterdir() if path.name[0].isdigit() and path.name != "0"]
     temperature = scalar_field(max(times, key=lambda path: float(path.name)) / "T")

@@ -85,10 +85,10 @@ void = true
     assert (salt.after, salt.property, salt.void, salt.rock) == ("S0", 7, False, "basin")
     assert (tunnel.after, tunnel.void) == (None, True)
     assert {path.name for path in read.input_files()} >= {"f.ts", "f.pol", "cube.off"}
-    faults, bodies, told = run(lambda work: read_structures(work, read))
+    faults, bodies, warnings = run(lambda work: read_structures(work, read))
     assert np.allclose(faults[0].vertices.max(axis=0), [0, 0.3048, 0.3048])
     assert faults[1].vertices[:, 2].min() == pytest.approx(-4.5)
-    assert len(bodies[0].triangles) == 12 and told == []
+    assert len(bodies[0].triangles) == 12 and warnings == []
 
 
 F1 = '[[fault]]\nname = "F1"\nmesh = "f.ts"\n'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In which cells of a model points lie, where doubles cannot tell."""
+"""Locating points in cells where doubles are not precise enough."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ PLACES = [(0.25, 0.5), (0.3, 0.9), (1.7, 0.1), (0.5, 0.5), (1.0, 0.5), (0.25, 1.
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_above_and_below_a_cell_thinner_than_doubles_tell(model, place):
+def test_above_and_below_a_cell_thinner_than_the_precision_of_doubles(model, place):
     points = np.array([(*place, z) for z in (-0.5, 0.5, 1.5, 2.5)])
     cells = Locator(model).cells(points)
     assert cells[0] == cells[3] == OUTSIDE

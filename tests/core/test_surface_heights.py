@@ -57,13 +57,13 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
     plain = build(rock(low, Surface("high", points=points(2, 2, 4, 8), method="tin")))
     free = plain.surface(1)[0][:, 2]
     assert np.array_equal(z[1], np.maximum(free, z[0] + 0.5))
-    told = {(w.kind, w.surface): w for w in model.warnings}
-    assert told["wrong_side", "high"].items == (2,)
+    warnings = {(w.kind, w.surface): w for w in model.warnings}
+    assert warnings["wrong_side", "high"].items == (2,)
     assert "1 of its 4 points lie below 'low', the farthest by 2: point 2 at (10, 10, 4)" in str(
-        told["wrong_side", "high"]
+        warnings["wrong_side", "high"]
     )
-    assert told["wrong_side", "low"].items == (2,)
-    raised = told["minimum_thickness", "high"]
+    assert warnings["wrong_side", "low"].items == (2,)
+    raised = warnings["minimum_thickness", "high"]
     count = int((free < z[0] + 0.5).sum())
     assert f"raised at {count} of {len(free)} nodes to stay 0.5 above 'low', by up to 2.5 at (10, 10)" in str(
         raised
@@ -200,8 +200,8 @@ def test_a_smooth_surface_that_keeps_off_another():
     assert (vertices[:, 2] >= model.surface(0)[0][:, 2]).all()
     on_border = (vertices[:, :2] == 0).any(axis=1) | (vertices[:, :2] == 10).any(axis=1)
     assert set(vertices[on_border, 2]) == {6.0}
-    told = interpolate(None, wells[:, :2], "parallel", to=(vertices, triangles), thickness=0).z
-    assert told == pytest.approx(wells[:, 2], abs=1e-5)
+    z = interpolate(None, wells[:, :2], "parallel", to=(vertices, triangles), thickness=0).z
+    assert z == pytest.approx(wells[:, 2], abs=1e-5)
 
 
 def test_each_surface_is_asked_once_for_the_points_of_all_younger_ones(monkeypatch):

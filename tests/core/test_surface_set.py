@@ -46,22 +46,22 @@ def test_vertices_know_their_variance_and_distance():
     assert surfaces.surface_names == ["base", "part", "quick", "ready"]
     for number in (0, 1, 2):
         vertices, _ = surfaces.surface(number)
-        told = surfaces.surface_attributes(number)
+        attributes = surfaces.surface_attributes(number)
         surface = given.rocks[0].surfaces[number]
         method, options = surface.method_options()
         again = interpolate(surface.points, vertices[:, :2], method, **options)
-        assert np.array_equal(told["height"], vertices[:, 2])
-        assert np.array_equal(told["height"], again.z)
+        assert np.array_equal(attributes["height"], vertices[:, 2])
+        assert np.array_equal(attributes["height"], again.z)
         if again.variance is None:
-            assert np.isnan(told["variance"]).all()
+            assert np.isnan(attributes["variance"]).all()
         else:
-            assert np.array_equal(told["variance"], again.variance)
+            assert np.array_equal(attributes["variance"], again.variance)
         apart = np.linalg.norm(vertices[:, None, :2] - surface.points[None, :, :2], axis=2).min(axis=1)
-        assert told["distance"] == pytest.approx(apart, abs=1e-9)
+        assert attributes["distance"] == pytest.approx(apart, abs=1e-9)
     assert len(surfaces.surface(1)[0]) < len(surfaces.surface(0)[0])
-    told = surfaces.surface_attributes(3)
-    assert np.isnan(told["variance"]).all()
-    assert np.isnan(told["distance"]).all()
+    attributes = surfaces.surface_attributes(3)
+    assert np.isnan(attributes["variance"]).all()
+    assert np.isnan(attributes["distance"]).all()
 
 
 def test_the_model_has_the_same():
@@ -94,8 +94,8 @@ def test_files(tmp_path):
     grid = reader.GetOutput()
     assert np.array_equal(vtk_to_numpy(grid.GetPoints().GetData()), read["surface_vertices"])
     for name in ("height", "variance", "distance"):
-        told = vtk_to_numpy(grid.GetPointData().GetArray(name))
-        assert np.array_equal(told, read[f"surface_{name}"], equal_nan=True)
+        values = vtk_to_numpy(grid.GetPointData().GetArray(name))
+        assert np.array_equal(values, read[f"surface_{name}"], equal_nan=True)
     number = vtk_to_numpy(grid.GetCellData().GetArray("surface"))
     assert np.array_equal(np.bincount(number), np.diff(read["surface_triangle_offsets"]))
     corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 3)
@@ -144,12 +144,12 @@ def test_from_the_command_line(tmp_path, write):
     npz, vtu, report = (tmp_path / name for name in ("s.npz", "s.vtu", "r.json"))
     run = command(path, "--surfaces-only", "--export", npz, "--export", vtu, "--report", report)
     assert run.returncode == 0, run.stderr
-    assert "least sure" in run.stdout
+    assert "max deviation" in run.stdout
     assert "kriging" in run.stdout
     assert list(np.load(npz)["surface_names"]) == ["low", "high"]
-    told = json.loads(report.read_text())
-    assert [entry["method"] for entry in told["surfaces"]] == ["kriging", "parallel"]
-    assert told["surfaces"][0]["neighbours"] == 32
+    content = json.loads(report.read_text())
+    assert [entry["method"] for entry in content["surfaces"]] == ["kriging", "parallel"]
+    assert content["surfaces"][0]["neighbours"] == 32
     assert vtu.stat().st_size > 0
     one = command(path, "--surfaces-only", "--stage", 0, "--export", npz)
     assert one.returncode == 0, one.stderr

@@ -13,7 +13,7 @@ TINY = Fraction(1, 10**30)
 
 
 def built(*places):
-    """Vertices at exact places, as the native build_tile tells of them."""
+    """Vertices at exact places, in the form of the native build_tile."""
 
     def text(value):
         top, bottom = Fraction(value).as_integer_ratio()

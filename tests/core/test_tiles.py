@@ -235,7 +235,7 @@ def test_random_stacks(tmp_path_factory, family, cells, share, rng):
     assert_same_blocks(tiled, whole, np.asarray(volume_allowance(case, volumes))[surfaces])
 
 
-def test_what_is_told_of_triangles_has_their_numbers(tmp_path):
+def test_warnings_about_triangles_have_their_numbers(tmp_path):
     project = ready()
     surface = project.rocks[0].surfaces[2]
     flat = np.vstack([surface.triangles[-1], surface.triangles[-1]])
@@ -522,11 +522,11 @@ def test_points_that_are_no_grid_are_refused_the_same(change, said, tmp_path):
     points = change(on_a_grid((20, 20), (5, 5), (0, 0), 0, 0, 1))
     surface = Surface("S", points=points, method="grid")
     project = Project("p", [Rock("r", [surface], region=OUTLINE, edge_length=9.0, base_elevation=-30.0)])
-    with pytest.raises(InputRefused, match=said) as told:
+    with pytest.raises(InputRefused, match=said) as refused:
         build_tiles(project, tmp_path / "t", (40, 40))
     with pytest.raises(InputRefused) as here:
         build(project)
-    assert str(told.value) == str(here.value)
+    assert str(refused.value) == str(here.value)
 
 
 def test_the_automatic_method_is_chosen_once(monkeypatch, tmp_path):

@@ -76,7 +76,7 @@ def test_octants_and_radius():
     assert idw.z[0] == pytest.approx((weight * POINTS[:, 2]).sum() / weight.sum())
 
 
-def test_nodes_without_a_point_within_the_radius_are_told():
+def test_nodes_without_a_point_within_the_radius_are_a_warning():
     far = np.vstack([NODES, UTM - 5000])
     result = interpolate(POINTS, far, variogram=SPHERICAL, radius=300.0)
     (warning,) = result.warnings
@@ -86,7 +86,7 @@ def test_nodes_without_a_point_within_the_radius_are_told():
 
 
 def test_a_drift_wins_where_heights_follow_a_trend():
-    """Told beyond the points, a slope goes on, where ordinary kriging falls back to the mean."""
+    """A slope continues beyond the points, where ordinary kriging falls back to the mean."""
     plan = RNG.random((80, 2)) * [400, 1000]
     points = np.column_stack([plan, 0.5 * plan[:, 0] + RNG.normal(0, 1, 80)])
     nodes = np.column_stack([np.full(20, 700.0), np.linspace(100, 900, 20)])
@@ -135,7 +135,7 @@ def test_one_and_two_points_warn():
     assert "two points only" in two.warnings[0]
 
 
-def test_extrapolation_is_a_choice_and_told():
+def test_extrapolation_is_a_choice_and_reported():
     points = np.array([[0, 0, 1], [10, 0, 2], [10, 10, 5], [0, 10, 3.0], [5, 5, 2]])
     nodes = np.array([[5, 5], [0, 0], [5, 0], [12, 0], [-3, 11.0]])
     variogram = {"model": "spherical", "range": 20.0, "sill": 4.0}
@@ -211,11 +211,11 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, drift, 
     assert isinstance(result.variogram, Variogram)
 
 
-def test_a_trend_is_told_where_there_is_none_in_the_method():
+def test_a_trend_that_the_method_lacks_is_a_warning():
     steep = np.column_stack([PLAN, PLAN[:, 0] - UTM[0] + RNG.normal(0, 30, len(PLAN))])
-    told = interpolate(steep, NODES).warnings
-    assert len(told) == 1
-    assert "far exceeds the extent of the points" in told[0]
-    assert "universal kriging" in told[0]
-    told = interpolate(steep, NODES, method="universal_kriging").warnings
-    assert not any("range" in text for text in told)
+    warnings = interpolate(steep, NODES).warnings
+    assert len(warnings) == 1
+    assert "far exceeds the extent of the points" in warnings[0]
+    assert "universal kriging" in warnings[0]
+    warnings = interpolate(steep, NODES, method="universal_kriging").warnings
+    assert not any("range" in text for text in warnings)

@@ -47,7 +47,7 @@ def test_progress_while_the_work_goes_on_and_never_falling():
     assert run(steps, progress) == "done"
     assert POLL_SECONDS <= 0.1, "ten times a second"
     assert len(calls) >= 20
-    assert steps.done < ENDLESS, "progress is not told while the work goes on"
+    assert steps.done < ENDLESS, "progress is not reported while the work goes on"
     fractions, texts = zip(*calls, strict=True)
     assert list(fractions) == sorted(fractions)
     assert fractions[0] >= 0.0
@@ -119,7 +119,7 @@ def test_errors_of_the_work_reach_the_caller():
         run(task)
 
 
-def test_the_last_call_tells_the_end():
+def test_the_last_call_is_the_end():
     calls = []
 
     def task(work):
@@ -201,7 +201,7 @@ def test_items_give_their_results_in_order_on_any_number_of_threads(threads):
 
 
 @pytest.mark.parametrize("threads", [1, 4])
-def test_the_first_item_that_fails_tells(threads):
+def test_the_error_is_that_of_the_first_item_that_fails(threads):
     def fail(work, number, _threads):
         with work.phase(0.0, 1.0, "failing"):
             if number > 1:

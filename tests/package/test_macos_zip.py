@@ -20,7 +20,7 @@ def modules(macos_addon):
     return found
 
 
-def told(module, *what):
+def objdump(module, *what):
     """What LLVM's objdump says of a module."""
     if shutil.which("llvm-objdump") is None:
         pytest.skip("llvm-objdump is not there")
@@ -44,7 +44,7 @@ def test_a_module_says_which_python_it_is_for(modules):
 
 def test_a_module_is_for_apples_processors_and_macos_11(modules):
     for module in modules:
-        text = told(module, "--private-headers")
+        text = objdump(module, "--private-headers")
         assert "ARM64" in text, module.name
         assert re.search(r"platform macos\s+sdk [\d.]+\s+minos 11\.0", text), module.name
         assert "LC_CODE_SIGNATURE" in text, "no such processor runs what is not signed"
@@ -52,7 +52,7 @@ def test_a_module_is_for_apples_processors_and_macos_11(modules):
 
 def test_a_module_needs_the_system_only(modules):
     for module in modules:
-        libraries = told(module, "--dylibs-used").splitlines()[2:]  # after its own name, twice
+        libraries = objdump(module, "--dylibs-used").splitlines()[2:]  # after its own name, twice
         assert [line.split()[0] for line in libraries] == ["/usr/lib/libSystem.B.dylib"], module.name
 
 
@@ -68,6 +68,6 @@ def test_a_module_asks_for_nothing_but_python_and_the_system(modules):
 def test_a_module_shows_its_entry(modules):
     """And allocation by the C++ library's own name, as that library wants it."""
     for module in modules:
-        shown = re.findall(r"^0x[0-9A-F]+ +(\S+)", told(module, "--exports-trie"), re.MULTILINE)
+        shown = re.findall(r"^0x[0-9A-F]+ +(\S+)", objdump(module, "--exports-trie"), re.MULTILINE)
         assert "_PyInit__native" in shown
         assert [n for n in shown if not re.match(r"_PyInit__native|__Zn[aw]|__Zd[al]|___?(dso|mh)_", n)] == []

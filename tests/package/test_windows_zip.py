@@ -41,15 +41,15 @@ def test_a_module_says_which_python_it_is_for(modules):
 
 
 def test_a_module_needs_windows_and_its_python_only(modules):
-    for name, told in modules.items():
-        needed = {dll.lower() for dll in re.findall(r"DLL Name: (\S+)", told)}
+    for name, output in modules.items():
+        needed = {dll.lower() for dll in re.findall(r"DLL Name: (\S+)", output)}
         python = f"python{re.search(r'cp(3[0-9]+)', name)[1]}.dll"
         assert python in needed
         assert needed <= SYSTEM | {python}, name
 
 
 def test_a_module_shows_its_entry_only(modules):
-    for name, told in modules.items():
-        names = told.split("[Ordinal/Name Pointer] Table", 1)[1].split("\n\n")[0]
+    for name, output in modules.items():
+        names = output.split("[Ordinal/Name Pointer] Table", 1)[1].split("\n\n")[0]
         assert re.findall(r"\[ *\d+\].* (\S+)$", names, re.MULTILINE) == ["PyInit__native"], name
-        assert "Time/Date\t\tThu Jan  1 00:00:00 1970" in told, "the time of linking makes other bytes"
+        assert "Time/Date\t\tThu Jan  1 00:00:00 1970" in output, "the time of linking makes other bytes"

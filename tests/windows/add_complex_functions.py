@@ -17,10 +17,10 @@ OWN = re.compile(r"(c(?:cosh?|exp|sinh?|tanh?|pow|abs|arg|imag|real))(?:(f)|l)?"
 
 def imported(module):
     """The names that a module asks the library for."""
-    told = subprocess.run(
+    output = subprocess.run(
         [f"{COMPILER}objdump", "-p", module], check=True, capture_output=True, text=True
     ).stdout
-    parts = re.split(r"DLL Name: (\S+)", told)
+    parts = re.split(r"DLL Name: (\S+)", output)
     of_library = [text for name, text in zip(parts[1::2], parts[2::2], strict=True) if name.encode() == ASKED]
     return {name for text in of_library for name in re.findall(r"^\s+[0-9a-f]+\s+\d+\s+(\w+)$", text, re.M)}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts, sections, fences and boreholes as the command line asks for them: WHAT=FILE."""
+"""Cuts, sections, fences and boreholes of the command line: WHAT=FILE."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class SectionRequest:
         return model.section(self.what[:3], self.what[3:], threads)
 
     def run(self, model, outputs, threads: int, progress) -> str:
-        """Makes the section and stages its file; what there is to say about it."""
+        """Makes the section and stages its file. Returns the summary for the terminal."""
         progress(1.0, f"cutting {self.file.name}")
         found = self.cut(model, threads)
         with outputs.file(self.file) as file:
@@ -84,7 +84,7 @@ class BoreholeRequest:
         pass
 
     def run(self, model, outputs, _threads: int, progress) -> str:
-        """Stages the file; what there is to say about the borehole."""
+        """Stages the file. Returns the summary of the borehole for the terminal."""
         progress(1.0, f"writing {self.file.name}")
         found = model.borehole(*self.what)
         with outputs.file(self.file) as file:
@@ -122,14 +122,14 @@ class CutRequest:
         return []
 
     def read(self) -> None:
-        """Reads the surface and builds the other model, where there is one. Raises what that raises."""
+        """Reads the surface and builds the other model, if any. Raises their errors."""
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
             self._other = build(load_project(self.cutter[0]), cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:
-        """Cuts and stages the halves; what there is to say about them."""
+        """Cuts, and stages the halves for writing. Returns the summary for the terminal."""
         names = ", ".join(path.name for path in self.outputs)
 
         def step(_share, _text):
@@ -140,8 +140,8 @@ class CutRequest:
             cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads, step)
             text = "by the plane"
         elif isinstance(self.cutter, Path):
-            vertices, told = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
-            lines += [f"warning: {warning}" for warning in told]
+            vertices, warnings = self._mesh.in_model(MeshFile(self.cutter), model.project.units)
+            lines += [f"warning: {warning}" for warning in warnings]
             try:
                 cut = model.cut_by_surface(vertices, self._mesh.triangles, threads, step)
             except InputRefused as error:

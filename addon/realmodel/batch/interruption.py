@@ -16,15 +16,15 @@ def terminate(_number, _frame) -> None:
 
 
 def ignore_interruption() -> None:
-    """In a moment all files are there: too late to stop."""
+    """Called just before the files are moved into place: then it is too late to stop."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
 
 
 class Interruptible:
-    """Ctrl-C while Blender renders or saves, when no line of Python runs that could notice it.
+    """Handles Ctrl-C while Blender renders or saves and the main thread runs no Python code.
 
-    A thread of its own hears the signal. Where the main thread has not gone by then on its own, it drops
+    A separate thread receives the signal. If the main thread has not left after a second, this thread removes
     the outputs and ends the process.
     """
 
@@ -34,10 +34,10 @@ class Interruptible:
 
     def __enter__(self):
         if IN_BLENDER:
-            self._hear, self._told = os.pipe()
+            self._hear, self._signals = os.pipe()
             if hasattr(os, "set_blocking"):  # Windows, from Python 3.12 on, and it does not ask for it
-                os.set_blocking(self._told, False)
-            signal.set_wakeup_fd(self._told)
+                os.set_blocking(self._signals, False)
+            signal.set_wakeup_fd(self._signals)
             threading.Thread(target=self._watch, daemon=True).start()
         return self
 
@@ -45,7 +45,7 @@ class Interruptible:
         self.left.set()
         if IN_BLENDER:
             signal.set_wakeup_fd(-1)
-            os.close(self._told)
+            os.close(self._signals)
 
     def _watch(self) -> None:
         while heard := os.read(self._hear, 1):

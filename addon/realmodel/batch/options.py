@@ -166,7 +166,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--estimate",
         action="store_true",
-        help="tell cells, memory and time that it would take, and build nothing",
+        help="print the expected cells, memory and time, and build nothing",
     )
     parser.add_argument(
         "--surfaces-only",
@@ -176,7 +176,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--eroded",
         action="store_true",
-        help="tell what each surface removed and each body took of each block, in the table and the report",
+        help="add the volume that each surface removed and each body took of each block to table and report",
     )
     parser.add_argument(
         "--check-model",
@@ -190,7 +190,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 
 def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:
-    """What options say together. Leaves with status 2 and one line."""
+    """Checks combinations of options. Exits with status 2 and one line."""
     for name, ending in (("blend", ".blend"), ("report", ".json"), ("render", ".png")):
         path = getattr(options, name)
         if path is not None and path.suffix.lower() != ending:

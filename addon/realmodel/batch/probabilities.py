@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What --section, --fence, --borehole and --export mean beside --ensemble: files with the probability of each
-block along them, and on a regular grid."""
+"""--section, --fence, --borehole and --export together with --ensemble: files with the probability of each
+block along them, or on a regular grid."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .cuts import BoreholeRequest, SectionRequest, borehole_request, fence_reque
 
 @dataclass
 class ProbabilityRequests:
-    """The files that the options ask for. size: of cells."""
+    """The requested files. size: of cells."""
 
     made: list[SectionRequest | BoreholeRequest | GridRequest]
     size: Sequence[float] | None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build_model.py does: builds what the options ask for, writes it, prints the table."""
+"""The main program of build_model.py: builds the project, writes the outputs, prints the table."""
 
 import argparse
 import contextlib
@@ -33,7 +33,7 @@ from .terminal import TerminalProgress
 
 
 def run(options: argparse.Namespace) -> None:
-    """Does what the options say. Raises RealModelError; files appear whole or not at all."""
+    """Runs the program with these options. Raises RealModelError; files appear whole or not at all."""
     probabilities = ProbabilityRequests.of(options) if options.ensemble is not None else None
     requests = _requests(options) if probabilities is None else probabilities.made
     if probabilities is not None and requests:
@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _print(options: argparse.Namespace, warnings: list, lines: list[str]) -> None:
-    """Warnings and lines, unless --quiet. The outputs are there, though nobody may read this any more."""
+    """Prints warnings and lines, unless --quiet. A closed output is no error here: the files are written."""
     if not options.quiet:
         with contextlib.suppress(BrokenPipeError):
             for line in (*(f"warning: {warning}" for warning in warnings), *lines):
@@ -130,7 +130,7 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
 
 @contextlib.contextmanager
 def _client(options: argparse.Namespace, progress):
-    """The client that --scheduler asks for, or None."""
+    """The client for --scheduler, or None."""
     from ..distributed.workers import connected
 
     client = None if options.scheduler is None else connected(options.scheduler)
@@ -179,8 +179,8 @@ def _erosion(options: argparse.Namespace, model, progress):
 
 
 def _validation(options: argparse.Namespace, model, progress):
-    """The proof of the model, where it is asked for or goes into the report. One that was asked for and
-    failed keeps anything from being written."""
+    """The proof of the model, if it is requested or part of the report. If a requested one fails, nothing is
+    written."""
     if not options.check_model and options.report is None:
         return None
     report = model.validate(
@@ -222,7 +222,7 @@ def _requests(options: argparse.Namespace) -> list:
 
 
 def _cleaned_cells(options: argparse.Namespace, model, progress):
-    """The cells of the model that --cell-tolerance asks for, or None."""
+    """The cells of the model for --cell-tolerance, or None."""
     if options.cell_tolerance is None or not any(format_for(path).has_cells for path in options.export):
         return None
     return model.cleaned_cells(
@@ -233,7 +233,7 @@ def _cleaned_cells(options: argparse.Namespace, model, progress):
 
 
 def _mesh_request(options: argparse.Namespace):
-    """What --mesh asks for, or None."""
+    """The options of --mesh, or None."""
     if options.mesh is None:
         return None
     return MeshRequest(
@@ -247,7 +247,7 @@ def _mesh_request(options: argparse.Namespace):
 
 
 def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
-    """Where the outputs will stand; refused before anything is built rather than after."""
+    """The paths of the outputs. Refuses wrong ones before anything is built."""
     exported = [] if options.ensemble is not None else options.export  # else they are requests
     for path in exported:
         surface_writer_for(path) if options.surfaces_only else format_for(path)
@@ -317,7 +317,7 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
 @contextlib.contextmanager
 def _named(path, target: Path):
-    """What could not be written is named as the user did, not by the place where it is kept meanwhile."""
+    """Names the user's path in errors of writing, in the place of the temporary one."""
     try:
         yield
     except OutputFailed as error:

@@ -17,9 +17,9 @@ _NUMBERS_FROM = 3
 def volume_table(model, erosion: Erosion | None = None) -> str:
     """A line for each block, youngest first as in the field, and the sum; plain text with aligned columns.
 
-    `largest` is the share of a block's largest connected part, where it has several. With an erosion there
-    are what was eroded of each block, what the surface above it eroded of all older ones, and what bodies
-    took of the block.
+    `largest` is the share of a block's largest connected part, if it has several. With an erosion the table
+    has the volume eroded of each block, the volume of all older blocks that the surface above it eroded, and
+    the volume of the block that bodies took.
     """
     headings = _HEADINGS if erosion is None else (*_HEADINGS, *_HEADINGS_OF_EROSION)
     with_bodies = erosion is not None and len(erosion.taken) > 0
@@ -50,15 +50,15 @@ _HEADINGS_OF_SURFACES = (
     "vertices",
     "lowest",
     "highest",
-    "least sure",
+    "max deviation",
     "beyond points",
 )
 
 
 def surface_table(surfaces) -> str:
-    """A line for each fault and body, then for each interface, youngest first. `least sure` is the largest
-    deviation of a height where the method tells one, `beyond points` the share of the vertices outside the
-    hull of the points."""
+    """A line for each fault and body, then for each interface, youngest first. `max deviation` is the largest
+    standard deviation of a height where the method gives one, `beyond points` the share of the vertices
+    outside the hull of the points."""
     rows = []
     rocks = [entry.rock.name for entry in surfaces.rock_inputs for _ in entry.surfaces]
     given = [surface for entry in surfaces.rock_inputs for surface in entry.rock.surfaces]
@@ -68,17 +68,17 @@ def surface_table(surfaces) -> str:
         rows.append([surfaces.surface_names[number], "", ("fault", "body")[kind - 1], "", *shape, "", ""])
     for number in reversed(range(len(given))):
         result = surfaces.interpolations[number]
-        told = surfaces.surface_attributes(number)
-        known = told["variance"][np.isfinite(told["variance"])]
+        attributes = surfaces.surface_attributes(number)
+        known = attributes["variance"][np.isfinite(attributes["variance"])]
         rows.append(
             [
                 surfaces.surface_names[number],
                 rocks[number],
                 result.method if result else "ready mesh",
                 f"{len(given[number].points)}" if result else "",
-                f"{len(told['height'])}",
-                f"{told['height'].min():.7g}",
-                f"{told['height'].max():.7g}",
+                f"{len(attributes['height'])}",
+                f"{attributes['height'].min():.7g}",
+                f"{attributes['height'].max():.7g}",
                 f"{known.max() ** 0.5:.3g}" if len(known) else "",
                 f"{100 * result.extrapolated:.3g} %" if result else "",
             ]
@@ -115,11 +115,11 @@ def tiles_table(model) -> str:
     """A line for each block of a model in tiles, youngest first, and the sum; then the tiles."""
     rows = [_row(model, block) for block in reversed(model.blocks)]
     sums = _sums(model)
-    told = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
-    told += "equal on both sides"
+    summary = f"{len(model.tiles)} tiles, each validated; {model.patches} patches on their borders, "
+    summary += "equal on both sides"
     if model.unequal:
-        told += f" but for {model.unequal}"
-    return f"{_table(_HEADINGS[: len(sums)], rows, sums)}\n{told}"
+        summary += f" but for {model.unequal}"
+    return f"{_table(_HEADINGS[: len(sums)], rows, sums)}\n{summary}"
 
 
 def _table(headings, rows, sums=None) -> str:
@@ -133,7 +133,7 @@ def _table(headings, rows, sums=None) -> str:
 
 
 def _row(model, block) -> list[str]:
-    """What a model and one in tiles say of a block."""
+    """The row of a block, of a model or of one in tiles."""
     return [
         block.name,
         _property(model.project.library, block),

@@ -34,9 +34,9 @@ class TimeLeft:
 
 
 class TerminalProgress:
-    """progress(fraction, text) for people. A terminal sees a bar, drawn again in its line; a file gets a
-    line for each new phase, and another every two seconds of a long one. Quiet: nothing at all. time_left:
-    the text says how long it may take yet."""
+    """progress(fraction, text) as text. A terminal shows a bar, redrawn in its line; a file gets a line for
+    each new phase, and another every two seconds in a long one. Quiet: nothing at all. time_left: the text
+    contains the remaining time."""
 
     def __init__(self, stream: TextIO, quiet: bool = False, time_left: bool = False):
         self.stream = stream
@@ -71,7 +71,7 @@ class TerminalProgress:
             self._drawn = line
 
     def close(self) -> None:
-        """Takes the bar away, so that what follows begins on a clean line."""
+        """Removes the bar, so that further output begins on an empty line."""
         if self.bar and self._drawn:
             self.stream.write(f"\r{' ' * len(self._drawn)}\r")
             self.stream.flush()

@@ -20,10 +20,10 @@ _SECTORS = 32  # of the circles that the camera is to see
 
 
 def turntable(scene, points, size, frames, elevation, left=0.0):
-    """Sets up camera and light and has the camera go around a model once, counter-clockwise from above.
+    """Sets up camera and light, and rotates the camera around a model once, counter-clockwise from above.
 
-    points: (N, 3) of what is to be seen. size: (width, height) of the picture. frames: of one turn.
-    elevation: of the camera, radians. left: as for `picture.set_up`. Returns the empty that turns.
+    points: (N, 3) that the picture is to show. size: (width, height) of the picture. frames: of one turn.
+    elevation: of the camera, radians. left: as for `picture.set_up`. Returns the empty that rotates.
     """
     camera = picture.set_up(scene, points, size, left=left)
     points = np.asarray(points, np.float64)
@@ -66,8 +66,8 @@ def _turned(points, middle):
 
 
 def animate_stages(scene, frames):
-    """Keyframes of the stage: each is shown for some frames, the oldest that has rock first. Other keyframes
-    of the stage are removed. Returns how many stages there are."""
+    """Sets keyframes of the stage: each is shown for some frames, beginning with the oldest that has rock.
+    Other keyframes of the stage are removed. Returns the number of stages."""
     first = 0 if _has_base(scene) else 1
     last = max(settings.last_stage(scene), first)
     curves = versions.curves(scene)
@@ -95,7 +95,8 @@ def _has_base(scene):
 
 
 def _set_range(scene, frames):
-    """The animation lasts so many frames, or as long as that of the other kind does."""
+    """Sets the length of the animation: this number of frames, or the length of the other kind if that is
+    longer."""
     curves = versions.curves(scene)
     stages = None if curves is None else curves.find(_STAGE)
     ends = [frames]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build_model.py does inside Blender without a window: scene, .blend file, picture."""
+"""build_model.py inside Blender in background mode: scene, .blend file, render."""
 
 import contextlib
 import os
@@ -55,9 +55,9 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
 
 @contextlib.contextmanager
 def without_chatter():
-    """Keep what Blender itself prints (a line per sample of a render) out of our output.
+    """Suppress Blender's own output (a line per sample of a render).
 
-    What it has to say of a failure comes as RuntimeError too.
+    Its errors are raised as RuntimeError, too.
     """
     sys.stdout.flush()
     kept = os.dup(1)
@@ -77,7 +77,7 @@ def _failed(path, error):
 
 
 def _remove_startup_objects(current, project):
-    """Remove every object and collection of the scene that is not the model's."""
+    """Remove every object and collection of the scene that does not belong to the model."""
     keep = {item.name for item in project.all_objects}
     for item in list(bpy.data.objects):
         if item.name not in keep:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Booleans of two mesh objects: read on the main thread, intersected in another, put into the scene by the
-main thread again. Nothing of Blender is held in between but names.
+"""Booleans of two mesh objects: read on the main thread, intersected in another thread, and the main thread
+updates the scene. In between only names are kept, no Blender data.
 
-Both are intersected in the coordinates of the world, in double precision. The result has the coordinates of
-the first object, whose vertices stay where they are to the last bit.
+Both are intersected in world coordinates, in double precision. The result has the coordinates of the first
+object, whose vertices stay in place to the last bit.
 """
 
 from dataclasses import dataclass
@@ -75,7 +75,7 @@ class BooleanJob(ThreadJob):
         return self._put(work.run(self._work))
 
     def finish(self):
-        """Puts the result into the scene; raises Cancelled, and what went wrong."""
+        """Adds the result to the scene. Raises Cancelled, and the errors of the job."""
         return self._put(self._job.result())
 
     # -- in the thread
@@ -237,7 +237,8 @@ class BooleanJob(ThreadJob):
             raise
 
     def _coordinates(self, parts):
-        """(V, 3) float32 in the coordinates of the first object; its own vertices are not computed anew."""
+        """(V, 3) float32 in the coordinates of the first object; its own vertices are copied, not
+        recomputed."""
         found = _to_local(parts.vertices, self._matrix)
         own = parts.sources[0]
         there = own.vertex_weights.max(axis=1) == 1.0
@@ -277,7 +278,7 @@ def _none(rows):
 
 
 def _read(item, depsgraph):
-    """What takes part of an object: Operand, mesh_data.Layers, and its own coordinates (V, 3) float32."""
+    """Reads an object: its Operand, mesh_data.Layers, and local coordinates (V, 3) float32."""
     matrix = np.array(item.matrix_world, np.float64)
     determinant = np.linalg.det(matrix[:3, :3])
     if determinant == 0 or not np.isfinite(determinant):
@@ -337,7 +338,7 @@ def _stand_at(item, other):
 
 
 def _require_own(item):
-    """Refuses an object of a model, whose mesh the next build makes anew. Raises InputRefused."""
+    """Refuses an object of a model, whose mesh the next build would replace. Raises InputRefused."""
     if item.get(scene.TAG) in scene.OBJECT_KINDS:
         raise InputRefused(
             "it is an object of the model, which a build makes anew",

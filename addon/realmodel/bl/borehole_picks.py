@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What boreholes met, kept in the row of their rock mass for display."""
+"""The picks of boreholes, stored in the row of their rock mass for display."""
 
 import json
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points where boreholes met surfaces go to the surfaces of a rock mass, and are kept in the .blend."""
+"""Adds the points where boreholes meet surfaces to the surfaces of a rock mass, and stores them in the
+.blend."""
 
 import numpy as np
 
@@ -9,15 +10,15 @@ from . import library_rows, project_settings, reading_text, settings, stored_arr
 
 
 def give(scene, rock, points, add_surfaces=False):
-    """Gives points to surfaces by name, beside those that they have.
+    """Adds points to the surfaces of their names.
 
     rock: its row. points: {surface: (P, 3) float64 in model units}. add_surfaces: adds those that are not
-    there, the lowest first. Returns sentences about what had no use. Raises InputRefused.
+    there, the lowest first. Returns warnings about unused points. Raises InputRefused.
     """
     given = {row.name for row in rock.surfaces}
     new = [name for name in points if name not in given]
     own = {row.name: _own_points(scene, row) for row in rock.surfaces if row.name in points}
-    told = []
+    warnings = []
     with settings.filling():
         if add_surfaces:
             for name in sorted(new, key=lambda name: float(points[name][:, 2].mean())):
@@ -26,17 +27,17 @@ def give(scene, rock, points, add_surfaces=False):
                 row.property_id = library_rows.for_surface(scene, name)
                 own[name] = np.empty((0, 3))
         else:
-            told += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
+            warnings += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
         for row in rock.surfaces:  # Blender may have moved all of them when some were added
             if own.get(row.name) is not None:
                 _keep(row, np.concatenate([own[row.name], points[row.name]]))
-        told += [
+        warnings += [
             f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
             for name, array in own.items()
             if array is None
         ]
         rock.active_surface = len(rock.surfaces) - 1
-    return told
+    return warnings
 
 
 def _own_points(scene, row):

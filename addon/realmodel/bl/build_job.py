@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One build of a scene's model: composed on the main thread, built in another, put into the scene by the main
-thread again. Nothing of Blender is held in between but the scene's name: undo may change all else.
-"""
+"""One build of a scene's model: the project is composed on the main thread, the model is built in another
+thread, and the main thread updates the scene. In between only the name of the scene is kept, no Blender data:
+undo may change everything else."""
 
 import bpy
 
@@ -27,7 +27,7 @@ class BuildJob(ThreadJob):
         self.composed = project_settings.compose(current, depsgraph, whole)
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
-        self._stage = group.stage if is_stage else None  # what is shown of the model afterwards
+        self._stage = group.stage if is_stage else None  # the stage that is shown afterwards
         self._slices = None
 
     def run(self, progress=None):
@@ -51,10 +51,10 @@ class BuildJob(ThreadJob):
         return built_scene.prepare(model, self.composed, self._stage, self._threads)
 
     def hand_over(self, seconds):
-        """As ThreadJob: gives some of the meshes that the scene will need."""
+        """As of ThreadJob: makes some of the meshes that the scene will need."""
         current = bpy.data.scenes.get(self.scene_name)
         if current is None or not self._job.succeeded:
-            return True  # finish tells
+            return True  # finish raises the error
         if self._slices is None:
             shapes = built_scene.shapes_to_come(current, self._job.result(), self.composed)
             self._slices = meshes.slices(shapes)
@@ -70,8 +70,8 @@ class BuildJob(ThreadJob):
             self._slices = None
 
     def finish(self, in_place=False):
-        """Puts the model that the thread has built into the scene; returns it. Raises Cancelled, and what the
-        build has raised."""
+        """Puts the model that the thread has built into the scene; returns it. Raises Cancelled, and the
+        errors of the build."""
         try:
             return self._put(self._job.result(), in_place)
         finally:
@@ -101,7 +101,7 @@ def refused_surface(current, error):
 
 
 def message(error):
-    """An error in one line for a person; defects are told as such."""
+    """The message of an error, in one line. Errors that are defects of RealModel are reported as such."""
     if isinstance(error, RealModelError):
         return str(error)
     return f"this is a defect of RealModel, please report it: {type(error).__name__}: {error}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The models that were built in this session of Blender, kept beside the scenes that show them.
+"""The cache of models that were built in this session of Blender.
 
-A scene names its model by `built_stamp`, which is saved and undone with the scene; after a .blend was opened
-the model itself is not there and is built again when somebody asks for it.
+A scene refers to its model by `built_stamp`, which is saved and undone with the scene. After a .blend was
+opened the model is not in the cache, and is built again when it is needed.
 """
 
 import secrets
@@ -11,7 +11,7 @@ import numpy as np
 
 from . import caches
 
-MOST_BYTES = 1 << 30  # that kept models may take; the newest stays, however large
+MOST_BYTES = 1 << 30  # limit of the cache of models; the newest stays, however large
 _models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest first
 
 
@@ -40,9 +40,9 @@ def new_stamp():
 
 
 def current(scene, cells=None):
-    """The realmodel.core.Model that a scene shows, or None where it is not at hand.
+    """The realmodel.core.Model that a scene shows, or None where it is not in the cache.
 
-    cells: "columns" or "blocks"; None: whichever there is, rather columns.
+    cells: "columns" or "blocks"; None: any, preferably columns.
     """
     stamp = scene.realmodel.built_stamp
     kinds = ("columns", "blocks") if cells is None else (cells,)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A built model into the scene of its settings, in place of the one before.
+"""Puts a built model into the scene of its settings, in place of the previous one.
 
-Objects stay the same ones where their block or surface is still there: what the user did to them - selection,
-other materials, constraints, their place in the outliner - stays. The tree and the custom properties are
-those that `scene` describes. What the model's own objects are is known by the pointers in the settings, so
-copies, appended models and other scenes are left alone.
+Objects whose block or surface still exists are kept: so the user's changes to them (selection, other
+materials, constraints, place in the outliner) stay. `scene` describes the tree and the custom properties. The
+model's own objects are found by the pointers in the settings, so copies, appended models and other scenes are
+not touched.
 """
 
 from dataclasses import dataclass, field
@@ -51,9 +51,9 @@ class Prepared:
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
     PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
-    and the stamp of the file. figures: for each surface what surface_figures says of it. told: by place what
-    is known of an interface's vertices (Model.surface_attributes). compartments: what `compartments` keeps.
-    stage: what `shown_models.remember_stage` takes, or None.
+    and the stamp of the file. figures: for each surface the text of surface_figures. attributes: by place the
+    attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 
     model: object
@@ -63,14 +63,14 @@ class Prepared:
     bounds: tuple = ()
     stored: dict = field(default_factory=dict)
     figures: list = field(default_factory=list)
-    told: dict = field(default_factory=dict)
+    attributes: dict = field(default_factory=dict)
     compartments: str = ""
     stage: tuple | None = None
 
 
 def prepare(model, composed, stage=None, threads=0):
-    """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
-    is not the whole. threads: as for `build`."""
+    """Prepares the arrays of a model; may run in another thread. stage: the stage that will be shown, if not
+    the whole model. threads: as for `build`."""
     origin = composed.origin
     if not composed.has_origin and composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
@@ -87,7 +87,7 @@ def prepare(model, composed, stage=None, threads=0):
             shape = polygon_mesh.of_triangles(given, triangles, smooth=bool(is_surface))
             prepared.interfaces[place] = (shape, digest)
             if is_surface:
-                prepared.told[place] = model.surface_attributes(surface)
+                prepared.attributes[place] = model.surface_attributes(surface)
     prepared.blocks = polygon_mesh.of_blocks(model, origin, threads)
     prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
     for place, stamp in composed.read.items():
@@ -96,7 +96,7 @@ def prepare(model, composed, stage=None, threads=0):
         else:
             text = project_settings.packed(project_settings.entry_at(model.project, place))
         prepared.stored[place] = (text, stamp)
-    for place in composed.edited:  # the digits that Blender's 32 bits do not have
+    for place in composed.edited:  # the digits lost in Blender's 32 bits
         entry = project_settings.entry_at(model.project, place)
         prepared.stored[place] = (project_settings.packed(entry), "")
     prepared.figures = surface_figures.of_model(model)
@@ -174,12 +174,9 @@ def _mode_name(item):
 
 
 def write_model(current, model, project=None):
-    """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. What
-    is the user's stays; materials of earlier properties are used again.
-
-    project: what the model was built from, if its files are to be named in the settings beside what was read
-    of them.
-    """
+    """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. The
+    user's objects stay; materials of earlier properties are reused. project: the project that the model was
+    built from, if the settings are to name its files beside the stored data."""
     _remove_model(current)
     project_settings.fill(current, project or model.project)
     composed = project_settings.compose(current, viewports.updated_layer(current).depsgraph)
@@ -189,9 +186,9 @@ def write_model(current, model, project=None):
 def put(current, prepared, composed, in_place=False):
     """Puts a prepared model into a scene, and shows it.
 
-    current: the bpy.types.Scene. in_place: give the blocks' meshes other contents instead of other meshes,
-    so that what points to them - Blender's undo among it - need not know; not for what may fail.
-    If anything fails the scene is as it was before.
+    current: the bpy.types.Scene. in_place: replace the contents of the blocks' meshes instead of the meshes,
+    so that references to them (as of Blender's undo) stay valid; only for updates that cannot fail. If
+    anything fails, the scene stays as it was.
     """
     model = prepared.model
     check_rows(current, model.project)
@@ -233,7 +230,7 @@ def put(current, prepared, composed, in_place=False):
 
 
 def move_helpers(current, moved):
-    """What stands beside a model goes with it: its section plane and sections, the objects of its data."""
+    """Moves the objects beside a model with it: its section plane and sections, the objects of its data."""
     items = [item for item in current.objects if item.get(scene.TAG) == "section"]
     if (plane := current.realmodel.view.plane) is not None and plane.get(scene.TAG) == "view":
         items.append(plane)
@@ -243,7 +240,7 @@ def move_helpers(current, moved):
 
 
 def _keep(current, prepared):
-    """What was read from files stays in the rows, and the figures of each surface with it."""
+    """Stores the data that were read from files in the rows, and the statistics of each surface."""
     for place, (text, stamp) in prepared.stored.items():
         row = settings.row_at(current, place)
         if place[1] is None:
@@ -257,7 +254,7 @@ def _keep(current, prepared):
 
 
 def _palette(current, model, created):
-    """Material of each property that a block has, and which are to be renamed or recolored."""
+    """The material of each property that a block has, and the materials to be renamed or recolored."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
         there = len(bpy.data.materials)
@@ -275,8 +272,8 @@ def _interface(row):
 
 
 def _new_interfaces(current, prepared, composed, created):
-    """By place the object that is to be the interface, with another mesh where it needs one:
-    (object, mesh or None, digest)."""
+    """For each place the object that will be the interface, with a new mesh if it needs one: (object, mesh or
+    None, digest)."""
     found = {}
     for place, row in settings.interface_rows(current):
         own = _interface(row)
@@ -288,8 +285,8 @@ def _new_interfaces(current, prepared, composed, created):
         if own is None or digest != row.interface_digest:
             mesh = meshes.new_mesh(row.name, shape)
             created.append(mesh)
-            if place in prepared.told:
-                uncertainty.add_attributes(mesh, prepared.told[place])
+            if place in prepared.attributes:
+                uncertainty.add_attributes(mesh, prepared.attributes[place])
         if own is None:
             own = bpy.data.objects.new(row.name, mesh)
             created.append(own)
@@ -298,7 +295,7 @@ def _new_interfaces(current, prepared, composed, created):
 
 
 def _settle_edited(current, composed):
-    """Interfaces changed by hand count as they are from now on."""
+    """Accepts interfaces that were edited by hand as they are now."""
     for place in composed.edited:
         row = settings.row_at(current, place)
         row.object = row.interface
@@ -307,7 +304,7 @@ def _settle_edited(current, composed):
 
 
 def _new_blocks(current, prepared, created, in_place):
-    """For each block of the model (object, new mesh or None to be filled in place), None for absent ones."""
+    """For each block of the model (object, new mesh or None to be updated in place), None for absent ones."""
     known = {(row.rock, row.name): row.object for row in current.realmodel.results}
     model, found = prepared.model, []
     for block, shape in zip(model.blocks, prepared.blocks, strict=True):
@@ -414,7 +411,8 @@ def _place_blocks(current, prepared, tree, blocks, palette):
 
 
 def _change_mesh(item, mesh):
-    """Another mesh for an object, with the materials and the name of the one before; that one goes."""
+    """Replaces the mesh of an object by another one, with its materials and its name; the old mesh is
+    removed."""
     old = item.data
     if not len(mesh.materials):
         for material in old.materials:
@@ -427,8 +425,8 @@ def _change_mesh(item, mesh):
 
 
 def _link(current, collection, item, move=False):
-    """Links an object into its collection where it is nowhere in the scene; an object that becomes part of
-    the model only now moves there."""
+    """Links an object to its collection if it is in no collection of the scene; an object that becomes part
+    of the model now is moved there."""
     if move:
         for other in list(item.users_collection):
             if other != collection and (
@@ -460,7 +458,7 @@ def fill_results(current, model, objects):
 
 
 def clear(current):
-    """Takes the blocks out of a scene; the interfaces and all settings stay."""
+    """Removes the blocks from a scene; the interfaces and all settings stay."""
     _clear(current)
     scene.remove_unused_materials()
 
@@ -477,8 +475,8 @@ def _clear(current):
 
 
 def remove_model(current):
-    """Takes a whole model out of a scene: blocks, the interfaces that were made for it, collections,
-    settings. Objects that the user brought stay, outside of the model's collections."""
+    """Removes the whole model from a scene: blocks, the interfaces that were made for it, collections,
+    settings. The user's objects stay, outside of the model's collections."""
     _remove_model(current)
     scene.remove_unused_materials()
 
@@ -523,8 +521,7 @@ def _release(current, item):
 
 
 def remove_rock(current, row):
-    """What belongs to a rock mass that leaves the list: its blocks, the interfaces made for it, its
-    collections."""
+    """Removes the blocks, interfaces and collections of a rock mass that is removed from the list."""
     name = row.name
     with settings.filling():
         for surface in row.surfaces:
@@ -541,8 +538,8 @@ def remove_rock(current, row):
 
 
 def release_surface(current, row):
-    """What belongs to a surface, fault or body that leaves the list: its interface goes where it was made for
-    it, an object of the user's stays."""
+    """Removes the interface of a surface, fault or body that is removed from the list; an object of the user
+    stays."""
     item = row.interface
     row.interface = None
     if item is None:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is kept in memory beside the scenes: each module has caches of its own, and all are cleared here when
-another file is opened or the add-on is disabled."""
+"""Caches in memory beside the scenes. Each module has its own; all are cleared here when another file is
+opened or the add-on is disabled."""
 
 _caches = []
 
 
 class _Bounded(dict):
-    """Drops what was put in first, where it would hold more than `most` entries."""
+    """Drops the oldest entry where there would be more than `most`."""
 
     def __init__(self, most):
         super().__init__()

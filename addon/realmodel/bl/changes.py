@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What follows when a setting is changed by hand or by a script: each update callback is one function
-here."""
+"""The update callbacks of settings, one function each: called when a setting is changed by hand or by a
+script."""
 
 from . import (
     data_objects,
@@ -31,9 +31,9 @@ def _unless_filling(consequence):
     return changed
 
 
-setting = _unless_filling(live.touch)  # that the model depends on
+setting = _unless_filling(live.touch)  # of settings that the model depends on
 coloring = _unless_filling(display.colors_changed)
-view = _unless_filling(display.mode_changed)  # what is drawn in the display modes
+view = _unless_filling(display.mode_changed)  # of settings of the display
 boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
 ensemble = _unless_filling(display.ensemble_changed)
@@ -42,34 +42,34 @@ section = _unless_filling(display.section_changed)  # another plane, or none
 
 
 def name(row, _context):
-    """Another name of a rock mass, a surface, a fault or a body."""
+    """A rock mass, a surface, a fault or a body was renamed."""
     if not settings.is_filling():
         names.follow(row)
         live.touch(row.id_data)
 
 
 def model_unit(group, _context):
-    """Another unit of the model's lengths."""
+    """The unit of the model's lengths was changed."""
     if not settings.is_filling():
         units.set_up(group.id_data, group.units)
         live.touch(group.id_data)
 
 
 def edge_length(rock, _context):
-    """Of a rock mass: whoever sets it wants the triangles by it."""
+    """The edge length of a rock mass. Setting it switches Size From to the edge length."""
     if not settings.is_filling():
         rock.edges_by = "LENGTH"  # comes to `setting`
 
 
 def triangles(rock, context):
-    """The number of triangles: of point spacing it is what that is scaled to."""
+    """The number of triangles was changed. Sizes from the spacing of points are scaled to it."""
     if not settings.is_filling() and rock.edges_by == "AUTO":
         rock.use_triangles = True
     setting(rock, context)
 
 
 def switched_on(switch):
-    """Of a setting that counts only where `switch` is on: whoever gives it wants it."""
+    """A callback for a setting that counts only where `switch` is on: setting it turns the switch on."""
 
     def changed(row, context):
         if not settings.is_filling():
@@ -80,7 +80,7 @@ def switched_on(switch):
 
 
 def region(rock, context):
-    """Another region: what was kept of the earlier one is worth nothing."""
+    """The region was changed: its stored outline is discarded."""
     if settings.is_filling():
         return
     rock.region_stored = rock.region_stamp = ""
@@ -88,12 +88,13 @@ def region(rock, context):
     region_size.ask()
     data_objects.update(rock.id_data)
     if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
-        viewports.frame_items(shown, viewports.spaces(context))  # the first that is to be seen
+        viewports.frame_items(shown, viewports.spaces(context))  # the first visible data
     setting(rock, context)
 
 
 def source(surface, context):
-    """Another source of a surface: it is made from that, whatever was done to its interface before."""
+    """The source of a surface was changed: the surface is made from it, and edits of its interface are
+    discarded."""
     if settings.is_filling():
         return
     surface.interface_digest = ""
@@ -108,7 +109,7 @@ def source(surface, context):
 
 
 def reading(row, context):
-    """A file is to be read in another way: what was read before is worth nothing."""
+    """The import options of a file were changed: the stored data are discarded."""
     if settings.is_filling():
         return
     surface = settings.surface_of(row)
@@ -125,7 +126,7 @@ def fitted(fault, context):
 
 
 def fit_variogram(surface, context):
-    """Whoever wants a variogram of their own begins with the one that was fitted."""
+    """The fitting of the variogram was switched off: the settings begin with the fitted one."""
     if settings.is_filling():
         return
     fitted = (surface_figures.read(surface) or {}).get("variogram")
@@ -153,8 +154,8 @@ def overlay(_row, _context):
 
 
 def property_id(row, _context):
-    """Surfaces, blocks and materials follow the new ID of a property. An ID that is invalid or in use is not
-    taken."""
+    """The ID of a property was changed: surfaces, blocks and materials follow. An invalid or used ID is
+    refused."""
     if settings.is_filling() or row.id == row.known_id:
         return
     if library_rows.take_id(row):
@@ -169,7 +170,7 @@ def property_name(row, _context):
 
 
 def property_look(row, _context):
-    """Another look of a property, another lithology where that says which, or another texture."""
+    """The look of a property, its lithology where that decides the look, or its texture was changed."""
     if not settings.is_filling():
         looks.follow(row.id_data, [row])
         weathering.follow(row.id_data)

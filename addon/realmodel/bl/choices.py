@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the fields of names offer: surfaces of the rock mass; columns, values and layers of a surface's file.
-Blender asks when such a field is edited, never while a panel is drawn."""
+"""The choices of the fields for names: surfaces of the rock mass; columns, values and layers of a surface's
+file. Blender asks for them when such a field is edited, never while a panel is drawn."""
 
 from ..core import RealModelError
 from ..core.readers import contents
 from . import caches, project_settings, reading_text, settings, stored_arrays
 
 _MOST_VALUES = 50
-_found = caches.new(most=64)  # by the stamp of a file and what was asked: the names found lately
+_found = caches.new(most=64)  # by the stamp of a file and the kind of names: recently found names
 
 
 def surfaces(row, _context, _text):
@@ -50,7 +50,7 @@ def layers(row, _context, _text):
 
 
 def _of_file(surface, ask, *arguments):
-    """What a file holds; nothing where it cannot be read: a build says why."""
+    """The contents of a file; empty where it cannot be read: a build reports the reason."""
     path = project_settings.absolute(surface.filepath)
     key = (path and stored_arrays.file_stamp(path), ask.__name__, *arguments)
     if not key[0]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build tells of the compartments and the faults of a model, kept with the scene as text."""
+"""Statistics of the compartments and the faults of a model, stored with the scene as text."""
 
 import json
 
@@ -43,14 +43,14 @@ def _center(model, compartment):
 
 
 def read(scene):
-    """What the last build told, as `of_model` has it; None for a model without structures."""
+    """The statistics of the last build, as of `of_model`; None for a model without structures."""
     text = scene.realmodel.view.compartments
     return json.loads(text) if text else None
 
 
 def shifts(scene, amount):
-    """(N, 3) float64: by how much each compartment moves when they move apart; at 1 their middles are as far
-    from the middle of the model again as they were."""
+    """(N, 3) float64: the displacement of each compartment in an exploded view. amount: 1 doubles the
+    distance of each center from the center of the model."""
     centers = np.array(read(scene)["centers"], np.float64)
     return amount * (centers - (centers.min(axis=0) + centers.max(axis=0)) / 2)
 

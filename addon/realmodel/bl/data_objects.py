@@ -17,15 +17,15 @@ from . import borehole_picks, display, project_settings, reading_text, settings,
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
-KEY = settings.DATA  # on an object: what it was made from; on the collection: that it is the one
+KEY = settings.DATA  # on an object: the stamp of its source; on the collection: a mark
 _ORIGIN = "realmodel_data_origin"  # on an object: the origin that its mesh was made for
 
 
 def update(scene, read=None):
-    """Makes what is missing, and removes what is of no setting any more.
+    """Makes missing objects, and removes those without a setting.
 
-    read: {what `file_key` says of a row: (P, 3) float64}, which the caller has read already. What cannot be
-    read is not shown: the build will say what is wrong.
+    read: {`file_key` of a row: (P, 3) float64}, points that the caller has read already. Files that cannot be
+    read are not shown: the build will report the error.
     """
     wanted = {}
     if scene.realmodel.show_data and scene.library is None:
@@ -57,15 +57,15 @@ def objects(scene):
 
 
 def place(scene):
-    """Puts the objects where the origin of the scene has them."""
+    """Moves the objects to their positions relative to the scene's origin."""
     origin = project_settings.model_origin(scene)
     for item in objects(scene):
         item.location = np.array(item[_ORIGIN]) - origin
 
 
 def begin(scene, points):
-    """The origin of a scene is that of the first data (P, 3) that arrive, unless objects of the user say
-    where the model stands."""
+    """Sets the origin of a scene at the first data (P, 3), unless objects of the user determine the position
+    of the model."""
     if ORIGIN_KEY not in scene and not project_settings.user_objects(scene) and len(points):
         scene[ORIGIN_KEY] = [float(value) for value in choose_origin(points)]
 
@@ -93,7 +93,8 @@ def _row_points(scene, row, depsgraph):
 
 
 def _read_points(scene, row):
-    """(P, 3) of a surface's file of points, or what the .blend keeps of it; None where it has neither."""
+    """(P, 3) of a surface's file of points, or of the data stored in the .blend; None where there are
+    neither."""
     if row.stored:
         return stored_arrays.unpack(row.stored)["points"]
     path = project_settings.absolute(row.filepath)
@@ -103,7 +104,7 @@ def _read_points(scene, row):
 
 
 def file_key(row):
-    """What tells the file of a surface, and how it is read, from another."""
+    """A key of the file of a surface and of its import options; it changes when the file does."""
     path = project_settings.absolute(row.filepath)
     if path is None:
         return ""
@@ -207,7 +208,7 @@ def _remove(item):
 
 
 def shown_changed(group, _context):
-    """`show_data` was switched."""
+    """`show_data` was switched on or off."""
     if not settings.is_filling():
         update(group.id_data)
 
@@ -218,7 +219,7 @@ def origin_of(group):
 
 
 def set_origin(group, given):
-    """Another origin for a model that was not built yet; objects of the user stay where they stand."""
+    """Sets another origin for a model that was not built yet; objects of the user stay in place."""
     scene = group.id_data
     scene[ORIGIN_KEY] = [float(str(np.float32(value))) for value in given]
     place(scene)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jobs for a scene that begin after a short pause: nothing has changed for a moment. One of Blender's timers
-looks after them; what changes meanwhile stops the job, and it begins anew."""
+"""Debounced jobs for a scene: they begin after a short pause without changes. A timer of Blender runs them; a
+change while a job runs cancels the job, and it begins again after the next pause."""
 
 import time
 
@@ -8,16 +8,16 @@ import bpy
 
 from .threads import threads
 
-_LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blender does in that time
+_LOOK_SECONDS = 0.005  # between two calls of the timer, whose cost is negligible
 
 
 class DebouncedJob:
-    """What waits, and what is under way.
+    """The pending changes and the running jobs of all scenes.
 
-    pause(): seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or with its done,
-    cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) takes what it has
-    done. may_begin(): whether nothing else is in the way. hand_over(name, job): called once the job is done,
-    again and again until it returns True: what can be done in slices before `finish`.
+    pause(): seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or an object with
+    its done, cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) uses the
+    result of the job. may_begin(): whether a job may start now. hand_over(name, job): work in slices before
+    `finish`: called repeatedly when the job is done, until it returns True.
     """
 
     def __init__(self, pause, begin, finish, may_begin=lambda: True, hand_over=lambda name, job: True):
@@ -28,7 +28,7 @@ class DebouncedJob:
         self._timer = self.look  # Blender knows timers by the object
 
     def touch(self, name):
-        """Something that the work of a scene depends on was changed."""
+        """Reports that input of a scene's job was changed."""
         self._changed_at[name] = time.perf_counter()
         if not bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.register(self._timer, first_interval=_LOOK_SECONDS)
@@ -43,7 +43,7 @@ class DebouncedJob:
         self._changed_at.clear()
 
     def stop_jobs(self):
-        """Stops what is under way, and forgets what it was for."""
+        """Stops the running jobs and discards the changes that wait."""
         for job, _ in self._jobs.values():
             job.cancel()
         for job, _ in self._jobs.values():
@@ -52,14 +52,14 @@ class DebouncedJob:
         self._changed_at.clear()
 
     def stop(self):
-        """Ends everything: the add-on is disabled, or another file was opened."""
+        """Stops all work: the add-on is disabled, or another file was opened."""
         self.stop_jobs()
         if bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.unregister(self._timer)
 
     def look(self):
-        """The timer: finishes what is done, begins what waits. Returns the seconds until the next look, None
-        when there is nothing to do."""
+        """The timer: finishes jobs that are done, and begins jobs whose pause is over. Returns the seconds
+        until the next call, None when there is nothing to do."""
         if not hasattr(bpy.types.Scene, "realmodel"):
             return None
         if not self._may_begin():
@@ -67,14 +67,14 @@ class DebouncedJob:
         for name in list(self._jobs):
             job, changed_at = self._jobs[name]
             if name in self._changed_at:
-                job.cancel()  # it is made from what is no longer so
+                job.cancel()  # its input is outdated
             if job.done and (name in self._changed_at or self._hand_over(name, job)):
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):
             if name not in self._jobs and time.perf_counter() - changed_at >= self._pause():
                 del self._changed_at[name]
-                threads()  # read here for the job, whose thread may not ask Blender
+                threads()  # read here for the job, as its thread must not access Blender
                 job = self._begin(name, changed_at)
                 if job is not None:
                     self._jobs[name] = (job, changed_at)

@@ -5,7 +5,8 @@ import bpy
 
 
 class DrawHandler:
-    """draw(): see `bpy.types.SpaceView3D.draw_handler_add`. when: "POST_VIEW" or "POST_PIXEL"."""
+    """A draw handler of 3D viewports. draw(): see `bpy.types.SpaceView3D.draw_handler_add`. when: "POST_VIEW"
+    or "POST_PIXEL"."""
 
     def __init__(self, draw, when):
         self._draw, self._when, self._handle = draw, when, None

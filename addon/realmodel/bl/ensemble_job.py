@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An ensemble of the built model, made in a thread and put into the scene by the main thread: its volumes,
-and the blocks of each realization on a section."""
+"""An ensemble of the built model, made in a thread; the main thread puts it into the scene: volumes, and the
+blocks of each realization on a section."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ from . import project_settings, settings, shapes
 from .display import cuts, ensembles, explosion, shown_models
 from .thread_job import ThreadJob
 
-_BUILT = 0.1  # share of the progress for the model itself, which is built again where it is not kept
+_BUILT = 0.1  # share of the progress for the model itself, which is built again if it is not cached
 
 
 class EnsembleJob(ThreadJob):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Vertical exaggeration: what stands for the model hangs from an empty that stretches the vertical. Meshes,
-exports and what is read from objects stay as they are."""
+"""Vertical exaggeration: the objects of the model are children of an empty that stretches the vertical.
+Meshes, exports and coordinates that are read from objects do not change."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ KEY = "realmodel_exaggeration"  # on the empty: its scene's model is stretched b
 
 
 def factor(scene):
-    """How many times as high as it is a scene's model is shown."""
+    """The vertical exaggeration with which a scene's model is shown."""
     return float(scene.realmodel.view.exaggeration)
 
 
@@ -21,7 +21,8 @@ def matrix(scene):
 
 
 def apply(scene, items, base):
-    """Shows objects stretched as a scene asks for, and no others. base: the height that stays where it is."""
+    """Shows objects with the vertical exaggeration of the scene, and no others. base: the height that does
+    not move."""
     wanted, empty = factor(scene), _empty(scene)
     if wanted == 1.0:
         items = []
@@ -53,7 +54,7 @@ def release(item):
 
 
 def world_matrix(item):
-    """Where an object is shown; Blender does not keep that up to date for hidden ones."""
+    """The world matrix of an object; Blender does not update that of hidden ones."""
     if item.constraints or item.parent_type != "OBJECT":
         return item.matrix_world
     if item.parent is None:

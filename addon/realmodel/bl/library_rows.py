@@ -33,7 +33,7 @@ def _property(row):
 
 
 def fill(scene, library):
-    """Rows for a library; None empties them."""
+    """Fills the rows from a library; None empties them."""
     group = scene.realmodel
     with settings.filling():
         group.library.clear()
@@ -141,7 +141,7 @@ def update_material(row):
 
 
 def update_materials(scene):
-    """All materials take the names and colors of the library."""
+    """Sets the names and colors of all materials from the library."""
     for row in scene.realmodel.library:
         update_material(row)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building again on its own after a change, after a short pause (`scene.realmodel.live`).
+"""Live updates: the model is rebuilt after each change, after a short pause (`scene.realmodel.live`).
 
-A handler of Blender's dependency graph tells of changed objects, the settings of changed rows. A timer waits
-until nothing has changed for a moment, builds in a thread, and puts the result into the meshes that are
-there. No undo step is made of it: an undone edit is an edit again, and is built from.
+A handler of Blender's dependency graph reports changed objects; the update callbacks of the settings report
+changed rows. A timer waits until nothing has changed for the length of the pause, builds in a thread, and
+updates the existing meshes. It adds no undo step: undoing an edit is one more edit, and starts a rebuild.
 """
 
 import time
@@ -18,12 +18,12 @@ from .debounce import DebouncedJob
 
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
-_at_work = False  # what Blender tells of now is our own doing
+_at_work = False  # the changes that Blender reports now are the add-on's own
 measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
 
 
 def touch(scene):
-    """Something that the model of a scene depends on was changed."""
+    """Reports that input of a scene's model was changed."""
     names.know(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)
@@ -42,7 +42,7 @@ def is_working():
 
 
 def changed(scene, depsgraph):
-    """Blender has evaluated changed objects."""
+    """Called when Blender has evaluated changed objects."""
     group = scene.realmodel
     if _at_work or not len(group.rocks):
         return
@@ -75,18 +75,18 @@ def _names(item):
 
 
 def undone():
-    """Blender has undone or redone something: what is on the screen may be of another build."""
+    """Called after undo and redo: the displayed blocks may be of another build."""
     for scene in bpy.data.scenes:
         touch(scene)
 
 
 def stop_work():
-    """Stops builds that are under way, and forgets what they were for."""
+    """Stops running builds and discards the changes that wait."""
     _work.stop_jobs()
 
 
 def stop():
-    """Ends everything: the add-on is disabled."""
+    """Stops all work: the add-on is disabled."""
     _work.stop()
 
 
@@ -105,14 +105,15 @@ def _finish(name, job, changed_at):
 
 @contextmanager
 def _our_own(scene):
-    """What is changed within is no edit. Blender's timers run when it has told of all edits before."""
+    """Changes made within are the add-on's own, not edits. Blender runs timers after it has reported all
+    earlier edits."""
     global _at_work
     _at_work = True
     try:
         yield
     finally:
         for layer in scene.view_layers if scene is not None else ():
-            layer.update()  # Blender tells of it now
+            layer.update()  # Blender reports the changes now
         _at_work = False
 
 
@@ -133,8 +134,8 @@ def _begin(name, _changed_at):
 
 
 def _tell(scene, error):
-    """The panel shows what is wrong with the model of a scene, or no longer is; nothing is selected or moved
-    for it."""
+    """Shows the error of a scene's model in the panel, or removes it; the selection and the view do not
+    change."""
     problems.forget()
     if scene is not None:
         problems.remember(scene, error)

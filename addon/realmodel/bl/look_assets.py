@@ -29,7 +29,7 @@ VERSION 1
 
 
 def default_folder():
-    """Of this user."""
+    """The default folder of this user."""
     return Path(bpy.utils.user_resource("DATAFILES", path="realmodel_rock_looks", create=True))
 
 

@@ -2,12 +2,12 @@
 """Procedural materials of rock, for Cycles and Eevee: nodes made from the recipes of realmodel.core.looks.
 
 Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
-the model, so that it goes on from block to block.
+the model, so that it is continuous from block to block.
 
-What other programs can read of a material, they should find. Blender's exporters take the value of the
-shader's Base Color where what is linked to it says nothing to them; that of glTF one of two colors that are
-multiplied; that of USD would take the first attribute on the way, so these are in a group, into which it does
-not look. Textures themselves have to be baked (scene_export.py).
+Other programs should find the color of a material. Blender's exporters take the value of the shader's Base
+Color if they cannot interpret its links; the exporter of glTF takes one of two colors that are multiplied;
+that of USD would take the first attribute on the way, so attributes are in a group, which it does not search.
+Textures themselves have to be baked (scene_export.py).
 """
 
 import bpy
@@ -45,9 +45,8 @@ _NO_LAYER = 1e-9  # a thickness below this: the mesh has no layers
 
 
 def apply(material, look, scale, seed, diagonal):
-    """Gives a material a look in the place of the nodes that it has.
-
-    look: a key of LOOKS. scale: of the texture, 1 suits a model of this diagonal. seed: shifts it."""
+    """Replaces the nodes of a material by a look. look: a key of LOOKS. scale: of the texture, 1 suits a
+    model of this diagonal. seed: shifts it."""
     color = tuple(material.diffuse_color)
     tree = material.node_tree
     tree.nodes.clear()
@@ -62,14 +61,14 @@ def apply(material, look, scale, seed, diagonal):
 
 
 def level(material):
-    """Nothing stands out of a material that has a look any more."""
+    """Removes the bump mapping of a material that has a look."""
     for link in list(material.node_tree.links):
         if link.to_socket.name == "Normal" and link.to_node.type == "BSDF_PRINCIPLED":
             material.node_tree.links.remove(link)
 
 
 def show_picture(material, image):
-    """Gives a material that has a look a picture of it in the place of its nodes."""
+    """Replaces the nodes of a material that has a look by a baked picture of the look."""
     tree = material.node_tree
     tree.nodes.clear()
     nodes = _Nodes(tree)
@@ -88,7 +87,7 @@ def _new_shader(nodes):
 
 
 def _set_gloss(shader, roughness):
-    """Matt but for smooth rock."""
+    """Sets the roughness: matte, except for smooth rock."""
     versions.make_matt(shader)
     shader.inputs["Roughness"].default_value = roughness
     if roughness < 0.5:
@@ -172,7 +171,7 @@ def _fill(nodes, shader, look, color, unit, seed):
 
 
 def _multiply(nodes, color, seen, socket):
-    """Links a color to a socket as the product of the property's and what is left."""
+    """Links to a socket the property's color multiplied by the brightness."""
     mix = nodes.new("ShaderNodeMix")
     mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
     factor, first, second = (
@@ -195,7 +194,7 @@ def _above(nodes, place, size):
 
 
 def _laminae(nodes, place, above, lamina):
-    """Noise from 0 to 1 of laminae, which are level in the layer and end somewhere."""
+    """Noise from 0 to 1 for laminae, which are parallel to the layer and of limited length."""
     joined = nodes.new("ShaderNodeCombineXYZ")
     nodes.link(
         nodes.vector("DOT_PRODUCT", place, (0.8 * _FLAT_LAMINAE, 0.6 * _FLAT_LAMINAE, 0.0)), joined.inputs[0]
@@ -205,9 +204,9 @@ def _laminae(nodes, place, above, lamina):
 
 
 def _bands(nodes, along):
-    """Numbers of the bands, of irregular width and about 1 on average, that a coordinate is in, and how far
-    the border of one is, from 0 to 0.5. Voronoi textures would say so too, but take Eevee minutes to compile
-    where there are several."""
+    """Numbers of the bands, of irregular width and about 1 on average, at a coordinate, and the distance from
+    the border of the band, from 0 to 0.5. Voronoi textures would give the same, but several of them take
+    Eevee minutes to compile."""
     bent = along
     for often, far in (
         (1.9, 0.32),
@@ -219,7 +218,8 @@ def _bands(nodes, along):
 
 
 def _beds(nodes, above, rough, bed):
-    """Three numbers from 0 to 1 of each bed, at random, and how deep in the groove between two (0 to 1)."""
+    """Three random numbers from 0 to 1 for each bed, and the depth in the groove between two beds (0 to
+    1)."""
     level = nodes.math("MULTIPLY", above, 1.0 / bed)
     if rough is not None:
         level = nodes.math("ADD", level, nodes.about(rough, 0.12 / bed))
@@ -234,8 +234,8 @@ def _beds(nodes, above, rough, bed):
 
 
 def _joints(nodes, place, rough, bed, spacing):
-    """How deep in a joint (0 to 1). Joints are steep planes of two sets at irregular distances; those of the
-    first go through all beds, those of the second are in some beds, elsewhere in each."""
+    """The depth in a joint (0 to 1). Joints are steep planes of two sets at irregular distances: those of the
+    first set pass through all beds, those of the second only through some, at other positions in each bed."""
     found = []
     for number, (normal, apart) in enumerate(_JOINT_SETS):
         apart *= spacing
@@ -252,7 +252,7 @@ def _joints(nodes, place, rough, bed, spacing):
 
 
 def _cells(nodes, place, rough, look):
-    """How deep in an upright crack (0 to 1), and a number from 0 to 1 of what cracks enclose."""
+    """The depth in an upright crack (0 to 1), and a number from 0 to 1 for each cell between cracks."""
     bent = nodes.vector("SCALE", place, 1.0 / look.joint)
     if rough is not None:
         shift = nodes.new("ShaderNodeCombineXYZ")
@@ -274,8 +274,7 @@ def _groove(nodes, look, groove, worn, tones, heights):
 
 
 def _clasts(nodes, place, look):
-    """Tone, height (None: level) and a number from 0 to 1 of pebbles or crystals that differ from one
-    another."""
+    """Tone, height (None: flat) and a number from 0 to 1 for each pebble or crystal."""
     place = nodes.vector("SCALE", place, 1.0 / look.clast_size)
     if look.clast_size <= _CRYSTAL:
         first = nodes.part(nodes.cells("3D", place, 1.0, "F1").outputs["Color"], 0)
@@ -345,7 +344,7 @@ def suiting(row):
 
 
 def of_row(row):
-    """The key in LOOKS of the look of a row of the library; None where it says none."""
+    """The key in LOOKS of the look of a row of the library; None where it has none."""
     if row.look == AUTO:
         return suiting(row)
     return None if row.look == library_rows.NO_LOOK else row.look
@@ -357,8 +356,8 @@ def diagonal(scene):
 
 
 def follow(scene, rows=None, anew=False):
-    """The materials of the library's rows - all, or some - get the looks that the rows say, where they have
-    others. anew: those too that have it already."""
+    """Updates the looks of materials from the library's rows, all or some, where they have changed. anew:
+    also those that have not."""
     for row in scene.realmodel.library if rows is None else rows:
         look = of_row(row)
         if look is None:

@@ -31,10 +31,8 @@ def srgb(value):
 
 
 def name_and_color(library, property_id):
-    """What the library says of a property: its name and "#rrggbb".
-
-    Property 0 means that none was given; it, and an ID without a color, is a neutral gray.
-    """
+    """The name and the color ("#rrggbb") of a property in the library. Property 0 means that none was given;
+    it, and an ID without a color, is a neutral gray."""
     entry = None if library is None else library.get(property_id)
     if entry is None:
         return ("no property" if property_id == NO_PROPERTY else f"property {property_id}"), NEUTRAL_GRAY
@@ -58,7 +56,7 @@ def new_material(name, property_id, color):
 
 
 def give(item, material):
-    """Gives a block the material of its property, unless the user has given it another."""
+    """Sets the material of a block to that of its property, unless the user has set another."""
     slots = item.data.materials
     if not len(slots):
         slots.append(material)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All that Blender keeps of a mesh beside its shape, as arrays: attributes, UV maps, vertex groups,
-materials, marks of edges and polygons. So meshes that are made of parts of others have it, too."""
+"""All data of a mesh but its shape, as arrays: attributes, UV maps, vertex groups, materials, marks of edges
+and polygons; for meshes that are made of parts of others."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ import numpy as np
 from ..core.mesh_parts import interpolated
 from . import versions
 
-# What an attribute's data have: the name of the value, and how many numbers it is.
+# Of each type of attribute: the name of the value, its number of components, and their type.
 _VALUES = {
     "FLOAT": ("value", 1, np.float32),
     "INT": ("value", 1, np.int32),
@@ -26,19 +26,19 @@ _VALUES = {
     "FLOAT4X4": ("value", 16, np.float32),
     "STRING": ("value", 1, object),
 }
-# What has a way of its own here, or is of the shape.
+# Attributes that are handled separately, or belong to the shape.
 _OTHERWISE = {"position", "material_index", "sharp_face", "sharp_edge", "custom_normal"}
 _DOMAINS = {"POINT": "vertices", "EDGE": "edges", "FACE": "polygons", "CORNER": "loops"}
 
 
 @dataclass(eq=False)
 class Layers:
-    """What a mesh has beside its shape.
+    """The data of a mesh but its shape.
 
     attributes: {name: (domain, type, values (N, K))}. uv_maps: {name: (C, 2)}. marks: {(domain, name): (N,)},
-    as Blender's vertices, edges and polygons have them. groups: {name: (weights (V,), is_member (V,))}.
-    materials: of each slot (name, file of the library or None), or None. material_index: (F,). active: the
-    names of the UV maps and color attributes that are active and rendered.
+    properties of vertices, edges and polygons. groups: {name: (weights (V,), is_member (V,))}. materials: of
+    each slot (name, file of the library or None), or None. material_index: (F,). active: the names of the UV
+    maps and color attributes that are active and rendered.
     """
 
     attributes: dict = field(default_factory=dict)
@@ -72,9 +72,10 @@ def read(mesh, item):
 
 
 def write(mesh, parts, given):
-    """Gives a new mesh what its parts (realmodel.core.mesh_parts.MeshParts) have of two meshes with given
-    layers. On edges and vertices of both the first counts. Returns the names of layers of the second that are
-    left out because the first has another kind of that name, or Blender has no room for them."""
+    """Writes to a new mesh the data that its parts (realmodel.core.mesh_parts.MeshParts) have from two meshes
+    with given layers. On common edges and vertices the first mesh counts. Returns the names of layers of the
+    second that are left out because the first has another kind of that name, or Blender's limit is
+    reached."""
     left_out = []
     given = _of_parts(parts, given)
     _write_materials(mesh, parts, given)
@@ -109,7 +110,7 @@ def write(mesh, parts, given):
 
 
 def _mark_meeting(mesh, parts, given):
-    """Where smooth surfaces meet, they are not shaded as if they were one."""
+    """Marks the edges where smooth surfaces meet as sharp."""
     if len(parts.meeting) and any(("FACE", "use_smooth") in layers.marks for layers in given):
         sharp = _numbers(mesh.edges, "use_edge_sharp", bool)
         sharp[parts.meeting] = True
@@ -117,7 +118,7 @@ def _mark_meeting(mesh, parts, given):
 
 
 def write_groups(item, parts, given):
-    """Gives an object, whose mesh is of parts of two, the vertex groups that these have."""
+    """Writes the vertex groups of an object whose mesh consists of parts of two others."""
     item.vertex_groups.clear()
     given = _of_parts(parts, given)
     for name in _names(given, "groups"):
@@ -163,7 +164,7 @@ def _together(mesh, domain, parts, kept):
 
 
 def _names(given, kind):
-    """Of both, those of the first first."""
+    """The names of both, those of the first before the others."""
     return list(dict.fromkeys(name for layers in given for name in getattr(layers, kind)))
 
 
@@ -204,7 +205,7 @@ def _groups(mesh, item):
 
 
 def _materials(mesh, item):
-    """Of the object's slots; where geometry nodes gave the mesh more, these."""
+    """The materials of the object's slots; where geometry nodes added slots, those of the mesh."""
     found = list(mesh.materials)
     for number, slot in enumerate(item.material_slots):
         if slot.link == "OBJECT" and number < len(found):
@@ -214,8 +215,8 @@ def _materials(mesh, item):
 
 
 def _write_materials(mesh, parts, given):
-    """Faces keep their materials. Those of the second that have none take the slot of their number, as in
-    Blender's own Boolean; those of the first that have none keep none."""
+    """Writes the material of each face. Faces of the second mesh without one take the slot of their number,
+    as in Blender's own Boolean; those of the first without one keep none."""
     first, second = (list(layers.materials) for layers in given)
     are_both = all(len(source.polygons) for source in parts.sources)
     if are_both and any(second):

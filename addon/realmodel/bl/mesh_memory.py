@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The corners, polygons and edges of a mesh in one piece, in Blender 3.4 and 3.5.
+"""Direct access to the corners, polygons and edges of a mesh as arrays, in Blender 3.4 and 3.5.
 
-There, and only there, Python reaches them number by number (`foreach_set`, 30 ns each), which for a large
-model means that the window stands still for a second. Newer versions have them as attributes that go in one
-piece. So in these two, whose records are what they are for good, the memory that `as_pointer` tells of is
-looked at as an array. Whether it is as expected is tried once on a small mesh; if not, nothing is done here
-and the slow way is taken.
+In these two versions Python sets them number by number (`foreach_set`, 30 ns each): for a large model the
+window freezes for a second. Newer versions store them as attributes, which are copied in one piece. The
+records of 3.4 and 3.5 will not change anymore, so here the memory at `as_pointer` is used as an array. A
+small mesh is tested once; where its memory is not as expected, `foreach_set` is used.
 
-Only what belongs to a mesh of `bpy.data`, or to an evaluated one that is at hand, may be given here, and an
-array may not outlive the next change of the mesh. Only arrays that were just added may be written to.
+The mesh must belong to `bpy.data` or be an evaluated mesh that still exists. An array is invalid after the
+next change of the mesh. Only arrays of newly added elements may be written to.
 """
 
 import ctypes
@@ -50,7 +49,7 @@ def _records(collection, dtype):
 
 @cache
 def is_known():
-    """Whether this Blender keeps meshes as expected here."""
+    """Whether this Blender stores meshes in the records of this module."""
     if bpy.app.version >= (3, 6, 0):
         return False
     mesh = bpy.data.meshes.new("realmodel")
@@ -58,7 +57,7 @@ def is_known():
         mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2), (2, 3, 0)])
         mesh.polygons[1].use_smooth = True
         return all(
-            _is_as_told(records, kind, collection, names)
+            _agrees(records, kind, collection, names)
             for records, kind, collection, names in (
                 (corners(mesh), _CORNER, mesh.loops, {"vertex": "vertex_index", "edge": "edge_index"}),
                 (polygons(mesh), _POLYGON, mesh.polygons, {"start": "loop_start", "count": "loop_total"}),
@@ -69,10 +68,11 @@ def is_known():
         bpy.data.meshes.remove(mesh)
 
 
-def _is_as_told(records, kind, collection, names):
-    """Whether records lie as far apart as Blender says, and hold what it tells."""
+def _agrees(records, kind, collection, names):
+    """Whether records have the spacing and the values that Blender's own properties have. names: {field of a
+    record: property}."""
     apart = collection[1].as_pointer() - collection[0].as_pointer()
     return apart == kind.itemsize and all(
-        np.array_equal(records[own], np.array([getattr(item, told) for item in collection]))
-        for own, told in names.items()
+        np.array_equal(records[field], np.array([getattr(item, name) for item in collection]))
+        for field, name in names.items()
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays to Blender meshes and back."""
+"""Conversion of arrays to Blender meshes and back."""
 
 import bpy
 import numpy as np
@@ -73,10 +73,8 @@ def without_repeated_corners(triangles):
 
 
 def refill(mesh, shape):
-    """Gives a mesh other vertices and polygons in the place of those that it has; its materials stay.
-
-    The datablock stays the same, so nothing that points to it has to know.
-    """
+    """Replaces the vertices and polygons of a mesh; its materials stay. The datablock is the same, so
+    references to it stay valid."""
     mesh.clear_geometry()
     _fill(mesh, shape)
 

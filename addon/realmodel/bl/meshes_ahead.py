@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that are made ahead, some at a time, so that the window stays alive while a large model comes in.
+"""Makes meshes in advance, in slices, so that the window stays responsive while a large model comes in.
 
-Until `meshes.new_mesh` is asked for the same shape, which then returns the mesh that is there, nothing in any
-scene knows of them. Between two slices the user may undo, open another file, or clear what has no users: so
-nothing of Blender is held but names, and a mesh counts as made only where it still has its mark.
+No scene refers to these meshes until `meshes.new_mesh` is called for the same shape, which then returns the
+prepared mesh. Between two slices the user may undo, open another file, or purge unused data: so only names
+are kept, no Blender data, and a mesh counts as made only if it still has its mark.
 """
 
 import secrets
@@ -14,7 +14,7 @@ import bpy
 from . import caches
 
 _MARK = "realmodel_ahead"  # on a mesh that was made ahead: by which slice
-_made = caches.new()  # id of a shape -> (the shape, the name of its mesh, what its mark says)
+_made = caches.new()  # id of a shape -> (the shape, the name of its mesh, its mark)
 
 
 class Slices:
@@ -28,7 +28,7 @@ class Slices:
         self._at = 0
 
     def make(self, seconds):
-        """Makes meshes until so many seconds have passed, one at least. Returns whether all are there."""
+        """Makes meshes for this number of seconds, at least one. Returns whether all are made."""
         until = time.perf_counter() + seconds
         while self._at < len(self._shapes):
             name, shape = self._shapes[self._at]

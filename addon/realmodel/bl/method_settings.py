@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings as their declarations (core/setting.py) have them, between the properties of a row and
-realmodel.core; those of methods with their variograms."""
+"""Converts settings, by their declarations (core/setting.py), between the properties of a row and
+realmodel.core; also those of methods with their variograms."""
 
 import json
 
@@ -19,8 +19,8 @@ def interpolates(rock):
 
 
 def has_method(row):
-    """Whether a surface's method counts: it is interpolated, or a ready mesh that is continued to faults by a
-    method of its own."""
+    """Whether a surface's method is used: the surface is interpolated, or a ready mesh that is continued to
+    faults by a chosen method."""
     if row.source not in READY_MESHES:
         return True
     return row.use_continuation and len(row.id_data.realmodel.faults) > 0
@@ -78,7 +78,8 @@ def options_of(row):
 
 
 def set_options(row, method, options):
-    """Sets a surface's method and its options from a project; what the panel has no setting for is kept."""
+    """Sets a surface's method and its options from a project; options without a setting in the panel are
+    stored as text."""
     if method is not None:
         row.method = method
     others = {}
@@ -101,7 +102,7 @@ def _surface_or_elevation(text):
 
 
 def _variogram(row):
-    """As a project file writes it; None where it is to be fitted."""
+    """The variogram as in a project file; None where it is to be fitted."""
     if row.fit_variogram:
         return None
     found = value(row, "variogram", OPTIONS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names by which settings refer to surfaces, faults and rock masses: who renames one renames it there."""
+"""References by name from settings to surfaces, faults and rock masses: renaming a row updates them."""
 
 from ..core.methods import OPTIONS
 from ..core.setting import property_name
@@ -9,15 +9,14 @@ _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if
 
 
 def know(scene):
-    """Remembers the names that all rows have now."""
+    """Stores the present names of all rows."""
     for row in _named(scene):
         if row.known_name != row.name:
             row.known_name = row.name
 
 
 def follow(row):
-    """What refers to a row by the name that it had refers to it by its new one, unless another row has the
-    old name."""
+    """Updates references to a row when it is renamed, unless another row has the old name."""
     scene, old = row.id_data, row.known_name
     row.known_name = row.name
     kind = settings.kind_of(row)

@@ -9,7 +9,7 @@ from ..core.work import native_module
 
 @lru_cache(maxsize=1)
 def missing():
-    """What is missing and what to do about it, or None."""
+    """The message about a missing native module, with advice, or None."""
     try:
         native_module()
     except BuildFailed as error:

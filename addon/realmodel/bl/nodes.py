@@ -15,7 +15,7 @@ class Nodes:
         return node
 
     def link(self, value, socket):
-        """value: an output, or what an input has without a link."""
+        """Links or sets an input. value: an output, or the value of the input without a link."""
         if isinstance(value, (float, int, tuple)):
             socket.default_value = value
         else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build tells, in the words of the panel: short, equal ones merged, settings by their labels."""
+"""The warnings of a build for the panel: short, equal ones merged, settings by their labels."""
 
 import re
 from pathlib import Path

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model origin: what is taken off model coordinates before Blender rounds them to float32.
+"""The model origin, which is subtracted from model coordinates before Blender rounds them to float32.
 
-At 5,400,000 m north float32 knows steps of 0.5 m only. Objects therefore hold offsets from an
-origin near the model, and the scene's custom property `realmodel_origin` keeps the origin in
-doubles: object coordinates + origin = model coordinates.
+At 5,400,000 m north the spacing of float32 is 0.5 m. Objects therefore have offsets from an origin near the
+model, and the scene's custom property `realmodel_origin` has the origin in doubles: object coordinates +
+origin = model coordinates.
 """
 
 import math
@@ -21,7 +21,8 @@ TOO_FAR = 100.0  # sizes of a model: coordinates in 32 bits then have steps of a
 
 
 def far_from(origin, vertices):
-    """How far a model with these vertices (V, 3) lies from its origin, where that is too far; else None."""
+    """The distance of a model with these vertices (V, 3) from its origin, where it is too large; else
+    None."""
     if not len(vertices):
         return None
     low, high = vertices.min(axis=0) - origin, vertices.max(axis=0) - origin

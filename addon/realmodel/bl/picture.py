@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Camera, sun and sky for pictures of a model, and the picture that build_model.py writes.
+"""Camera, sun and sky for pictures of a model, and the render of build_model.py.
 
-The camera looks from the south-east, the sun stands further east. What build_model.py renders is set up in a
-scene of its own that is removed afterwards: the model is cut by one upright plane, which is where it meets
-the most blocks.
+The camera looks from the south-east, the sun is further east. For build_model.py the picture is set up in a
+scene of its own that is removed afterward: the model is cut by one vertical plane, where it meets the most
+blocks.
 """
 
 import contextlib
@@ -19,15 +19,15 @@ from .display import shown_models
 from .overlay import drawing_for, legend_share, rendered
 from .viewports import towards, view_rotation
 
-KEY = "realmodel_picture"  # on what is set up here: what it is
-TURNTABLE = "turntable"  # the empty that the camera of an animation hangs from
+KEY = "realmodel_picture"  # on objects and data added here: their purpose
+TURNTABLE = "turntable"  # the empty that is the parent of an animation's camera
 
 # Azimuths are clockwise from north (+y).
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
 MARGIN = 1.06
 OPEN_AZIMUTH = math.radians(125.0)
 _OPENED = np.linspace(0.16, 0.7, 19)  # of the model, in front of the cut
-_SEEN = 1e-3  # of a cut's area: a block that has less is hardly seen in it
+_SEEN = 1e-3  # of a cut's area: a block with less is hardly visible in it
 
 # Sun and sky add up to about 1 on a face turned to the sun, so library colors read true there.
 SUN_AZIMUTH = math.radians(112.0)
@@ -54,13 +54,14 @@ def set_up(
     left=0.0,
     sun=(SUN_AZIMUTH, SUN_ELEVATION),
 ):
-    """Gives a scene a camera, light, sky and ground of its own; they are used again the next time. Cameras
-    and lights of the user stay.
+    """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
+    lights of the user stay.
 
-    points: (N, 3) of what is to be seen. size: (width, height) of the picture. space: a 3D viewport that the
-    camera is to look as; without one it sees all points. studio: a lamp beside the camera, an even sky and no
-    ground, so that all that faces the eye has its own color. left: the part of the picture's width that is
-    kept free where the camera sees all points, for a legend. sun: its azimuth and elevation, radians.
+    points: (N, 3) that the picture is to show. size: (width, height) of the picture. space: a 3D viewport
+    whose view the camera takes; without one it sees all points. studio: a lamp beside the camera, a uniform
+    sky and no ground, so that faces toward the camera have their own color. left: the share of the picture's
+    width that is left empty for a legend, where the camera sees all points. sun: its azimuth and elevation,
+    radians.
     """
     _remove_turntable(current)
     camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
@@ -89,7 +90,7 @@ def set_up(
 
 
 def turntable_of(current):
-    """The empty that the camera of a scene's turntable hangs from, or None."""
+    """The empty that is the parent of the camera of a scene's turntable, or None."""
     return next((item for item in current.objects if item.get(KEY) == TURNTABLE), None)
 
 
@@ -104,7 +105,7 @@ def _remove_turntable(current):
 
 
 def _own(current, kind, data):
-    """The object of a kind that belongs to the picture of a scene, new where there is none."""
+    """The object of a kind that belongs to the picture of a scene; made if it does not exist."""
     item = next((item for item in current.objects if item.get(KEY) == kind), None)
     if item is None:
         made = data()
@@ -115,7 +116,7 @@ def _own(current, kind, data):
 
 
 def _look_as(camera, space, reach):
-    """Has a camera look as a viewport does; returns how far it is from what the viewport turns around."""
+    """Aligns a camera with the view of a viewport; returns its distance from the viewport's pivot."""
     view, data = space.region_3d, camera.data
     data.shift_x = 0.0
     is_flat = view.view_perspective == "ORTHO"
@@ -138,7 +139,7 @@ def _set_sky(current, color, strength):
         world = bpy.data.worlds.new("RealModel Sky")
         world[KEY] = "sky"
         world.use_nodes = True
-        # Left to the rays that bounce off: then each sample asks the sun, and an open ground has no noise.
+        # Only bounced rays sample the sky: then each sample includes the sun, and open ground has no noise.
         versions.leave_sky_to_bounces(world)
         current.world = world
     sky = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
@@ -228,8 +229,8 @@ def exaggeration_of(extent):
 
 
 def _opened(model):
-    """The model without what is before an upright plane: of some planes the one that takes the fewest blocks
-    away, meets the most, and of these the smallest in the largest area."""
+    """The model without the part in front of a vertical plane: of some planes the one that removes the fewest
+    blocks, meets the most, and shows the smallest of these in the largest area."""
     ahead = np.array(towards(OPEN_AZIMUTH, 0.0))
     reach = model.vertices @ ahead
     nearest = np.full(len(model.blocks) + 1, np.inf)
@@ -271,7 +272,7 @@ def camera_matrix(points, size, left=0.0, rotation=None):
 
 
 def set_renderer(scene, path, size, samples, time_limit):
-    """Has a scene render a PNG of a size in pixels."""
+    """Sets up a scene to render a PNG of a size in pixels."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100
@@ -283,7 +284,7 @@ def set_renderer(scene, path, size, samples, time_limit):
 
 
 def choose_renderer(scene, samples, time_limit):
-    """Has a scene render by what renderer this Blender has, in the colors as they are."""
+    """Chooses the render engine that this Blender has, with colors unchanged by a view transform."""
     render = scene.render
     versions.plain_colors(scene)
     if not versions.cycles_available(scene):

@@ -35,7 +35,7 @@ def propose_edge_length(row, points):
 
 
 def compose(rock, row, depsgraph, origin):
-    """What a rock mass's row says of its mesh goes to a realmodel.core.Rock. Raises InputRefused."""
+    """Transfers the mesh settings of a rock mass's row to a realmodel.core.Rock. Raises InputRefused."""
     rock.mesher = row.mesher
     if row.edges_by == "LENGTH":
         rock.edge_length = method_settings.value(row, "edge_length", ROCK)
@@ -95,7 +95,7 @@ def set_edges(row, edge_length, triangles):
 
 
 def take_up_sizes(row):
-    """Places of shorter edges that a file of an earlier version has kept as they were get their rows."""
+    """Makes rows of the local edge lengths that files of an earlier version stored as text."""
     kept = json.loads(row.mesh_options) if row.mesh_options else {}
     for entry in kept.pop("size", ()):
         _fill_size(row.sizes.add(), entry)
@@ -112,7 +112,7 @@ def _fill_size(row, entry):
 
 
 def add_constraints(row, lines):
-    """Keeps further lines (N, 2) and points (1, 2), in model coordinates."""
+    """Stores further lines (N, 2) and points (1, 2), in model coordinates."""
     kept = list(stored_arrays.unpack(row.constraints_stored).values()) if row.constraints_stored else []
     kept += [np.asarray(line, np.float64) for line in lines]
     row.constraints_stored = (

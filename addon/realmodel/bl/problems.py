@@ -21,7 +21,7 @@ def forget():
 
 
 def remember(scene, error):
-    """Keeps what is to be shown of a refusal of a scene's model."""
+    """Stores the objects and triangles of a refusal of a scene's model, for `show`."""
     activity = bpy.context.window_manager.realmodel
     activity.problem = build_job.message(error)
     row = build_job.refused_surface(scene, error)

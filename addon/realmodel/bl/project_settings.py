@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the settings of a scene and the objects that they point to, to a project, and back."""
+"""Converts the settings of a scene, and the objects that they refer to, to a project, and back."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ _OF_INTERPOLATED = ("minimum_thickness", "correlation")  # of surfaces; a ready 
 
 @dataclass
 class Composed:
-    """A project as the scene has it. read: by place (settings.row_at) the stamp of the file that it is yet to
-    be read from. origin_is_free: no object of the user says where the model stands. has_origin: the origin
+    """The project of a scene. read: by place (settings.row_at) the stamp of the file that is still to be
+    read. origin_is_free: no object of the user determines the position of the model. has_origin: the origin
     was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
-    and therefore count as they are."""
+    and are used as they are."""
 
     project: Project
     origin: np.ndarray
@@ -80,11 +80,11 @@ def absolute(path):
 
 
 def compose(scene, depsgraph, whole=True):
-    """The project of a scene's settings.
+    """Composes the project from a scene's settings.
 
-    depsgraph: the evaluated one, in which modifiers have been applied. whole: look whether files have
-    changed; otherwise (live) what the .blend keeps of them is taken where it does. Raises InputRefused,
-    naming the rock mass and the surface, for what cannot be built from.
+    depsgraph: the evaluated one, in which modifiers have been applied. whole: check whether files have
+    changed; otherwise (live) the data stored in the .blend are used if there are any. Raises InputRefused,
+    naming the rock mass and the surface, for invalid input.
     """
     origin = model_origin(scene)
     group = scene.realmodel
@@ -104,7 +104,7 @@ def compose(scene, depsgraph, whole=True):
             except InputRefused as error:
                 raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
-        if not rock.interpolates:  # nothing is meshed that they could shape
+        if not rock.interpolates:  # no mesh that they could affect
             rock.constraints, rock.size = [], []
     for place, row in settings.structure_rows(scene):
         entry = structure_settings.entry_of(place, row)
@@ -143,7 +143,7 @@ def _region(composed, number, rock, row, depsgraph, whole):
             rings = _stored_rings(composed, number, rock, row, whole)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
-    if rings:  # which of them are holes is not said: they count even-odd
+    if rings:  # holes are not marked: the even-odd rule decides
         rock.region = rings if len(rings) > 1 else rings[0]
 
 
@@ -196,7 +196,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
 
 
 def name_file(entry, row, path):
-    """Has a surface, fault or body be read from a file as its row says."""
+    """Sets the file of a surface, fault or body from its row, with its import options."""
     if row.source == "POINTS_FILE":
         entry.points = PointFile(path, **reading_text.options(row))
     else:
@@ -204,23 +204,24 @@ def name_file(entry, row, path):
 
 
 def _stored_key(row):
-    """What a row keeps its file's shape in: of faults the surface through the points, not the points."""
+    """The key under which a row stores the shape of its file: of faults the fitted surface, not the
+    points."""
     return "stored" if row.source == "POINTS_FILE" and hasattr(row, "stored") else "stored_mesh"
 
 
 def stored_shape(row):
-    """The text in which the .blend keeps what a row's file had; "" where it keeps nothing."""
+    """The text in which the .blend stores the data of a row's file; "" where it has none."""
     return getattr(row, _stored_key(row))
 
 
 def keep_shape(row, text, stamp):
-    """Has the .blend keep the shape of a row, and the stamp of the file that it was read from."""
+    """Stores the shape of a row in the .blend, and the stamp of the file that it was read from."""
     setattr(row, _stored_key(row), text)
     row.stored_stamp = stamp
 
 
 def forget_shape(row):
-    """What was read of a row's file is worth nothing."""
+    """Discards the stored shape of a row's file."""
     setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
     row.stored_stamp = ""
 
@@ -255,7 +256,8 @@ def _from_object(composed, place, surface, row, depsgraph):
 
 
 def _made_of(scene, place, row):
-    """The arrays, in full digits, that an interface was made of: kept ones, or those of the model at hand."""
+    """The arrays, in full digits, that an interface was made from: stored ones, or those of the cached
+    model."""
     if row.source == "MESH_FILE" and row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)
     model = built_models.current(scene)
@@ -278,8 +280,7 @@ def _take_mesh(composed, surface, item, given, triangles, base):
 
 
 def oldest_first(items, depsgraph):
-    """Mesh objects by the mean height of their vertices: where surfaces follow each other, their order in
-    age."""
+    """Mesh objects by the mean height of their vertices: for surfaces in sequence, their order in age."""
 
     def mean_height(item):
         heights = shapes.points(item, depsgraph)[:, 2]
@@ -326,10 +327,8 @@ def packed_region(rock):
 
 
 def fill(scene, project):
-    """Rows for a project, in place of those that are there.
-
-    project: realmodel.core.Project. Files stay files; what has been read, as of `Model.project`, is kept.
-    """
+    """Fills the rows from a project, in place of the present ones. project: realmodel.core.Project. Files
+    stay files; data that were read, as in `Model.project`, are stored."""
     group = scene.realmodel
     with settings.filling():
         group.rocks.clear()

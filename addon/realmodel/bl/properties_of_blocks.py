@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Another property for blocks that are there: no build is needed for it, only other materials."""
+"""Assigns another property to built blocks: only materials change, no build is needed."""
 
 from . import display, library_rows, looks, materials, scene, settings, weathering
 
 
 def assign(current, rows, property_id):
-    """Gives a property to blocks (rows of the results), and to the surfaces that they lie beneath, or the
-    bodies that they are."""
+    """Assigns a property to blocks (rows of the results): to the surfaces above them, or to the bodies that
+    they are."""
     with settings.filling():
         for row in rows:
             source = settings.row_of_block(current, row)

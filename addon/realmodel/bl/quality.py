@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How good the surfaces of the built model are, as far as somebody has asked: found in a thread, kept for
-this session of Blender, and shown as charts."""
+"""The quality of the surfaces of the built model, on request: computed in a thread, kept for this session of
+Blender, and shown as charts."""
 
 import bpy
 import bpy.utils.previews
@@ -22,12 +22,12 @@ CHARTS = (
     ("MESH", "Mesh", "Smallest angles of the triangles"),
 )
 _LOOK_SECONDS = 0.05
-_MOST = 64  # pictures that are kept
+_MOST = 64  # pictures in the cache
 _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
 _found = caches.new(most=64)  # key -> SurfaceQuality
-# Stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}.
+# Stamp of a model -> {(rock mass, block): upper bound of its volume's standard deviation}.
 _deviations = caches.new()
 _working = {}  # the job, its recipe, and its key, while there is one
 _pictures = None  # previews of charts, by their key
@@ -44,20 +44,20 @@ def found(current):
 
 
 def volume_deviation(current, row):
-    """What the standard deviation of the volume of a row of the results is at most, model units cubed; None
-    where it was not asked for, or is not known."""
+    """An upper bound of the standard deviation of a block's volume (a row of the results), model units cubed;
+    None where it was not requested, or is not known."""
     known = _deviations.get(current.realmodel.built_stamp, {}).get((row.rock, row.name))
     return known if known is not None and np.isfinite(known) else None
 
 
 def check(current):
-    """Finds the quality of the active surface, in this thread. Raises RealModelError."""
+    """Computes the quality of the active surface, in this thread. Raises RealModelError."""
     key, recipe, task = _asked(current)
     _keep(key, recipe, Job(task).result())
 
 
 def start(current):
-    """Begins to find it in another thread. Raises InputRefused."""
+    """Starts to compute it in another thread. Raises InputRefused."""
     stop()
     key, recipe, task = _asked(current)
     _working.update(key=key, recipe=recipe, job=Job(task))
@@ -65,12 +65,12 @@ def start(current):
 
 
 def state():
-    """(fraction done, what is being done) while something is under way, else None."""
+    """(fraction done, text) of the running job, else None."""
     return _working["job"].state() if _working else None
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running job."""
     if _working:
         _working["job"].cancel()
         _working.clear()
@@ -83,7 +83,7 @@ def _asked(current):
     recipe = shown_models.Recipe(current, settings.last_stage(current))
 
     def task(_work):
-        text_width("0", 1.0)  # reads the letters of charts, which the drawing of a panel should not
+        text_width("0", 1.0)  # loads the letters of charts now, not while a panel is drawn
         model = recipe.make()
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:
@@ -107,7 +107,7 @@ def _keep(key, recipe, made):
 
 
 def _look():
-    """The timer: takes what was found."""
+    """The timer: takes the results of jobs."""
     job = _working["job"]
     viewports.redraw_sidebars()
     if not job.done:
@@ -148,7 +148,7 @@ def lines(quality, chart, unit):
 
 
 def icon(current, chart, pixels):
-    """The icon of a chart of the active surface as a picture so many pixels wide and high, or None."""
+    """The icon of a chart of the active surface as a picture of this size in pixels, or None."""
     global _pictures
     quality = found(current)
     key = f"{_key(current, settings.active_rock(current), settings.active_surface(current))} {chart} {pixels}"
@@ -169,7 +169,7 @@ def icon(current, chart, pixels):
 
 
 def forget():
-    """Drops everything: the add-on is disabled, or another file was opened."""
+    """Clears all results: the add-on is disabled, or another file was opened."""
     global _pictures
     stop()
     _found.clear()

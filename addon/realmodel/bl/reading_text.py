@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a file of points, or a mesh, is read, between the settings of a surface and realmodel.core."""
+"""Converts the import options of points and meshes between the settings of a surface and realmodel.core."""
 
 import re
 
@@ -12,7 +12,7 @@ _ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas
 
 
 def options(row):
-    """The keyword arguments of PointFile, or MeshFile, that a surface's row asks for. Raises InputRefused."""
+    """The keyword arguments of PointFile, or MeshFile, for a surface's row. Raises InputRefused."""
     said = ("decimal", "height", "layer", "units", "z_axis")
     given = {key: method_settings.value(row, key, READING) for key in said}
     given["z_axis"] = None if given["z_axis"] == READING["z_axis"].default else given["z_axis"]
@@ -31,7 +31,7 @@ def options(row):
 
 
 def fill(row, given):
-    """Sets a row from the keyword arguments of a PointFile or MeshFile; what they lack is unset."""
+    """Sets a row from the keyword arguments of a PointFile or MeshFile; missing ones are unset."""
     units = given.get("units")
     units = units if isinstance(units, dict) else {"xy": units, "z": units}
     given = {**given, "units": {"xy": None, "z": None} | units}
@@ -69,7 +69,7 @@ def column_text(name):
 
 
 def value(text):
-    """A number, or a text; what is in quotes is text."""
+    """A number, or a text; a value in quotes is text."""
     text = text.strip()
     for kind in (int, float):
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many triangles an edge length gives, told beside it before anything is built."""
+"""The number of triangles that an edge length gives; the panel shows it before anything is built."""
 
 import math
 
@@ -14,7 +14,7 @@ from .surface_figures import plan_area
 
 
 def expected_triangles(row):
-    """About how many triangles the planar mesh of a rock mass will have; None where it cannot be told."""
+    """About how many triangles the planar mesh of a rock mass will have; None where it is not known."""
     if row.region_area <= 0.0 or row.edge_length <= 0.0:
         return None
     equilateral = math.sqrt(3.0) / 4.0 * row.edge_length**2
@@ -22,14 +22,14 @@ def expected_triangles(row):
 
 
 def ask():
-    """Has all regions measured that have not been, as soon as Blender lets data be changed: a panel that is
-    being drawn may not."""
+    """Schedules the measurement of all regions that have no area yet, for when Blender allows changes of
+    data: while a panel is drawn it does not."""
     if not bpy.app.timers.is_registered(_measure_all):
         bpy.app.timers.register(_measure_all, first_interval=0.0)
 
 
 def stop():
-    """Ends what was asked for: the add-on is disabled."""
+    """Stops the scheduled measurement: the add-on is disabled."""
     if bpy.app.timers.is_registered(_measure_all):
         bpy.app.timers.unregister(_measure_all)
 
@@ -54,6 +54,6 @@ def measure(scene, row, depsgraph):
             rings, _ = read_region(path)
         area = 0.0 if rings is None else plan_area(*triangulate_rings(region_rings(rings)))
     except RealModelError:
-        area = 0.0  # the build will say what is wrong
+        area = 0.0  # the build will report the error
     with settings.filling():
         row.region_area = area

@@ -16,7 +16,7 @@ def volume(row):
 
 
 def slivers(model):
-    """For each block of a model how many of its connected parts have less than 0.1 % of its volume."""
+    """For each block of a model the number of its connected parts that have less than 0.1 % of its volume."""
     if all(block.components < 2 for block in model.blocks):
         return [0] * len(model.blocks)
     blocks = zip(model.blocks, model.component_volumes, strict=True)
@@ -24,7 +24,7 @@ def slivers(model):
 
 
 def row_chosen(group, context):
-    """Selects the block of the chosen row, alone."""
+    """Selects only the block of the chosen row."""
     if settings.is_filling() or not 0 <= group.active_result < len(group.results):
         return
     chosen = group.results[group.active_result].object

@@ -36,7 +36,7 @@ def folder():
 
 
 def enum_items(_operator, _context):
-    """Enum items of the examples that are there."""
+    """The enum items of the installed examples."""
     place = folder()
     names = [] if place is None else sorted(p.parent.name for p in place.glob("*/project.toml"))
     names.sort(key=lambda name: list(_LABELS).index(name) if name in _LABELS else len(_LABELS))
@@ -45,7 +45,7 @@ def enum_items(_operator, _context):
 
 
 def label(name):
-    """How an example is called."""
+    """The label of an example."""
     return next((item[1] for item in enum_items(None, None) if item[0] == name), name)
 
 

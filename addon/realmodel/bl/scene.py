@@ -32,7 +32,7 @@ def is_name_of(name, wanted):
 
 
 def give_name(store, datablock, name):
-    """Name a datablock where the name is free. Blender would take it away from another one's."""
+    """Name a datablock if the name is free. Otherwise Blender would rename the other datablock."""
     if datablock.name != name and name not in store:
         datablock.name = name
 
@@ -66,7 +66,7 @@ def remove_objects(objects):
 
 
 def remove_unused_materials(besides=()):
-    """Remove the materials of properties that nothing uses any more, but for some."""
+    """Remove the unused materials of properties, except for some."""
     kept = set(besides)
     for material in list(bpy.data.materials):
         if materials.KEY in material and not (material.users or material.library or material in kept):
@@ -74,7 +74,7 @@ def remove_unused_materials(besides=()):
 
 
 def remove_tree(scene):
-    """Remove the objects and collections of a model that no settings point to."""
+    """Remove the objects and collections of a model that no setting refers to."""
     project = model_collection(scene)
     if project is not None:
         remove_objects(model_objects(scene))
@@ -83,7 +83,8 @@ def remove_tree(scene):
 
 
 def release_collection(collection):
-    """Remove a collection of the model, or None; one that still holds something becomes the user's."""
+    """Remove a collection of the model, or None; one that is not empty becomes an ordinary collection of the
+    user."""
     if collection is None:
         return
     if not len(collection.objects) and not len(collection.children):

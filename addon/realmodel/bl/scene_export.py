@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is displayed of a model to other 3D programs, by Blender's exporters: names, materials and custom
-properties go with it.
+"""Exports the displayed model to other 3D programs by Blender's exporters, with names, materials and custom
+properties.
 
-No other program knows the nodes of a look (looks.py), so it is baked: Cycles writes the colors to a picture
-for each material. What is exported are copies, which have the names of what they show while they are there;
-then the scene is as it was.
+Other programs cannot read the nodes of a look (looks.py), so looks are baked: Cycles writes the colors to a
+picture for each material. The export is made from temporary copies with the names of the objects; afterward
+the scene is as before.
 """
 
 import contextlib
@@ -58,7 +58,7 @@ def write(context, items, path, size):
             export(str(target))
         for made in sorted(Path(place).iterdir()):
             if ending == ".glb" and made != target:
-                continue  # pictures that are in it
+                continue  # packed pictures
             with outputs.file(path.parent / made.name) as file:
                 file.write(made.read_bytes())
 
@@ -91,8 +91,9 @@ def _write_obj(path):
 
 @contextlib.contextmanager
 def _copies(context, items, beside, size):
-    """Has copies of some objects in the scene, which alone are selected and have their names. beside: what
-    pictures of looks are named after, or None: none are made."""
+    """Adds copies of some objects to the scene for a while; only the copies are selected, and they have the
+    names of the objects. beside: the path that the pictures of looks are named after, or None: none are
+    made."""
     layer = context.view_layer
     selected, active = list(context.selected_objects), layer.objects.active
     collection = bpy.data.collections.new("RealModel export")
@@ -163,7 +164,7 @@ def _is_baked(material):
 
 
 def _bake(context, copies, beside, size, names, made):
-    """Gives copies materials of their own with pictures of the looks. What was made is appended to `made`."""
+    """Assigns to copies new materials with pictures of the looks. New data are appended to `made`."""
     by_material = {}
     for copy in copies:
         for slot in _baked_slots(copy):
@@ -200,7 +201,7 @@ def _bake(context, copies, beside, size, names, made):
             target="IMAGE_TEXTURES",
             save_mode="INTERNAL",
             margin=max(1, int(size * _GAP / 2)),
-            margin_type="EXTEND",  # what is beside a part may be in another picture
+            margin_type="EXTEND",  # neighboring faces may be in another picture
             use_clear=True,
             use_selected_to_active=False,
         )
@@ -213,7 +214,7 @@ def _bake(context, copies, beside, size, names, made):
 
 
 def _unwrap(context, users):
-    """Gives the polygons of some slots of objects places in one picture that they share. users: (object,
+    """Unwraps the polygons of some slots of objects into one picture that they share. users: (object,
     slot)."""
     settings = context.scene.tool_settings
     before = tuple(settings.mesh_select_mode)

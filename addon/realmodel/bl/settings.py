@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of `scene.realmodel`: which is active, what they may point to, names, numbers in full
-precision."""
+"""The rows of `scene.realmodel`: the active one, valid pointers, names, numbers in full precision."""
 
 import json
 from contextlib import contextmanager
@@ -18,7 +17,7 @@ _quiet = 0  # how many blocks of code fill in settings at the moment
 
 @contextmanager
 def filling():
-    """While settings are filled in by a program, changing them has no consequences of its own."""
+    """While it is active, changes of settings are made by the program, and update callbacks do nothing."""
     global _quiet
     _quiet += 1
     try:
@@ -41,12 +40,12 @@ def begin(group):
 
 
 def is_mesh_object(_row, item):
-    """Poll of pointers to objects: what has vertices."""
+    """Poll of pointers to objects with vertices."""
     return item.type == "MESH" and DATA not in item
 
 
 def is_region_object(_row, item):
-    """Poll of pointers to objects: what can bound a region."""
+    """Poll of pointers to objects that can bound a region."""
     return item.type in {"MESH", "CURVE"} and DATA not in item
 
 
@@ -175,10 +174,10 @@ def free_name(rows, wanted, own=None):
 
 
 def number(row, key):
-    """A number of a row in full: Blender's properties hold 32 bits, about seven digits.
+    """A number of a row in full precision: Blender's properties have 32 bits, about seven digits.
 
-    What was set by `set_number` comes back as it was, as long as the property still shows it; what was typed
-    comes as the shortest decimal that the property stands for, so 0.1 is 0.1.
+    A number from `set_number` is returned unchanged while the property still shows it; a typed number is
+    returned as the shortest decimal that the property stands for, so 0.1 is 0.1.
     """
     shown = np.float32(getattr(row, key))
     exact = json.loads(row.exact).get(key) if row.exact else None
@@ -198,12 +197,12 @@ def set_number(row, key, value):
 
 
 def copy_row(source, target):
-    """Copies every setting of one row to another of its kind, the rows inside it too."""
+    """Copies every setting of one row to another of its kind, including rows within it."""
     with filling():
         for prop in source.bl_rna.properties:
             key = prop.identifier
             if prop.type == "COLLECTION":
                 for entry in getattr(source, key):
                     copy_row(entry, getattr(target, key).add())
-            elif not prop.is_readonly and not prop.is_skip_save:  # which others are kept in
+            elif not prop.is_readonly and not prop.is_skip_save:  # derived from other properties
                 setattr(target, key, getattr(source, key))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of the scene as what a model is built from: triangulations, points, outlines.
+"""Objects of the scene as input of a model: triangulations, points, outlines.
 
 All coordinates are model coordinates: object coordinates in the world, plus the model origin. Modifiers and
-geometry nodes count: the evaluated mesh is taken, and an edit that is under way in edit mode with it.
+geometry nodes count: the evaluated mesh is used, including an edit in progress in Edit Mode.
 """
 
 import hashlib
@@ -68,7 +68,7 @@ def triangle_polygons(mesh):
 
 
 def require_open(item):
-    """Refuses an object whose mesh is closed: it has two heights over each place. Raises InputRefused."""
+    """Refuses an object whose mesh is closed: it has two heights at each position. Raises InputRefused."""
     mesh = item.data
     used = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", used)
@@ -92,8 +92,8 @@ def points(item, depsgraph):
 
 
 def digest(given, triangles):
-    """What tells whether a mesh is still as it was: of offsets rounded as Blender keeps them, and
-    triangles."""
+    """The digest by which changes of a mesh are detected: of its offsets, rounded to float32 as in Blender,
+    and its triangles."""
     found = hashlib.blake2b(digest_size=16)
     found.update(np.ascontiguousarray(given, np.float32).tobytes())
     found.update(np.ascontiguousarray(triangles, np.int32).tobytes())
@@ -101,8 +101,9 @@ def digest(given, triangles):
 
 
 def with_full_digits(given, triangles, model_origin, stored_vertices, stored_triangles):
-    """(V, 3) float64 model coordinates of a mesh that was made from stored ones: what nobody moved keeps all
-    the digits that it had before Blender rounded it; what was moved is taken as it stands."""
+    """(V, 3) float64 model coordinates of a mesh that was made from stored ones: vertices that were not moved
+    keep all the digits that they had before Blender rounded them; moved ones have their present
+    coordinates."""
     moved = given + model_origin
     if stored_vertices is None or stored_vertices.shape != given.shape:
         return moved
@@ -207,7 +208,7 @@ def _bounding_edges(mesh):
 
 
 def _closed_chains(edges, count, where, plan):
-    """Vertex numbers of each closed loop that the edges make."""
+    """The vertex numbers of each closed loop of the edges."""
     degree = np.bincount(edges.ravel(), minlength=count)
     odd = np.flatnonzero((degree != 2) & (degree != 0))
     if len(odd):

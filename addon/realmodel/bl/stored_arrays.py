@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays as text, for properties of the .blend: what was read from files stays with the model."""
+"""Arrays as text in properties of the .blend: data that were read from files are stored with the model."""
 
 import base64
 import hashlib
@@ -14,7 +14,7 @@ from ..core import InputRefused
 from . import caches
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
-_MOST_BYTES = 256 << 20  # that arrays read lately may take; the newest stay, however large
+_MOST_BYTES = 256 << 20  # limit of the cache of arrays; the newest stay, however large
 _unpacked = caches.new()  # by digest of the text: arrays read lately, not to be written to
 
 
@@ -62,7 +62,7 @@ def _bytes_of(arrays):
 
 
 def file_stamp(path):
-    """What tells whether a file is still the one that was read; "" where there is no such file."""
+    """The path, time and size of a file, by which changes of it are detected; "" where it does not exist."""
     try:
         found = Path(path).stat()
     except (OSError, ValueError):

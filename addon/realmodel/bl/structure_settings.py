@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults and bodies between the rows of a scene and realmodel.core."""
+"""Converts faults and bodies between the rows of a scene and realmodel.core."""
 
 from ..core import Body, Fault, Project, work
 from ..core.schema import BODY, FAULT
@@ -27,12 +27,12 @@ def entry_of(place, row):
 
 
 def item_of(entry):
-    """What messages call a fault or a body."""
+    """The name of a fault or a body in messages."""
     return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
 
 
 def fill(scene, project):
-    """Rows for the faults and bodies of a project, in place of those that are there."""
+    """Fills the rows from the faults and bodies of a project, in place of the present ones."""
     group = scene.realmodel
     group.faults.clear()
     group.bodies.clear()
@@ -64,7 +64,7 @@ def _fill_shape(row, entry, units):
         row.filepath = str(entry.input_file)
         reading_text.fill(row, vars(points or entry.mesh_file))
         return
-    if entry.vertices is None:  # points that a script gave
+    if entry.vertices is None:  # points from a script
         entry = work.run(lambda task: _read_fault(task, entry, units))
     row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
 
@@ -79,5 +79,5 @@ def names_of(project):
 
 
 def names_in(scene):
-    """Those of the rows of a scene."""
+    """The names of the rows of a scene."""
     return tuple([row.name for row in settings.structures_of(scene, kind)] for kind in ("fault", "body"))

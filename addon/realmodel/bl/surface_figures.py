@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build tells of each surface: its points, its heights, how much of it was not eroded away again."""
+"""Statistics of each surface of a build: its points, its heights, the area that survives erosion."""
 
 import json
 

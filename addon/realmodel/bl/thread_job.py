@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a thread does while the main thread shows how far it is."""
+"""Work in a thread while the main thread shows its progress."""
 
 from ..core import work
 from .threads import threads
@@ -17,12 +17,12 @@ class ThreadJob:
     _job = None
 
     def run(self):
-        """`_work(job)` in this thread; returns what it returns, and raises what it raises."""
+        """Runs `_work(job)` in this thread; returns its result, and raises its errors."""
         self._threads = threads()
         return work.run(self._work)
 
     def start(self, is_short=False):
-        """is_short: it is expected to take less than half a second."""
+        """Starts the work. is_short: it is expected to take less than half a second."""
         self._threads = threads(is_short)
         self._job = work.start(self._work)
 
@@ -31,14 +31,14 @@ class ThreadJob:
         return self._job.done
 
     def state(self):
-        """(fraction done, what is being done)."""
+        """(fraction done, text)."""
         return self._job.state()
 
     def cancel(self):
         self._job.cancel()
 
     def wait(self):
-        """Waits until it has ended or, where it was cancelled, for a moment."""
+        """Waits until the work has ended or, if it was cancelled, for a moment."""
         self._job.wait()
 
     def hand_over(self, _seconds):
@@ -50,5 +50,5 @@ class ThreadJob:
         """Removes the data-blocks that `hand_over` prepared."""
 
     def finish(self):
-        """What `_work(job)` has returned; raises Cancelled, and what went wrong."""
+        """The result of `_work(job)`; raises Cancelled, and its errors."""
         return self._job.result()

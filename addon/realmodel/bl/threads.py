@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many threads native work takes."""
+"""The number of threads of native work."""
 
 import os
 import threading
@@ -10,8 +10,8 @@ _chosen = 0  # the preference, as the main thread has read it last: another thre
 
 
 def threads(is_short=False):
-    """As the preferences say; else all (0) for what is over at once. Otherwise one processor is left to the
-    window, or it would stand still for half a second."""
+    """The number in the preferences; else all (0) for short work. Otherwise one processor is left to the
+    window, which would freeze for half a second without it."""
     global _chosen
     if threading.current_thread() is threading.main_thread():
         _chosen = preferences.current().threads

@@ -22,8 +22,8 @@ TILES, TILE = "tiles", "tile"
 
 
 def add_whole(current, tiled, size, step):
-    """One coarse object for each block of a model in tiles; a tile is in memory at a time. size: of the
-    squares that have a vertex each, model units. step: called with the share that is done. Returns the
+    """Adds one coarse object for each block of a model in tiles; one tile is in memory at a time. size: of
+    the squares that have one vertex each, model units. step: called with the share that is done. Returns the
     objects."""
     parts = [[] for _ in tiled.blocks]
     origin = _origin(current, tiled)
@@ -64,7 +64,7 @@ def _origin(current, tiled):
 
 
 def _put(current, tiled, origin, found):
-    """found: (name of a tile or "", a PolygonMesh or None for each block)."""
+    """Adds the objects. found: (name of a tile or "", a PolygonMesh or None for each block)."""
     created, palette = [], {}
     try:
         top = bpy.data.collections.new(f"{tiled.name} tiles")

@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of the elevations of an interpolated interface, as attributes of its mesh."""
+"""The uncertainty of the elevations of an interpolated interface, as attributes of its mesh."""
 
 import numpy as np
 
 # Vertex attributes of an interface: the variance of its height, squared model units, and the distance in
-# plan to the nearest point that it was interpolated from, model units. What is not known is -1.
+# plan to the nearest point that it was interpolated from, model units. Unknown values are -1.
 VARIANCE = "variance"
 DISTANCE = "distance"
 UNKNOWN = -1.0
 
 
 def add_attributes(mesh, attributes):
-    """Gives the mesh of an interface what is known of its vertices, where anything is.
-
-    mesh: bpy.types.Mesh. attributes: as Model.surface_attributes returns them, of the same vertices.
-    """
+    """Writes the attributes of the vertices of an interface that are known. mesh: bpy.types.Mesh. attributes:
+    as of Model.surface_attributes, of the same vertices."""
     for name in (VARIANCE, DISTANCE):
         values = attributes[name]
         if np.isfinite(values).any():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units: one unit of a scene is one unit of its model, and quantities as people read them."""
+"""Units: one unit of a scene is one unit of its model; quantities as text."""
 
 import math
 
@@ -26,8 +26,8 @@ _POWERS = ("", "", "²", "³")
 
 
 def set_up(scene, unit):
-    """Makes one unit of a scene one unit of its model: Blender then shows and reads lengths right. Where it
-    is that already, what the user has chosen to see stays."""
+    """Makes one unit of a scene one unit of its model, so that Blender shows and reads lengths right. If it
+    is so already, the user's choice of display units stays."""
     shown, scale = scene.unit_settings, float(METERS[unit])
     if math.isclose(shown.scale_length, scale, rel_tol=1e-6):
         return

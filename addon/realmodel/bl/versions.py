@@ -41,7 +41,7 @@ def _fill_attributes(mesh, shape):
     attributes = mesh.attributes
     attributes["position"].data.foreach_set("vector", shape.coordinates.ravel())
     attributes[".corner_vert"].data.foreach_set("value", shape.corners)
-    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])  # what it lacks, loop_total, follows
+    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])  # loop_total follows from it
     if shape.edges is not None:
         attributes[".edge_verts"].data.foreach_set("value", shape.edges.ravel())
         attributes[".corner_edge"].data.foreach_set("value", shape.corner_edges)
@@ -134,19 +134,19 @@ def marks():
 
 
 def make_glossy(principled):
-    """Give a Principled shader the shine of most rock, water and glass again."""
+    """Set a Principled shader to the gloss of most rock, water and glass."""
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.5
 
 
 def make_matt(principled):
-    """Take the shine off a Principled shader; its socket was renamed in 4.0."""
+    """Remove the specular reflection of a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
 
 
 def add_group_socket(group, name, kind, default=None, low=None, high=None, is_output=False):
-    """Gives a node group a socket of a kind, the name of its class; kinds of
-    numbers are subtypes from 4.0 on."""
+    """Adds a socket to a node group. kind: the name of its class; kinds of numbers are subtypes from 4.0
+    on."""
     if bpy.app.version < (4, 0, 0):
         socket = (group.outputs if is_output else group.inputs).new(kind, name)
     else:
@@ -171,7 +171,7 @@ def set_group_input(modifier, name, value):
 
 
 def group_input(modifier, name):
-    """What an input of a modifier of geometry nodes is set to."""
+    """The value of an input of a geometry nodes modifier."""
     key = _group_key(modifier, name)
     return (
         getattr(modifier.properties.inputs, key).value if hasattr(modifier, "properties") else modifier[key]
@@ -198,7 +198,7 @@ def add_asset_library(name, folder):
 
 
 def leave_sky_to_bounces(world):
-    """Have Cycles not sample the sky as a lamp of its own."""
+    """Turn off Cycles' sampling of the sky as a lamp."""
     if hasattr(world, "cycles"):
         world.cycles.sampling_method = "NONE"
 
@@ -215,7 +215,7 @@ def cycles_available(scene):
 
 
 def denoise(scene):
-    """Have Cycles remove the noise of its picture where this build can (Debian's 3.4 cannot)."""
+    """Turn on Cycles' denoiser where this build has one (Debian's 3.4 has none)."""
     try:
         scene.cycles.denoiser = "OPENIMAGEDENOISE"
     except TypeError:  # the build has no denoiser
@@ -264,7 +264,7 @@ def depsgraph(scene):
 
 
 def let_through(material):
-    """Has Eevee draw what is transparent of a material so; Cycles always does."""
+    """Enables transparency of a material in Eevee; Cycles always has it."""
     if hasattr(material, "surface_render_method"):  # from 4.2 on
         material.surface_render_method = "BLENDED"
     else:

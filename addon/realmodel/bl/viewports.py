@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The 3D viewports on the screens.
 
-What a user asks for in one viewport happens in that one: its `space_data` is the context's. From another
-editor, a menu of the top bar, or a script it happens in the largest viewport of the window; in background
-mode, where nobody looks, in all of them.
+An operator acts on the viewport in which it was called: its context has the `space_data`. Called from another
+editor, a menu of the top bar, or a script, it acts on the largest viewport of the window; in background mode,
+on all of them.
 """
 
 import math
@@ -26,14 +26,14 @@ def towards(azimuth, elevation):
 
 
 def view_rotation(azimuth=CAMERA_AZIMUTH, elevation=CAMERA_ELEVATION):
-    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks.
-    azimuth, elevation: where it is from, radians."""
+    """The rotation of the default view, (3, 3): its columns point right, up, and backward. azimuth,
+    elevation: of the eye, radians."""
     back = towards(azimuth, elevation)
     right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
     return Matrix((right, back.cross(right), back)).transposed()
 
 
-_status = {}  # by the pointer of a window: the message that its status bar has
+_status = {}  # by the pointer of a window: the message in its status bar
 
 
 def areas():
@@ -73,18 +73,18 @@ def updated_layer(scene):
 
 
 def still_open(remembered):
-    """Those viewports of some that are still there, by their pointers."""
+    """The viewports of a list that still exist, by their pointers."""
     return [space for space in all_spaces() if space.as_pointer() in remembered]
 
 
 def frame(current, shown):
-    """Turns viewports to the model of a scene, and lets them see that far; faults and bodies may reach far
-    beyond it."""
+    """Frames the model of a scene in viewports, and extends their clipping; faults and bodies may reach far
+    beyond the blocks."""
     frame_items(scene.model_objects(current, "interface") + scene.model_objects(current, "block"), shown)
 
 
 def frame_items(items, shown):
-    """Turns viewports to objects, and lets them see that far."""
+    """Frames objects in viewports, and extends their clipping."""
     corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
     if not corners:
         return
@@ -99,8 +99,8 @@ def frame_items(items, shown):
 
 
 def show_status():
-    """The status bar of each window has the message of work that goes on by itself for its scene, which no
-    operator reports."""
+    """Shows in the status bar of each window the message of background work for its scene, which no operator
+    reports."""
     problem = bpy.context.window_manager.realmodel.problem
     for window in bpy.context.window_manager.windows:
         group, key = window.scene.realmodel, window.as_pointer()
@@ -119,14 +119,14 @@ def forget_status():
 
 
 def redraw():
-    """The viewports, their sidebars, and the status bar show what has changed."""
+    """Redraws the viewports, their sidebars, and the status bar."""
     show_status()
     for area in areas():
         area.tag_redraw()
 
 
 def redraw_sidebars():
-    """The sidebars show what has changed; the scene is not drawn anew for it."""
+    """Redraws the sidebars, but not the 3D viewports."""
     for area in areas():
         for region in area.regions:
             if region.type == "UI":

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weathering for pictures: a modifier of geometry nodes on blocks. Their meshes stay as they are.
+"""Weathering for pictures: a geometry nodes modifier on blocks. Their meshes do not change.
 
-Faces that are exposed - ground and walls - are worn: edges round off, soft rock falls back behind hard rock,
-layer by layer, and grass and scree lie on the ground where it is level enough. What the nodes ask for are the
-attributes of blocks (realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same
-hardness meet as before.
+Exposed faces (ground and walls) are worn: edges are rounded, soft rock recedes behind hard rock, layer by
+layer, and grass and scree lie on level ground. The nodes use the attributes of blocks
+(realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same hardness still meet.
 """
 
 import math
@@ -17,8 +16,8 @@ from . import library_rows, looks, materials, meshes, versions
 from .nodes import Nodes
 
 NAME = "Weathering"
-KEY = "realmodel_weathering"  # on the group: its version; on a material: the cover that it is
-HARDNESS = "realmodel_hardness"  # on a block: the hardness that the library gave its modifier
+KEY = "realmodel_weathering"  # on the group: its version; on a material: its cover
+HARDNESS = "realmodel_hardness"  # on a block: the hardness of its modifier from the library
 _VERSION = 1
 _STEPS = 5  # of smoothing
 _COVERS = {"Grass": ("GRASS", "#6f8743"), "Scree": ("GRAVEL", "#9b9286")}
@@ -42,7 +41,7 @@ _INPUTS = {
 
 
 def hardness_of(row):
-    """From 0 to 1: that of a row of the library, else that of its look."""
+    """The hardness from 0 to 1 of a row of the library, else that of its look."""
     if row is None:
         return 0.5
     return row.hardness or LOOKS[looks.of_row(row) or looks.suiting(row)].hardness
@@ -55,8 +54,8 @@ def modifier_of(item):
 
 
 def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
-    """Weathers blocks, or changes how they are weathered. strength, noise: 1 suits the model. grass, scree:
-    radians, the steepest ground that they lie on, 0: none. detail: how often polygons are divided."""
+    """Adds weathering to blocks, or changes its settings. strength, noise: 1 suits the model. grass, scree:
+    radians, the steepest ground that has them, 0: none. detail: the number of subdivisions of polygons."""
     group, unit = _group(), looks.diagonal(scene) / looks.UNITS
     values = {
         "Strength": strength * _UNITS["Strength"] * unit,
@@ -82,7 +81,7 @@ def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
 
 
 def take_off(items):
-    """Leaves blocks as they were built."""
+    """Removes the weathering of blocks."""
     for item in items:
         modifier = modifier_of(item)
         if modifier is not None:
@@ -91,8 +90,8 @@ def take_off(items):
 
 
 def follow(scene):
-    """Weathered blocks get the hardness of their properties, where that has changed; what was set by hand in
-    the modifier stays until then."""
+    """Updates the hardness of weathered blocks where that of their properties has changed; values set by hand
+    in the modifier stay otherwise."""
     for block in scene.realmodel.results:
         item = block.object
         if item is None or item.library is not None or (modifier := modifier_of(item)) is None:
@@ -165,7 +164,7 @@ def _fill(nodes):
 
 
 def _depth(nodes, given, position):
-    """How much is worn away, about 0 to 2: of soft rock more, and unevenly; by layers on what has bedding."""
+    """The depth of erosion, about 0 to 2: larger and uneven in soft rock; by layers in bedded rock."""
     soft = nodes.math("SUBTRACT", 1.0, given["Hardness"])
     place = nodes.vector("SCALE", position, nodes.math("DIVIDE", 1.0, given["Noise Scale"]))
     shift = nodes.new("ShaderNodeCombineXYZ")
@@ -217,7 +216,7 @@ class _Nodes(Nodes):
         return _of_type(node.outputs, {"BOOLEAN": "BOOLEAN", "INT": "INT", "FLOAT": "VALUE"}[kind])
 
     def nearest(self, geometry, place, values):
-        """What fields are at the point of a geometry that is nearest to a place."""
+        """The values of fields at the point of a geometry that is nearest to a position."""
         found = self.new("GeometryNodeSampleNearest")
         self.link(geometry, next(s for s in found.inputs if s.type == "GEOMETRY"))
         self.link(place, found.inputs["Sample Position"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
+"""RealModel without Blender: builds a model of polyhedral cells from a project, and writes it to files."""
 
 from .blocks import Block, BlockBoundary
 from .booleans import Intersection, intersect

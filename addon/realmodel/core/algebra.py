@@ -26,10 +26,11 @@ def norm(vector: np.ndarray) -> np.ndarray:
 
 
 def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far points (N, D) spread around their mean along D directions, and these, in rows.
+    """The principal axes of points (N, D): the spread around their mean along D directions, and these, in
+    rows.
 
-    The widest first. Directions have length 1 and are at right angles; the largest component of each is
-    positive. The spread is the square root of the sum of the squares, exact to rounding also where it is
+    The widest comes first. Directions have length 1 and are orthogonal; the largest component of each is
+    positive. The spread is the square root of the sum of the squares, accurate to rounding also where it is
     small (one-sided Jacobi rotations; Demmel and Veselic 1992).
     """
     moved = points - points.mean(axis=0)
@@ -48,7 +49,7 @@ def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turn(columns: list[np.ndarray], axes: list[np.ndarray], p: int, q: int) -> bool:
-    """Turns two columns so that they are at right angles, and their axes with them; whether they were not."""
+    """Rotates two columns to be orthogonal, and their axes with them. Returns whether they were not."""
     one, other = dot(columns[p], columns[p]), dot(columns[q], columns[q])
     both = dot(columns[p], columns[q])
     if min(one, other) <= _ROUNDING**2 * max(one, other) or abs(both) <= _ROUNDING * np.sqrt(one * other):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The last steps of a build, from what each rock mass is made of to the model; a stage needs only them."""
+"""The last steps of a build, from the input of each rock mass to the model; a stage needs only these."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Outputs:
     """
 
     def __init__(self, inputs: Iterable[str | Path] = ()):
-        """inputs: files that are read, which no output may replace."""
+        """inputs: files that are read; no output may replace one."""
         self._inputs = {Path(os.path.realpath(file)) for file in inputs}
         self._written: list[tuple[Path, Path]] = []  # (where it waits, its target), files and folders
         self._folders: list[Path] = []
@@ -75,7 +75,7 @@ class Outputs:
     @contextmanager
     def folder(self, target: str | Path, renewed: str) -> Iterator[Path]:
         """A folder to write into. `renewed` is a folder in it: if an earlier run left the target, only that
-        is replaced, and of the rest what is missing is added, so that what a user changed stays.
+        is replaced, and missing files are added, so that files changed by the user stay.
 
         Raises OutputFailed in the place of OSError, and where the target is a folder without `renewed`.
         """
@@ -105,7 +105,7 @@ class Outputs:
         return folder
 
     def _publish(self) -> None:
-        undone: list[tuple[Path | None, Path]] = []  # (what stood there or None, where)
+        undone: list[tuple[Path | None, Path]] = []  # (the earlier file or None, its place)
         try:
             for path, target in self._written:
                 with explained(target):
@@ -126,7 +126,7 @@ class Outputs:
             raise
 
     def drop(self) -> None:
-        """Gives up all that is not published."""
+        """Removes everything that is not published."""
         self._written.clear()
         try:
             _remove(self._folders)
@@ -139,7 +139,7 @@ def _remove(folders: list[Path]) -> None:
     while folders:
         try:
             shutil.rmtree(folders[-1], ignore_errors=True)
-        except OSError as error:  # where a Ctrl-C follows a close, rmtree closes again and tells of that
+        except OSError as error:  # after a Ctrl-C following a close, rmtree closes again, which fails
             raise error.__context__ or error from None
         folders.pop()
 

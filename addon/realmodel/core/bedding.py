@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the corners of blocks lie in their layers as they were deposited, for pictures of bedding."""
+"""The positions of the corners of blocks within their layers as deposited, for pictures of bedding."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .model import Model
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
-_INWARDS = 1e-5  # of the way from a corner to that point
+_INWARDS = 1e-5  # of the distance from a corner to the inner point
 _NO_LAYER = -1
 
 
@@ -38,7 +38,7 @@ class Bedding:
     age: np.ndarray
 
     def part(self, corners: slice, polygons: slice) -> Bedding:
-        """That of some polygons."""
+        """The bedding of some polygons."""
         return Bedding(
             self.height[corners],
             self.thickness[corners],
@@ -54,8 +54,8 @@ class Bedding:
 
 
 def bedding_of(work: Work, model: Model, faces: np.ndarray, is_second: np.ndarray, threads: int) -> Bedding:
-    """Of faces of a model as cells have them. faces: (N,) numbers; is_second: (N,) bool, of the second cell,
-    the corners then being those of the face backwards. Raises Cancelled."""
+    """Bedding coordinates of the faces of a model, cell by cell. faces: (N,) numbers; is_second: (N,) bool,
+    of the second cell; then the corners are those of the face in reverse order. Raises Cancelled."""
     faces = np.ascontiguousarray(faces, np.int32)
     cells = np.where(is_second, model.face_cells[faces, 1], model.face_cells[faces, 0])
     block = model.cell_block[cells]
@@ -130,7 +130,7 @@ def _with_bodies(model: Model, found: Bedding, faces, is_second, body: np.ndarra
 
 
 def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Where the corners of some polygons are, one polygon after the other. begin: (N + 1,) of all."""
+    """The indices of the corners of some polygons, one polygon after the other. begin: (N + 1,) of all."""
     size = begin[numbers + 1] - begin[numbers]
     ends = np.cumsum(size)
     return np.repeat(begin[numbers] - (ends - size), size) + np.arange(ends[-1] if len(ends) else 0)

@@ -99,26 +99,26 @@ class Intersection:
         return [SubBlock(*entry) for entry in self._native.sub_blocks]
 
     def union(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is inside of either surface or both: vertices (N, 3) float64 and triangles (M, 3) int32 of its
+        """The volume inside either surface or both: vertices (N, 3) float64 and triangles (M, 3) int32 of its
         boundary, counter-clockwise seen from outside. Raises InputRefused where a surface is open."""
         return self._solid("union")
 
     def intersection(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is inside of both surfaces; as `union`."""
+        """The volume inside both surfaces; as `union`."""
         return self._solid("intersection")
 
     def difference(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is inside of the first surface and not of the second; as `union`."""
+        """The volume inside the first surface and outside the second; as `union`."""
         return self._solid("difference")
 
     def reverse_difference(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is inside of the second surface and not of the first; as `union`."""
+        """The volume inside the second surface and outside the first; as `union`."""
         return self._solid("reverse_difference")
 
     def boundary(self, operation: str) -> tuple[np.ndarray, np.ndarray]:
-        """Where the triangles of `union()` and the others come from: rows (M,) of `triangles`, and (M,) bool,
-        whether each is turned around. operation: the name of the method. Raises InputRefused where a surface
-        is open, UsageError for another name."""
+        """The source of the triangles of `union()` and the others: rows (M,) of `triangles`, and (M,) bool,
+        whether each is reversed. operation: the name of the method. Raises InputRefused where a surface is
+        open, UsageError for another name."""
         if operation not in _KEPT:
             raise UsageError(f"operation must be one of {', '.join(_KEPT)}, not {operation!r}")
         for number in range(2):
@@ -185,7 +185,7 @@ class Intersection:
 
 
 def _from_least(triangles: np.ndarray) -> np.ndarray:
-    """The same triangles, each from its least vertex on."""
+    """The same triangles, each rotated to begin with its smallest vertex."""
     order = (triangles.argmin(axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(triangles, order, axis=1)
 
@@ -214,7 +214,7 @@ def intersect(
 
 
 def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Intersection:
-    """`intersect` as the first part of a job, which takes that share of its progress."""
+    """`intersect` as the first part of a job, which takes this share of its progress."""
     given = [*_checked(a, 0), *_checked(b, 1)]
     native = native_module()
     with work.phase(0.0, share, "intersecting"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boreholes: where they stand, and at which depth each surface was met."""
+"""Boreholes: their collars, and the depths at which they meet surfaces."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a project to a model: read, mesh, interpolate, intersect."""
+"""The steps of a build: read, mesh, interpolate, intersect."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .structures.reading import read_structures
 from .structures.setup import make_structures
 from .work import Cancel, Progress, Work, native_module, run
 
-# Of the time of a build, roughly; a phase that a project does not have has none
+# Shares of the time of a build, roughly; phases that a project does not have are left out
 _SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "merge": 0.02}
 
 __all__ = ["CELL_KINDS", "build"]
@@ -73,7 +73,7 @@ def _build(
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs = read_rocks(work, project)
-        faults, bodies, told = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads)
     for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
         with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
@@ -94,7 +94,7 @@ def _build(
                 interpolate_rock(work, entry, start, end, threads, stage)
     inputs = taken()
     if structures is not None:
-        inputs[0].warnings += told
+        inputs[0].warnings += warnings
         structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
         built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
@@ -103,7 +103,7 @@ def _build(
 
 
 def _phase_ends(project: Project) -> dict[str, float]:
-    """Where each phase ends in the progress: by fixed shares of the phases that this project has."""
+    """The progress at the end of each phase: fixed shares of the phases that this project has."""
     has_files = bool(project.input_files())
     interpolates = bool(project.faults) or any(rock.interpolates for rock in project.rocks)
     shares = _SHARES | {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What build() and estimate() are asked for, checked."""
+"""Checks of the options of build() and estimate()."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ CELL_KINDS = ("columns", "blocks")
 
 
 def check_cells(cells) -> None:
-    """Raises UsageError for a kind of cells that there is not."""
+    """Raises UsageError for an unknown kind of cells."""
     if cells not in CELL_KINDS:
         raise UsageError(f"cells must be 'columns' or 'blocks', not {cells!r}")
 

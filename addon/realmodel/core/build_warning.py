@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a build tells besides its result."""
+"""The warnings of a build."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BuildWarning:
-    """Something that was left out, changed, or looks like a mistake. items: numbers of triangles, from 0."""
+    """Something that was left out, changed, or is probably a mistake. items: numbers of triangles, from 0."""
 
     text: str
     kind: str = ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of blocks with fewer polygons, to look at."""
+"""Meshes of blocks with fewer polygons, for display."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def coarsened(shape: PolygonMesh, size: float) -> PolygonMesh | None:
 
 
 def joined(shapes: Sequence[PolygonMesh]) -> PolygonMesh:
-    """Meshes of triangles as one."""
+    """Meshes of triangles joined to one."""
     first = np.cumsum([0, *(len(shape.coordinates) for shape in shapes)])
     triangles = [
         shape.corners.reshape(-1, 3) + start for shape, start in zip(shapes, first[:-1], strict=True)
@@ -50,7 +50,7 @@ def joined(shapes: Sequence[PolygonMesh]) -> PolygonMesh:
 
 
 def _without_pairs(triangles: np.ndarray) -> np.ndarray:
-    """Triangles with three different corners; those that lie on each other, seen from the other side, go."""
+    """Triangles with three different corners, without pairs that coincide with opposite orientation."""
     a, b, c = triangles.T
     triangles = triangles[(a != b) & (b != c) & (c != a)]
     order = np.sort(triangles, axis=1)

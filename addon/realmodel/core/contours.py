@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contour lines of triangles: straight within each, and joined where triangles meet in space."""
+"""Contour lines of triangles: straight within each, and joined where triangles share an edge in space."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _AUTOMATIC = 15  # levels, about
 class Contour:
     """A line of one height on the top of the model (surface ""), or on an input surface, by its name.
 
-    points: (N, 2) float64, what is higher to their left; closed where the first is the last.
+    points: (N, 2) float64, higher ground to the left; closed where the first is the last.
     """
 
     surface: str
@@ -28,8 +28,8 @@ class Contour:
 
 
 def checked_interval(interval: float | None, low: float, high: float) -> float:
-    """The distance of levels: what is given, or one, two or five times a power of ten that gives about
-    fifteen. Raises UsageError."""
+    """The interval of levels: the given one, or one, two or five times a power of ten that gives about
+    fifteen levels. Raises UsageError."""
     if interval is None:
         rough = max(high - low, 1e-9 * max(abs(low), abs(high), 1.0)) / _AUTOMATIC
         power = 10.0 ** math.floor(math.log10(rough))
@@ -108,8 +108,8 @@ def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: 
 
 
 def _crossings(corners: np.ndarray, vertices: np.ndarray, side: np.ndarray, level: float):
-    """Where the level crosses the side from corner `side` of each triangle: (T, 2), and the edges' vertices.
-    Both triangles of an edge get the same place."""
+    """The crossings of the level with the side from corner `side` of each triangle: (T, 2), and the vertices
+    of these edges. Both triangles of an edge get the same position."""
     row = np.arange(len(side))
     a, b = corners[row, side], corners[row, (side + 1) % 3]
     one, two = vertices[row, side], vertices[row, (side + 1) % 3]

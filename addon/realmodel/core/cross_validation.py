@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cross-validation: each point as the others tell it."""
+"""Cross-validation: the height of each point, estimated from the others."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ DEFAULT_FOLDS = 10
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """points (P, 3), of which no two lie at one place; z (P,) as the other points tell them; errors (P,), z
-    less the points' heights; standardised (P,), errors over their kriging deviation, None where the method
-    gives no variance; rmse, the root of the mean squared error; the method, and the variogram used.
+    """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
+    minus the points' heights; standardised (P,), errors divided by the kriging standard deviation, None where
+    the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
 
-    Where nothing tells a point (a method that gives no height outside the other points' hull), its z and
-    errors are NaN; rmse is over the rest.
+    Where a point cannot be estimated (a method that gives no height outside the hull of the other points),
+    its z and error are NaN; rmse is of the others.
     """
 
     points: np.ndarray
@@ -40,7 +40,8 @@ class CrossValidation:
 
     @property
     def mean_error(self) -> float:
-        """Of the estimated points: above 0 where estimates are too high. NaN where there are none."""
+        """The mean error of the estimated points: above 0 where estimates are too high. NaN where there are
+        none."""
         return float(self.errors[self.known].mean()) if self.known.any() else float("nan")
 
     @property
@@ -49,7 +50,8 @@ class CrossValidation:
 
     @property
     def correlation(self) -> float:
-        """Of measured and estimated heights (Pearson's); NaN where one of them is the same everywhere."""
+        """The correlation of measured and estimated heights (Pearson's); NaN where one of them is
+        constant."""
         measured, estimated = self.points[self.known, 2], self.z[self.known]
         if len(measured) < 2 or not np.ptp(measured) or not np.ptp(estimated):
             return float("nan")
@@ -86,13 +88,13 @@ def cross_validate(
     cancel: Cancel | None = None,
     **options,
 ) -> CrossValidation:
-    """Tells each point from the others by a method.
+    """Estimates the height of each point from the others by a method.
 
-    points: (P, 3), at least 2 places; points at one place count once. Kriging and inverse distance leave the
-    points out one by one (with all points as neighbours by the identities of Dubrule 1983, Mathematical
-    Geology 15, from one factor), with the variogram fitted to all of them. The other methods are run `folds`
-    times, each time without every folds-th point; a method that works on a mesh on `mesh`, (nodes (N, 2),
-    triangles (T, 3)). options: as `interpolate` takes them.
+    points: (P, 3), at least 2 positions in plan; points at one position count once. Kriging and inverse
+    distance leave the points out one by one, with the variogram fitted to all of them (where all points are
+    neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
+    methods are run `folds` times, each time without every folds-th point. mesh: (nodes (N, 2), triangles (T,
+    3)), for a method that works on a mesh. options: as for `interpolate`.
 
     Raises InputRefused, UsageError, Cancelled.
     """
@@ -133,8 +135,8 @@ def validate(
     if variance is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
             standardised = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
-    told = np.isfinite(errors)
-    rmse = float(np.sqrt(np.mean(errors[told] ** 2))) if told.any() else float("nan")
+    known = np.isfinite(errors)
+    rmse = float(np.sqrt(np.mean(errors[known] ** 2))) if known.any() else float("nan")
     return CrossValidation(points, z, errors, standardised, rmse, method, variogram)
 
 

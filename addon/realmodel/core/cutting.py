@@ -29,10 +29,10 @@ _ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surf
 class Cut:
     """Both halves of a model, each a model with the same blocks, surfaces and project.
 
-    above is where the plane's normal points, above the surface, or outside of a closed surface or block;
-    inside and outside are other names of below and above. Their caps have face_surface -3 and are the
-    polygons of `section`. above_cells, below_cells: (C,) int32, the cell of the model that was cut that each
-    cell of a half is, or is part of.
+    above: the half to which the plane's normal points, above the surface, or outside of a closed surface or
+    block. outside, inside: other names of above and below. The caps have face_surface -3 and are the polygons
+    of `section`. above_cells, below_cells: (C,) int32, for each cell of a half the cell of the original model
+    that it is or was part of.
     """
 
     above: Model
@@ -58,10 +58,11 @@ def cut_by_plane(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """Both halves of a model, above (where the normal points) and below a plane, and the section.
+    """Cuts a model by a plane. Returns both halves, above (where the normal points) and below, and the
+    section.
 
-    point, normal: three numbers each; the normal may have any length. The model stays as it is.
-    Raises UsageError for a plane that is none, BuildFailed, Cancelled.
+    point, normal: three numbers each; the normal may have any length. The model itself does not change.
+    Raises UsageError for an invalid plane, BuildFailed, Cancelled.
     """
     point, normal = _plane(point, normal)
     return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
@@ -75,10 +76,11 @@ def cut_by_surface(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """What lies above and below a triangulated surface in any position; outside and inside of a closed one.
+    """Cuts a model by a triangulated surface in any position: above and below it; outside and inside of a
+    closed one.
 
-    vertices: (V, 3) float64; triangles: (T, 3) whole numbers, either way round.
-    Raises InputRefused for a surface that does not part the model, branches, has no two sides or crosses
+    vertices: (V, 3) float64; triangles: (T, 3) whole numbers, of any orientation.
+    Raises InputRefused for a surface that does not separate the model, branches, has no two sides or crosses
     itself; BuildFailed, Cancelled.
     """
     vertices, triangles = checked_triangulation(vertices, triangles)
@@ -93,7 +95,7 @@ def cut_by_block(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """What lies inside and outside of a block (number or name) of another model, or of the same one.
+    """Cuts a model by a block (number or name) of another model, or of the same one: inside and outside.
 
     Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
     """
@@ -120,7 +122,7 @@ def _block_number(model: Model, block: int | str) -> int:
 
 
 def _cut(model: Model, call, threads: int, progress: Progress | None, cancel: Cancel | None) -> Cut:
-    """The cut that call(native), a native function and what follows the model, makes."""
+    """The cut made by call(native), a native function and its arguments after the model."""
     threads = check_threads(threads)
     native = native_module()
 
@@ -233,7 +235,7 @@ def fence(
 
 
 def _joined(panels: list[dict]) -> dict:
-    """Sections one after another."""
+    """Several sections joined to one."""
     vertices = np.cumsum([0, *(len(panel["vertices"]) for panel in panels)])
     corners = np.cumsum([0, *(len(panel["polygon_vertices"]) for panel in panels)])
     polygons = [p["polygon_vertices"] + v for p, v in zip(panels, vertices, strict=False)]
@@ -267,7 +269,7 @@ def _native_arrays(model: Model) -> dict:
 
 
 def _section_arrays(model: Model, found: dict) -> dict:
-    """What a Section is made of."""
+    """The arrays of a Section."""
     cells = found["cells"]
     blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
     block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])

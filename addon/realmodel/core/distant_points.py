@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points that lie so far from the region that they cannot be meant for it: other coordinates, other units."""
+"""Points so far from the region that they cannot be meant for it: other coordinates, other units."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ _TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "sou
 
 
 def require_points_near(rock: Rock, unit: str) -> None:
-    """Refuses a surface whose points all lie elsewhere than the region of its rock mass.
+    """Refuses a surface whose points are all far away from the region of its rock mass.
 
-    That is so where the gap between the box of the points and that of the region, seen from above, is more
-    than three times the diagonals of both: such points say nothing of the region. Raises InputRefused with
-    the distance.
+    They are if the gap between the bounding boxes of the points and of the region, in plan, is more than
+    three times the diagonals of both. Raises InputRefused with the distance.
     """
     if rock.region is None:
         return

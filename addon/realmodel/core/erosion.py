@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each surface removed, and each body took, of each block when it came."""
+"""The volume of each block that each surface eroded and each body took."""
 
 from __future__ import annotations
 
@@ -31,17 +31,18 @@ class Erosion:
 
     @property
     def by_surface(self) -> np.ndarray:
-        """(S,) what each surface removed in all."""
+        """(S,) the total volume that each surface eroded."""
         return self.volume.sum(axis=1)
 
     @property
     def by_block(self) -> np.ndarray:
-        """(B,) what was removed of each block in all."""
+        """(B,) the total volume of each block that was eroded."""
         return self.volume.sum(axis=0)
 
     @property
     def deposited(self) -> np.ndarray:
-        """(B,) what was laid down of each block: what is left, and what was removed or taken since."""
+        """(B,) the deposited volume of each block: the remaining volume, and all that was eroded or taken
+        since."""
         return self.remaining + self.by_block + self.taken.sum(axis=0)
 
     @property
@@ -57,7 +58,7 @@ def eroded(
 
 
 def _eroded(work: Work, model, threads: int) -> Erosion:
-    """Goes back in time from the model itself: to just before each surface that cuts anything."""
+    """Computes it backward in time, from the model itself to just before each surface that cuts anything."""
     stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
     arrivals = _arrivals_of_bodies(model)
     names = [body.name for body in model.structures.bodies] if arrivals else []
@@ -68,13 +69,13 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
         with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
             before = _stage_volumes(work, model, m, threads)
         done += m + 1
-        # what bodies took that came after the surface is no erosion
+        # volumes taken by later bodies are no erosion
         came = any(time > m for time, _ in arrivals)
         left = _stage_volumes(work, model, m + 1, threads, (m + 1, 0)) if came else after
         for surface, older in _cut_at(model, m + 1):
             removed = before[older] - left[older]
             volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
-        # from here back to the next stage nothing cuts, so that these are its volumes just after, too
+        # back to the next stage nothing cuts, so these are also the volumes just after it
         after = np.where(np.isnan(before), after, before)
     taken = np.zeros((len(names), len(model.blocks)))
     for m, group in itertools.groupby(arrivals, lambda arrival: arrival[0]):
@@ -109,7 +110,7 @@ def _first_surfaces(model) -> np.ndarray:
 
 
 def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
-    """Of each rock mass whose surface k cuts what is older: its global index, and which blocks are."""
+    """For each rock mass whose surface k cuts older rock: its global index, and the older blocks."""
     found = []
     first_surfaces = _first_surfaces(model)
     for number, (rock, first) in enumerate(zip(model.project.rocks, first_surfaces[:-1], strict=True)):
@@ -172,7 +173,7 @@ def _with_bodies(structures, until: tuple[int, int]):
 
 
 def _rounding(model, volumes: np.ndarray) -> np.ndarray:
-    """How far volumes may be off: their sums, and the coordinates of their corners, each by some units in
+    """The rounding error of volumes: of the sums, and of the coordinates of the corners, each a few units in
     the last place."""
     vertices = model.surface_vertices
     bases = [rock.base_elevation for rock in model.project.rocks if rock.base_elevation is not None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can go wrong, as types. Every message is one line: where, what is wrong, what to do."""
+"""The types of errors. Every message is one line: where, what is wrong, what to do."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ def _one_line(text: object) -> str:
 
 
 def _shortened(text: str) -> str:
-    """What damaged files hold may be long: its beginning and its end say enough."""
+    """The beginning and the end of a long text, such as the content of a damaged file."""
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 100]} ... {text[-95:]}"
 
 
 class RealModelError(Exception):
-    """Base of every error that RealModel raises on purpose."""
+    """Base of all errors that RealModel raises on purpose."""
 
 
 class InputRefused(RealModelError):
-    """The input cannot be built from.
+    """The input is invalid.
 
-    what: what is wrong. file, line: where it stands (line counts from 1). item: the thing meant, such
-    as "rock 'base', surface 'S1'". advice: what to do about it. triangles: numbers of the triangles
-    at fault, from 0 in the order of the input. place: (x, y, z) or (x, y) in model units.
+    what: what is wrong. file, line: the place (lines count from 1). item: the object, such as "rock 'base',
+    surface 'S1'". advice: what to do about it. triangles: numbers of the wrong triangles, from 0 in the order
+    of the input. place: (x, y, z) or (x, y) in model units.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class InputRefused(RealModelError):
         return _one_line(f"{text}; {self.advice}" if self.advice else text)
 
     def within(self, item: str, *, file: str | Path | None = None, line: int | None = None) -> InputRefused:
-        """The same refusal, said of `item`; a file and line already known are kept."""
+        """The same error with the name of `item`; a file and line already known are kept."""
         known = self.file is not None
         return type(self)(
             self.what,
@@ -73,7 +73,7 @@ class InputRefused(RealModelError):
 
 
 class HeightsMissing(InputRefused):
-    """Points are there, but no heights where they were looked for; another choice may find them."""
+    """There are points, but no heights in the chosen place; another choice may find them."""
 
 
 class OutputFailed(RealModelError):
@@ -85,9 +85,9 @@ class BuildFailed(RealModelError):
 
 
 class NotEnoughMemory(BuildFailed):
-    """The build would not fit the memory, and was not begun.
+    """The build would need too much memory, and was not begun.
 
-    needed: bytes that it would take; available: bytes that there are, or that were allowed.
+    needed: its memory in bytes; available: the free or allowed memory.
     """
 
     def __init__(self, what: str, *, needed: int, available: int, advice: str):
@@ -98,7 +98,7 @@ class NotEnoughMemory(BuildFailed):
 
 
 class Cancelled(RealModelError):
-    """The caller's cancel() said yes."""
+    """The caller's cancel() returned True."""
 
 
 class UsageError(RealModelError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a model will take before it is built: triangles, memory and time, by their number alone."""
+"""Estimates the triangles, memory and time of a model before it is built."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ _SECONDS_PER_NODE = 5e-7  # that a surface is interpolated at, and its points ar
 class Estimate:
     """What building a project will take.
 
-    cell_kind, threads: as asked. triangles: of all surfaces. memory: bytes that building takes at most,
-    beyond what the process had; mostly it is a third to all of it. seconds: of the whole build where nothing
-    else is busy, right in the order of magnitude. available: bytes that were free.
+    cell_kind, threads: as given. triangles: of all surfaces. memory: an upper bound, in bytes, of the memory
+    that the build adds to the process; mostly it needs a third to all of that. seconds: of the whole build on
+    an idle machine, in order of magnitude. available: free memory in bytes.
     """
 
     cell_kind: str
@@ -51,7 +51,7 @@ class Estimate:
         return self.memory <= self.available
 
     def table(self) -> str:
-        """For people to read on a terminal."""
+        """The estimate as text for a terminal."""
         rows = [
             ("triangles of all surfaces", f"{self.triangles:,}"),
             (f"memory while building {self.cell_kind}", f"at most {memory_text(self.memory)}"),
@@ -71,10 +71,10 @@ def estimate(
     *,
     stage: int | None = None,
 ) -> Estimate:
-    """Tells what build() with the same arguments would take, without building it: files are read and regions
-    meshed, nothing is interpolated or intersected.
+    """Estimates the memory and the time that build() with the same arguments needs. It reads the files and
+    meshes the regions; nothing is interpolated or intersected.
 
-    Raises InputRefused for what build() would refuse while it reads and meshes, UsageError, Cancelled.
+    Raises InputRefused as build() does while it reads and meshes, UsageError, Cancelled.
     """
     check_cells(cells)
     threads = check_threads(threads)
@@ -107,14 +107,14 @@ def estimate(
 
 
 def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> int:
-    """Bytes that building rock masses takes at most, which are read and meshed, by their triangles.
-    structures: how many faults and bodies there are."""
+    """An upper bound of the memory, bytes, that building rock masses needs that are read and meshed, by their
+    triangles. structures: the number of faults and bodies."""
     bytes_of_stacks = sum(_MOST_BYTES[cells, _on_one_plan(entry)] * _triangles(entry) for entry in inputs)
     return bytes_of_stacks * _times(structures)
 
 
 def _times(structures: int) -> int:
-    """By how much faults and bodies multiply the work: stacks are built in parts, cut and joined."""
+    """The factor by which faults and bodies increase the work: stacks are built in parts, cut and joined."""
     return _STRUCTURED + structures if structures else 1
 
 
@@ -168,7 +168,7 @@ def memory_text(size: float) -> str:
 
 
 def _time_text(seconds: float) -> str:
-    """To one digit: the estimate has no more."""
+    """To one digit: the estimate is not more precise."""
     for unit, size in (("h", 3600), ("min", 60)):
         if seconds >= 2 * size:
             return f"{float(f'{seconds / size:.0e}'):g} {unit}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that a double can hold."""
+"""Checks for numbers that are finite as doubles."""
 
 from __future__ import annotations
 

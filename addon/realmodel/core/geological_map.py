@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What crops out on top of a model: polygons in plan that share their borders."""
+"""The geological map of a model: polygons in plan of the blocks that crop out on top, which share their
+borders."""
 
 from __future__ import annotations
 
@@ -23,10 +24,8 @@ _UPRIGHT = 2.0**-40  # the slope from which on a face is upright but for the rou
 
 @dataclass(frozen=True, eq=False)
 class MapArea:
-    """Where one block crops out, in one compartment.
-
-    polygons: of each the outline (N, 2) float64, counter-clockwise, then its holes, clockwise; rings are
-    open."""
+    """The outcrop of one block, in one compartment. polygons: of each the outline (N, 2) float64,
+    counter-clockwise, then its holes, clockwise; rings are open."""
 
     block: int
     compartment: int
@@ -34,7 +33,7 @@ class MapArea:
 
     @cached_property
     def area(self) -> float:
-        """In plan, model units squared."""
+        """The area in plan, model units squared."""
         return float(sum(_area(ring) for polygon in self.polygons for ring in polygon))
 
 
@@ -63,7 +62,8 @@ def geological_map(model, ground: Ground | None = None) -> list[MapArea]:
 
 
 def _areas(model, plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray) -> list[MapArea]:
-    """By the edges of the ground in plan, with the ground to their left, and the cells that they are of."""
+    """The areas, from the edges of the ground in plan, with the ground to their left, and the cells of each
+    edge."""
     of = np.stack([model.cell_block[cell], model.cell_compartment[cell]], axis=1)
     keys, number = np.unique(of, axis=0, return_inverse=True)
     found = []
@@ -89,7 +89,7 @@ def ground_of(model) -> Ground:
         if _is_plain(plan, *edges[:2]):
             own = triangles[is_ground]
             return Ground(model.vertices[own], vertex[own], own, _areas(model, plan, *edges))
-    except BuildFailed:  # an area that is no wider than roundings is turned over
+    except BuildFailed:  # an area no wider than rounding is inverted
         pass
     return _highest(model, triangles[rises], vertex, plan, cell[rises])
 
@@ -147,8 +147,8 @@ def _edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _divided(plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray):
-    """Edges in plan, divided at vertices that lie on them but for rounding: above and below a step, and on
-    two sides of a border of rock masses, there may be other vertices."""
+    """Edges in plan, divided at vertices that lie on them up to rounding: above and below a step, and on two
+    sides of a border of rock masses, there may be different vertices."""
     first, second, _ = net_edges(start, end)  # the others have the same edge beside them
     inserted = _vertices_on_edges(plan, first, second)
     if not inserted:
@@ -167,7 +167,7 @@ def _divided(plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndar
 def _vertices_on_edges(
     plan: np.ndarray, start: np.ndarray, end: np.ndarray
 ) -> dict[tuple[int, int], list[int]]:
-    """For each edge that other edges' ends lie on, but for rounding, these in their order."""
+    """For each edge the ends of other edges that lie on it up to rounding, in their order."""
     among = np.unique(np.concatenate([start, end]))
     apart = _apart(plan).max()
     sorted_by = [among[np.argsort(plan[among, axis], kind="stable")] for axis in (0, 1)]
@@ -190,7 +190,7 @@ def _vertices_on_edges(
 
 
 def _joined(edge: np.ndarray, face: np.ndarray) -> np.ndarray:
-    """For each (edge, face) a number that it shares with all faces that are joined to it by such edges."""
+    """For each (edge, face) a number that is equal for all faces that such edges connect."""
     _, edge = np.unique(edge, return_inverse=True)
     _, face = np.unique(face, return_inverse=True)
     edge, face = edge.ravel(), face.ravel()
@@ -223,8 +223,8 @@ def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
 
 
 def _highest(model, triangles: np.ndarray, vertex: np.ndarray, plan: np.ndarray, cell: np.ndarray) -> Ground:
-    """As ground_of, where parts of it lie above one another: laid flat and divided along all edges; of pieces
-    at the same place the highest."""
+    """As ground_of, for ground with parts above one another: projected and divided along all edges; of pieces
+    at the same position the highest."""
     rises = _rises(plan[vertex[triangles]])  # where vertices were joined some do no more
     triangles, cell = triangles[rises], cell[rises]
     flat = np.column_stack([plan, np.zeros(len(plan))])

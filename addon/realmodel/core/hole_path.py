@@ -47,7 +47,7 @@ class HolePath:
 
     @property
     def is_vertical(self) -> bool:
-        """Whether it goes straight down all the way; so near that no table tells it otherwise."""
+        """Whether the hole is vertical, up to the precision of survey tables."""
         return bool((np.abs(self._directions - (0.0, 0.0, 1.0)) < 1e-9).all())
 
     def offset(self, depth: float) -> np.ndarray:

@@ -55,7 +55,7 @@ def interpolate(
 
 
 def method_settings(method: str, neighbours: int | None, options: dict) -> dict:
-    """The complete settings of a method from what a caller gave. Raises InputRefused."""
+    """The complete settings of a method from a caller's arguments. Raises InputRefused."""
     check_method(method)
     if neighbours is not None:
         options = {"neighbours": neighbours, **options}
@@ -63,7 +63,7 @@ def method_settings(method: str, neighbours: int | None, options: dict) -> dict:
 
 
 def checked_triangles(triangles, nodes: int) -> np.ndarray | None:
-    """(T, 3) int32 triangles of a mesh of so many nodes. Raises UsageError."""
+    """(T, 3) int32 triangles of a mesh, checked against the number of its nodes. Raises UsageError."""
     if triangles is None:
         return None
     if np.shape(triangles)[1:] != (3,):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values at places of a built model that colors show: the thickness of a layer, what vertices of a surface
-have."""
+"""Values of a built model for color scales: the thickness of layers, attributes of the vertices of
+surfaces."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def thickness(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, thr
 
 
 def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, threads: int = 0) -> np.ndarray:
-    """(N,) float64: what the third coordinates of a triangulation (V, 3), (T, 3) are at places in plan
-    (N, 2), linear within triangles; NaN where there are none."""
+    """(N,) float64: the third coordinate of a triangulation (V, 3), (T, 3) at places in plan (N, 2), linear
+    within triangles; NaN where there is none."""
     if not len(triangles):
         return np.full(len(plan), np.nan)
     found = native_module().surface_heights(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The library: what a block is made of."""
+"""The library: the properties of blocks."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _check_look(entry: Property, item: str) -> None:
 
 
 def load_library(path: str | Path) -> Library:
-    """Reads a library file. Raises InputRefused with the line of what is wrong."""
+    """Reads a library file. Raises InputRefused with the line of the error."""
     document = TomlDocument(Path(path))
     top = Table(document, document.content, (), "")
     top.allow_only(("property",))
@@ -131,7 +131,7 @@ def _read_property(table: Table) -> Property:
 
 
 def _loose_text(table: Table, key: str) -> str | None:
-    """Text that may be empty (no statement) or span lines, as descriptions do."""
+    """Text that may be empty (not given) or have several lines, as descriptions."""
     value = table.content[key]
     if isinstance(value, str) and key != "color":
         return value or None

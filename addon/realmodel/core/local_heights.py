@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces of which a part of the nodes is interpolated apart, from the points around them or from a few
-numbers, and has the same heights to the last bit."""
+"""Surfaces that can be interpolated in parts: a part of the nodes, from the points around them or from a few
+numbers, gets bit for bit the heights of the whole."""
 
 from __future__ import annotations
 
@@ -38,14 +38,15 @@ _LOOKED_AT = 64  # as neighbor_search.cpp: times the points wanted, until octant
 
 @dataclass(frozen=True)
 class LocalHeights:
-    """What the parts of a surface have in common. nodes: how many there are of all. needed: how many of the
-    points nearest to a node count, and those within `reach` of it. lowest, highest: of the points.
+    """The data that the parts of a surface share. nodes: the number of all nodes. needed: the number of
+    nearest points that the height of a node depends on; also those within `reach` of it. lowest, highest: of
+    the points.
 
-    known: for kriging the variogram of all points; spacing: for splines their mean spacing; grid: which one
-    they are; fit: what takes no points. hull: the corners of their hull, where heights beyond it are others.
-    border: for triangles of points, those on the border of their hull, and the box around all. over: the
-    number of the surface that it is parallel to, or a height. least: the thickness that it keeps above the
-    surface before it.
+    known: for kriging, the variogram of all points. spacing: for splines, the mean spacing of all points.
+    grid: for the method grid, the grid of the points. fit: for plane and constant, the fitted plane or
+    height. hull: the corners of the points' hull, where extrapolation differs from the method. border: for
+    triangulations, the points on the border of the hull, and the box around all. over: the number of the
+    surface that this one is parallel to, or a height. least: the minimum thickness above the older surface.
     """
 
     method: str
@@ -127,7 +128,7 @@ class LocalHeights:
         return from_neighbours.beyond_radius(self._task(work, points, nodes, threads))
 
     def warnings(self, found: PartHeights, rock: Rock, number: int) -> list[BuildWarning]:
-        """What there is to tell of all nodes. Raises InputRefused where no triangle is left."""
+        """The warnings about the whole surface. Raises InputRefused where no triangle is left."""
         if not found.triangles:
             file, line = rock.surfaces[number].shape_source()
             raise no_triangle_known().within(surface_item(rock, rock.surfaces[number]), file=file, line=line)
@@ -145,9 +146,10 @@ class LocalHeights:
 
 @dataclass(frozen=True)
 class PartHeights:
-    """Of the heights of a part of a surface: the lowest and highest before some were raised; how many
-    triangles there are. Of those nodes that are counted here: how many have no point within the radius; how
-    many were raised, the farthest by how much, which one this is and where."""
+    """Statistics of the heights of a part of a surface. lowest, highest: before any were raised. triangles:
+    their number. Of the nodes that are counted in this part: alone, the number without a point within the
+    radius; raised, the number of raised ones; by, worst, place: the largest rise, its node, and where it
+    is."""
 
     lowest: float
     highest: float
@@ -159,7 +161,7 @@ class PartHeights:
     place: tuple[float, float] = (0.0, 0.0)
 
     def joined(self, other: PartHeights) -> PartHeights:
-        """Both."""
+        """The statistics of both parts."""
         worst = min((self, other), key=lambda each: (-each.by, each.worst))
         return replace(
             worst,
@@ -172,8 +174,8 @@ class PartHeights:
 
 
 def local_surfaces(rock: Rock) -> set[int]:
-    """The numbers of the surfaces of a rock mass that are such. Those that they need, and those that others
-    need, are not among them unless these have heights wherever they are asked for."""
+    """The numbers of the surfaces of a rock mass that can be interpolated in parts. Surfaces that they need,
+    or that other surfaces need, are included only if they have heights everywhere."""
     found = {number for number, surface in enumerate(rock.surfaces) if _is_local(surface)}
     while True:
         others = set(range(len(rock.surfaces))) - found
@@ -194,7 +196,7 @@ def _is_local(surface: Surface) -> bool:
         return False
     if method == "parallel":
         return settings["thickness"] is not None
-    if method == "plane" and settings["extrapolate"] == "nearest":  # points that contradict count only there
+    if method == "plane" and settings["extrapolate"] == "nearest":  # contradicting points count only there
         return False
     if _ends(surface) and surface.minimum_thickness is not None:  # it is raised where it is left
         return False
@@ -221,41 +223,45 @@ def local_heights(
     threads: int,
     arrays: MappedArrays | None = None,
 ) -> tuple[LocalHeights, np.ndarray, list[str]]:
-    """What is found once from all points of a surface, which may be in a file; the points that its parts are
-    interpolated from, each place once; and what there is to tell. extent: (2, 2), of all nodes. arrays: where
-    those of as many rows as points are kept; None: in memory. Raises InputRefused."""
+    """The shared data of a surface, found from all its points, which may be in a file; the points that its
+    parts are interpolated from, one at each position in plan; and warnings. extent: (2, 2), of all nodes.
+    arrays: where arrays as long as the points are kept; None: in memory. Raises InputRefused."""
     native = native_module()
     room, gather = (np.zeros, in_memory) if arrays is None else (arrays.room, arrays.gather)
     given, grid, mis_ties, are_apart = points, None, None, False
     try:
-        if method == "grid":  # mostly nothing is to be sorted out of a raster
+        if method == "grid":  # a raster rarely has several points at a node
             grid = find_grid(points)
             are_apart = has_each_node_once(points, grid, room)
         if not are_apart:
             points, mis_ties, are_apart = each_place_once(given, room, gather)
-            if method == "grid":  # where it lies, points that repeat others tell, too
+            if method == "grid":  # repeated points count for its position and spacing
                 counted, _ = without_mis_ties(given, room, gather)
                 grid = find_grid(counted)
                 require_one_height(counted, grid, room=room)
             elif _compares_points(method) and not (are_apart and _are_usable(points)):
                 native.mean_spacing(without_mis_ties(given)[0])  # it refuses them
-        told = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, extent)]
+        warnings = [
+            *([mis_ties] if mis_ties else []),
+            *few_points(points, method),
+            *elsewhere(points, extent),
+        ]
         found = LocalHeights(method, settings, nodes, grid=grid)
         if len(points):
             found = replace(found, lowest=float(points[:, 2].min()), highest=float(points[:, 2].max()))
         found, of_method = _fitted(found, Task(work, points, np.empty((0, 2)), settings, threads))
-        told += of_method
+        warnings += of_method
         if settings.get("extrapolate") in ("nearest", "none") and method != "grid":
             found = replace(found, hull=hull_corners(points))
         if found.takes_points:  # of no nodes: it checks the settings
             found.heights(work, np.array(points[:1]), np.empty((0, 2)), threads)
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    return found, points if found.takes_points else np.empty((0, 3)), told
+    return found, points if found.takes_points else np.empty((0, 3)), warnings
 
 
 def _fitted(found: LocalHeights, task: Task) -> tuple[LocalHeights, tuple[str, ...]]:
-    """With what the method finds from all points, and what there is to tell of that."""
+    """With the data that the method finds from all points; and its warnings."""
     method, settings = found.method, found.settings
     if method == "grid":
         return replace(found, needed=1), ()  # where the grid lacks a node
@@ -274,23 +280,23 @@ def _fitted(found: LocalHeights, task: Task) -> tuple[LocalHeights, tuple[str, .
     if method == "parallel":
         to = settings["to"]
         return (replace(found, over=float(to)), ()) if isinstance(to, float) else (found, ())
-    told: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     neighbours = settings["neighbours"]
     if "kriging" in method:
         known = from_neighbours.structure(task, are_apart=True)
-        neighbours, told = known.neighbours, known.warnings
+        neighbours, warnings = known.neighbours, known.warnings
         found = replace(found, known=replace(known, warnings=()))
     elif method == "spline":
         found = replace(found, spacing=native_module().mean_spacing(task.points, are_apart=True))
     octants, radius = settings["octants"], settings["radius"]
     if not neighbours and not octants and radius is not None:
-        return replace(found, needed=1, reach=radius), told
+        return replace(found, needed=1, reach=radius), warnings
     limit = min(neighbours or len(task.points), 8 * octants or len(task.points))
-    return replace(found, needed=_LOOKED_AT * limit + 1 if 0 < octants < limit else limit), told
+    return replace(found, needed=_LOOKED_AT * limit + 1 if 0 < octants < limit else limit), warnings
 
 
 def linked(local: LocalHeights, rock: Rock, number: int) -> LocalHeights:
-    """With the other surfaces that a surface of a rock mass needs."""
+    """The same, linked to the other surfaces that a surface of a rock mass needs."""
     to = local.settings.get("to")
     if isinstance(to, str):
         local = replace(local, over=named_surfaces(rock, number)[to])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How rock looks in pictures: a recipe for each look, and which look suits a rock by its name."""
+"""Looks of rock in pictures: a recipe for each look, and the look for a rock by its name."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays in files, of which the system keeps in memory what is used; and arrays that come piece by piece."""
+"""Memory-mapped arrays in files, and arrays that are assembled from pieces."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _gathered(rows: Rows, pieces: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def in_pieces(array: np.ndarray) -> Iterator[np.ndarray]:
-    """Rows of an array one after another, few at once."""
+    """Rows of an array in pieces."""
     for first in range(0, len(array), ROWS_AT_ONCE):
         yield array[first : first + ROWS_AT_ONCE]
 
@@ -100,7 +100,7 @@ class MappedArrays:
         if id(array) in self._files or not array.size:
             return array
         file = self._new_file()
-        with _told_of(file):
+        with _disk_errors(file):
             np.save(file, array)
             return self.opened(file)
 
@@ -115,7 +115,7 @@ class MappedArrays:
     def room(self, shape: tuple[int, ...], dtype) -> np.ndarray:
         """Zeros in a file, for the caller to change."""
         file = self._new_file()
-        with _told_of(file):
+        with _disk_errors(file):
             array = np.lib.format.open_memmap(file, "w+", dtype, shape)
             _reserve(file)
             return array
@@ -124,12 +124,12 @@ class MappedArrays:
         return self.folder / f"{secrets.token_hex(8)}.npy"
 
     def place(self, array: np.ndarray) -> Path | np.ndarray:
-        """What tells another process of an array: its file, or itself where it is empty."""
+        """A reference to an array for other processes: its file, or the array itself where it is empty."""
         kept = self.keep(array)
         return self._files[id(kept)][1] if kept.size else kept
 
     def opened(self, place: Path | np.ndarray) -> np.ndarray:
-        """The array that was told of by its place."""
+        """The array of such a reference."""
         if isinstance(place, np.ndarray):
             return place
         array = np.load(place, mmap_mode="r")
@@ -138,7 +138,7 @@ class MappedArrays:
 
 
 class _MappedRows(Rows):
-    """In a file."""
+    """Rows in a file."""
 
     def __init__(self, empty: np.ndarray, file: Path, opened: Callable[[Path], np.ndarray]):
         super().__init__(empty)
@@ -154,26 +154,26 @@ class _MappedRows(Rows):
         self._write(_header(self._empty.dtype, (self._count, *self._empty.shape[1:])), "r+b")
         if self._count:
             return self._opened(self._file)
-        with _told_of(self._file):
+        with _disk_errors(self._file):
             self._file.unlink()
         return self._empty
 
     def taken(self) -> np.ndarray:
-        with _told_of(self._file), self._file.open("rb") as opened:
+        with _disk_errors(self._file), self._file.open("rb") as opened:
             opened.seek(_HEADER)
             content = opened.read()
-        with _told_of(self._file):
+        with _disk_errors(self._file):
             self._file.unlink()
         return np.frombuffer(content, self._empty.dtype).reshape(self._count, *self._empty.shape[1:])
 
     def _write(self, content, mode: str) -> None:
-        with _told_of(self._file), self._file.open(mode) as out:
+        with _disk_errors(self._file), self._file.open(mode) as out:
             out.write(content)
 
 
 @contextmanager
-def _told_of(file: Path) -> Iterator[None]:
-    """Tells in one line what keeps an array from being written."""
+def _disk_errors(file: Path) -> Iterator[None]:
+    """Raises OutputFailed, in one line, where the file of an array cannot be written or read."""
     try:
         yield
     except OSError as error:
@@ -182,8 +182,9 @@ def _told_of(file: Path) -> Iterator[None]:
 
 
 def _reserve(file: Path) -> None:
-    """Takes the room of a file on the disk, so that a full one tells it now: where it is written in memory
-    nobody can be told. Systems and disks that cannot do that are left alone."""
+    """Allocates a file's space on the disk, so that a full disk is an error now. Later, when the mapped
+    memory is written, it would be a fatal signal. Does nothing where the system or the disk cannot
+    allocate."""
     if not hasattr(os, "posix_fallocate"):
         return
     with file.open("r+b") as opened:
@@ -195,7 +196,7 @@ def _reserve(file: Path) -> None:
 
 
 def _header(dtype: np.dtype, shape: tuple[int, ...]) -> bytes:
-    """What stands before an array in a file of NumPy, format 1.0, in _HEADER bytes."""
+    """The header of an array in a file of NumPy, format 1.0, padded to _HEADER bytes."""
     begin = np.lib.format.magic(1, 0) + (_HEADER - 10).to_bytes(2, "little")
     text = repr({"descr": dtype.str, "fortran_order": False, "shape": shape})
     return begin + text.ljust(_HEADER - len(begin) - 1).encode() + b"\n"
@@ -225,7 +226,7 @@ def _aligned(size: int) -> int:
 
 
 def read_mapped(path: Path) -> dict[str, np.ndarray]:
-    """The arrays of a file of write_mapped; what is written to them stays in memory. Raises BuildFailed."""
+    """The arrays of a file of write_mapped; changes of them stay in memory. Raises BuildFailed."""
     try:
         content = np.memmap(path, np.uint8, "c")
         start = _NUMBER + int.from_bytes(content[:_NUMBER].tobytes(), "little")

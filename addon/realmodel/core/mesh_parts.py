@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of polygons made of parts of two others, and what their vertices, corners, edges and polygons take
-over from these."""
+"""Meshes of polygons made of parts of two others, and the sources of their vertices, corners, edges and
+polygons."""
 
 from __future__ import annotations
 
@@ -41,12 +41,13 @@ class Operand:
 
 @dataclass(eq=False)
 class Source:
-    """What a mesh of parts has of one operand.
+    """The elements of a mesh of parts that come from one operand.
 
-    vertices: (N,) of its vertices lie on it; vertex_of: (N, 3) vertices of the operand that each is between,
-    with vertex_weights (N, 3). edges: (E,) of its edges are of the operand's edges edge_of (E,). polygons:
-    (P,) of its polygons are of the operand's polygons polygon_of (P,). corners: (C,) of its corners are
-    between corner_of (C, 3), with corner_weights (C, 3).
+    vertices: (N,) vertices of the mesh that lie on the operand; vertex_of: (N, 3), the vertices of the
+    operand around each, with vertex_weights (N, 3). edges: (E,) edges of the mesh, parts of the operand's
+    edges edge_of (E,). polygons: (P,) polygons of the mesh, parts of the operand's polygons polygon_of (P,).
+    corners: (C,) corners of the mesh, between the operand's corners corner_of (C, 3), with corner_weights (C,
+    3).
     """
 
     vertices: np.ndarray
@@ -63,8 +64,8 @@ class Source:
 
 @dataclass(eq=False)
 class MeshParts:
-    """A mesh of polygons (its coordinates in double precision), and what it has of each operand. meeting:
-    (K,) the edges between polygons of one and of the other."""
+    """A mesh of polygons (coordinates in double precision), and its parts from each operand. meeting: (K,)
+    the edges between polygons of the two operands."""
 
     vertices: np.ndarray
     offsets: np.ndarray

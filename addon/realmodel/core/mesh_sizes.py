@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long the edges of a planar mesh should be: what may be asked, and its checks."""
+"""The edge lengths of a planar mesh: their settings and checks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def check_mesher(mesher) -> None:
 
 
 def edge_length_fault(edge_length) -> str | None:
-    """What is wrong with an edge length, "auto" included."""
+    """The error in an edge length, "auto" included, or None."""
     if isinstance(edge_length, str) and edge_length == AUTO:
         return None
     if is_number(edge_length) and edge_length > 0:
@@ -32,7 +32,7 @@ def edge_length_fault(edge_length) -> str | None:
 
 
 def triangles_fault(triangles) -> str | None:
-    """What is wrong with a number of triangles."""
+    """The error in a number of triangles, or None."""
     whole = is_number(triangles) and float(triangles).is_integer()
     return None if whole and triangles >= 1 else f"triangles must be a whole number from 1, not {triangles!r}"
 

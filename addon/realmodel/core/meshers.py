@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What divides a region into triangles: one registry (docs/dev/extending.md)."""
+"""The meshers of regions: one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 

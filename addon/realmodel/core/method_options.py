@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What settings may be: each check returns the value as it is used, or refuses it."""
+"""Checks of settings: each returns the value as it is used, or refuses it."""
 
 from __future__ import annotations
 

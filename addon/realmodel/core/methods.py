@@ -26,15 +26,14 @@ NEIGHBOURS_OF_FITTED = 32
 
 @dataclass(frozen=True)
 class Method:
-    """label and tip: in the panel. run: the function of the package `heights` that does it,
-    "module.function"; None for "auto", which chooses another. options: by name.
+    """label and tip: in the panel. run: the function of the package `heights` that implements it,
+    "module.function"; None for "auto", which chooses another method. options: by name.
 
-    instead_of_points: the option that tells what points would, where there is one. on_mesh: whether it needs
-    the triangles of the nodes. leaves_one_out: it can tell each point from the others at once. is_local: it
-    gives on a part of the nodes what it gives on all, and is cheap. is_triangulated: it works on the
-    triangulation of the points. spreads_thickness: `parallel` may use it.
-    has_shape: its surface has a shape of its own, for which one or two points are too few. tamed_by: what to
-    do where its heights run away from those of the points.
+    instead_of_points: the option that takes the place of points, if any. on_mesh: it needs the triangles of
+    the nodes. leaves_one_out: it estimates each point from the others in one run. is_local: its heights at a
+    node do not depend on the other nodes, and it is cheap. is_triangulated: it works on the triangulation of
+    the points. spreads_thickness: `parallel` may use it. has_shape: one or two points are too few for its
+    surface. tamed_by: the advice where its heights go far beyond those of the points.
     """
 
     label: str
@@ -93,7 +92,7 @@ _NEIGHBOURHOOD = {
         fold="search",
     ),
 }
-# None: DEFAULT_NEIGHBOURS, or with a variogram that is fitted twice as many, which tells points better.
+# None: DEFAULT_NEIGHBOURS, or twice as many with a fitted variogram, which estimates points better.
 _NEIGHBOURHOOD_OF_KRIGING = {
     **_NEIGHBOURHOOD,
     "neighbours": replace(_NEIGHBOURS, default=None),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mis-ties: places where two measured lines cross and do not agree on the height of a surface."""
+"""Mis-ties: positions where two survey lines cross and have different heights of a surface."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ _AT_ONCE = 1 << 18  # points among which those at one place are looked for
 def without_mis_ties(
     points: np.ndarray, room: Room = np.zeros, gather: Gather = in_memory
 ) -> tuple[np.ndarray, str | None]:
-    """Points with one height at each place, and what was done, as a sentence (None: nothing).
+    """Points with one height at each position, and a warning (None: nothing was changed).
 
-    points: (P, 3) float64, which may be in a file. Where heights at one place differ by no more than a
-    twentieth of the height range of all points, their mean takes the place of the first of them; larger
-    contradictions are left in. room, gather: where arrays are kept.
+    points: (P, 3) float64, which may be in a file. Where heights at one position differ by no more than a
+    twentieth of the height range of all points, their mean replaces the first of them; larger contradictions
+    are left in. room, gather: where arrays are kept.
     """
     found = _Places(points, room, is_once=False)
-    return found.kept(gather), found.told()
+    return found.kept(gather), found.warning()
 
 
 def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.ndarray, str | None, bool]:
     """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
     found = _Places(points, room, is_once=True)
-    return found.kept(gather), found.told(), not found.has_contradictions
+    return found.kept(gather), found.warning(), not found.has_contradictions
 
 
 class _Places:
-    """Which points are left when those at one place have become one. is_once: also where they have one
-    height."""
+    """Selects the points that are left when those at one position are merged. is_once: also those with equal
+    heights."""
 
     def __init__(self, points: np.ndarray, room: Room, is_once: bool):
         self._points = points
@@ -87,7 +87,7 @@ class _Places:
             piece[numbers[first:last] - begin, 2] = heights[first:last]
             yield piece[self._keeps[begin : begin + len(piece)]]
 
-    def told(self) -> str | None:
+    def warning(self) -> str | None:
         if not self._count:
             return None
         apart, x, y = self._worst
@@ -151,7 +151,8 @@ def heights_apart(points: np.ndarray) -> np.ndarray:
 
 
 def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of each point (P,) its place in plan; of each place its first point, and how far heights are apart."""
+    """For each point (P,) its position in plan; for each position its first point, and the range of the
+    heights there."""
     keys = np.delete(points, 2, axis=1)
     order = np.lexsort(keys.T[::-1])
     new = np.ones(len(points), bool)

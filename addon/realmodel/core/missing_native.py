@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why the compiled part is not there, and what to do about it, in the words of who is asking."""
+"""The message for a missing native module, with advice for the user's situation."""
 
 import re
 import sys
@@ -12,8 +12,8 @@ ZIP = "the zip of RealModel"
 
 
 class System(NamedTuple):
-    """One that there is a zip for: its name, that of the zip's platform, how names of modules end, and what
-    to do where one cannot be loaded."""
+    """A system that has a zip: its name, the platform in the name of the zip, the ending of its modules, and
+    the advice where one cannot be loaded."""
 
     name: str
     platform: str
@@ -21,8 +21,8 @@ class System(NamedTuple):
     advice: str
 
 
-# By sysconfig.get_platform(), for macOS without its version: what the interpreter was built for, whatever
-# machine that runs on.
+# By sysconfig.get_platform(), for macOS without its version: the system that the interpreter was built for,
+# not the machine that it runs on.
 SYSTEMS = {
     "linux-x86_64": System(
         "Linux on x86-64",
@@ -51,9 +51,9 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
 
     error: what importing `_native` raised. package: the folder of the add-on.
 
-    A developer's copy has scripts/build.sh beside it and is told to run it. An installed one is told
-    which system and which Pythons it has modules for, or what keeps the one for this Python from being
-    loaded.
+    For a developer's copy, which has scripts/build.sh beside it, the advice is to run that. For an installed
+    add-on the sentence names the system and the Pythons that it has modules for, or the reason why the module
+    for this Python cannot be loaded.
     """
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     system = SYSTEMS.get(re.sub(r"^macosx-[\d.]+-", "macosx-", sysconfig.get_platform()))
@@ -88,6 +88,6 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
 
 
 def _versions(package: Path, system: System) -> list[str]:
-    """The versions of Python that there are modules for on a system, e.g. ["3.11", "3.13"]."""
+    """The versions of Python that have modules for a system, e.g. ["3.11", "3.13"]."""
     named = [re.fullmatch(rf"_native\.{system.module}", path.name) for path in package.glob("_native.*")]
     return [f"3.{minor}" for minor in sorted({int(found[1]) for found in named if found})]

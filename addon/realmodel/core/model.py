@@ -95,7 +95,7 @@ class Model:
 
     @property
     def interpolations(self) -> list[Interpolation | None]:
-        """By global surface index what interpolating it gave; None for ready meshes."""
+        """The interpolation of each surface, by its global index; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
     def surface_attributes(self, number: int) -> dict[str, np.ndarray]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a vertical borehole meets in a finished model."""
+"""The blocks along a vertical borehole in a finished model."""
 
 from __future__ import annotations
 
@@ -71,8 +71,7 @@ def _faces_at(model, x: float, y: float) -> np.ndarray:
 
 
 def _heights(model, faces: np.ndarray, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Of faces their heights at a position, and whether they are seen from above as from outside of their
-    first cell."""
+    """The heights of faces at a position, and whether each faces up out of its first cell."""
     begin, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
     first = np.repeat(begin, size)
     step = np.arange(len(first)) - np.repeat(np.cumsum(size) - size, size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a rock mass has in plan - its region, and constraints - from arrays, text or files."""
+"""The region and the constraints of a rock mass in plan, from arrays, text or files."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def map_layer(given) -> MapLayer | None:
 
 
 def layer_files(given) -> list[Path]:
-    """The files that are read for what is given in plan."""
+    """The files of a region, of constraints or of sizes."""
     layer = map_layer(given)
     return [] if layer is None else [Path(layer.file), *map_companions(Path(layer.file))]
 
 
 def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]) -> None:
-    """Refuses a file that is not there, and what is said of it that makes no sense."""
+    """Refuses a file that does not exist, and invalid options of it."""
     layer = map_layer(given)
     if layer is None:
         return
@@ -51,7 +51,7 @@ def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]
 
 
 def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
-    """What a file or a well-known text holds; None where arrays are given."""
+    """The shapes of a file or a well-known text; None where arrays are given."""
     layer = map_layer(given)
     if layer is not None:
         return read_shapes(layer, units)
@@ -61,11 +61,12 @@ def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
 def read_rings(
     region, holes=(), units: str = MODEL_UNIT, call: Callable | None = None
 ) -> tuple[object, list[np.ndarray], list[str]]:
-    """The region and the holes of a rock mass as checked arrays, and sentences about what was left out.
+    """The region and the holes of a rock mass as checked arrays, and warnings about shapes that were left
+    out.
 
-    The region is one outline (N, 2) with holes in it, or a list of rings that count even-odd, without. Raises
-    InputRefused; its cause is a native InputError where the rings do not fit together. call: Work.native,
-    where the caller may stop it.
+    The region is one outline (N, 2) with holes, or a list of rings with the even-odd rule and no holes. call:
+    Work.native, where the caller can cancel. Raises InputRefused; its cause is a native InputError where the
+    rings do not fit together.
     """
     shapes = shapes_of(region, units)
     if shapes is None:
@@ -75,8 +76,8 @@ def read_rings(
     file = None if layer is None else Path(layer.file)
     require_polygons(shapes, file)
     rings = rings_of_shapes(shapes)
-    told = shapes.without_area(file or Path("region"))
-    return *_as_given(rings, checked_region(rings, call), False), told
+    warnings = shapes.without_area(file or Path("region"))
+    return *_as_given(rings, checked_region(rings, call), False), warnings
 
 
 def _as_given(
@@ -161,7 +162,7 @@ def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
 
 
 def ring_path(region, items) -> tuple:
-    """Where in a project file the corner stands that a native refusal names first: (key, numbers...)."""
+    """The key in the project file of the corner that a native error names first: (key, numbers...)."""
     if not items or isinstance(region, (str, Path, MapLayer)):
         return ("region",)
     ring, corner = (*items, 0)[:2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons from directed edges in plan: rings that do not cross, holes in the outlines that they lie in."""
+"""Polygons from directed edges in plan: rings that do not cross, holes with their outlines."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def covers_once(points: np.ndarray, polygons: list[Polygon]) -> bool:
 
 
 class _Around:
-    """Which of some rings contain another one."""
+    """Finds the rings that contain another ring."""
 
     def __init__(self, points: np.ndarray, rings: list[np.ndarray]):
         self.points, self.rings = points, rings
@@ -123,7 +123,7 @@ def _is_before(points: np.ndarray, at: int, origin: int, one: int, other: int) -
 
 
 def _half(points: np.ndarray, at: int, origin: int, way: int) -> int:
-    """0: in the half turn clockwise from origin, 1: opposite to it, 2: in the other half, 3: origin
+    """0: in the half turn clockwise from origin, 1: opposite to origin, 2: in the other half, 3: origin
     itself."""
     side = _side(points, at, origin, way)
     if side == 0:

@@ -90,7 +90,8 @@ def estimate_mesh(
     constraint_points=None,
     points=None,
 ) -> MeshEstimate:
-    """What mesh_region with the same arguments will take; raises what it does before any meshing."""
+    """The expected size of the mesh of mesh_region with the same arguments. Raises the same errors, as far as
+    they come before meshing."""
     check_mesher(mesher)
     asked = _checked(
         outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points

@@ -118,7 +118,7 @@ def smallest_angles(vertices, triangles) -> np.ndarray:
 
 
 def mesh_quality(angles: np.ndarray, page=_PAGE, words: bool = True) -> Drawing:
-    """How many triangles have which smallest angle; angles: as smallest_angles gives them."""
+    """A histogram of the smallest angles of triangles. angles: as of smallest_angles."""
     counts, edges = np.histogram(angles, _BINS)
     axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles), page, words)
     axes.frame("Smallest angle (°)", "Triangles")
@@ -138,7 +138,7 @@ def mesh_quality_lines(angles: np.ndarray) -> list[str]:
 
 
 def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
-    """Axes on a page of their own, with the lines of text above where words are wanted."""
+    """Axes on a page of their own, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)
     if words:

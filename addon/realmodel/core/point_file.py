@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A file of points with what it takes to read it: columns, rows that count, separators, units."""
+"""A file of points with its import options: columns, filters, separators, units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .units import METERS, factor
 
 
 class ReadingRefused(ValueError):
-    """A key of a PointFile that makes no sense: which, what is wrong, what to do."""
+    """A wrong value of a key of PointFile: the key, what is wrong, what to do."""
 
     def __init__(self, key: str, what: str, advice: str | None = None):
         self.key, self.what, self.advice = key, what, advice
@@ -27,8 +27,8 @@ class PointFile:
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
-    separator: one character; " " stands for any blanks and tabs; None: told from the file.
-    decimal: "." or ","; None: told from the file.
+    separator: one character; " " means any blanks and tabs; None: detected from the content.
+    decimal: "." or ","; None: detected from the content.
     nodata: no-data values: a number, a text or a list of them; such points are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     z_axis: "up", or "down" where z is a depth.
@@ -99,8 +99,7 @@ class PointFile:
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A ready mesh in units of its own and with its own z axis, as those of a PointFile; None: units of the
-    model."""
+    """A ready mesh with its own units and z axis, as of a PointFile; None: units of the model."""
 
     file: str | Path
     units: str | Mapping | None = None
@@ -112,7 +111,7 @@ class MeshFile:
         check_z_axis(self.z_axis)
 
     def scale(self, model_unit: str) -> tuple[float, float]:
-        """What its plan and its heights are multiplied by."""
+        """The factors of plan coordinates and heights."""
         units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
         upward = -1.0 if self.z_axis == "down" else 1.0
         return factor(units.get("xy"), model_unit), upward * factor(units.get("z"), model_unit)

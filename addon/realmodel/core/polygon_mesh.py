@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blocks and cells of a model as meshes of polygons, complete with their edges, as programs that draw take
-them."""
+"""Blocks and cells of a model as meshes of polygons with all their edges, for display and export."""
 
 from __future__ import annotations
 
@@ -43,7 +42,7 @@ class PolygonMesh:
 
     @property
     def polygons(self) -> int:
-        """How many polygons there are."""
+        """The number of polygons."""
         return len(self.offsets) - 1
 
 
@@ -150,7 +149,7 @@ def moved_apart(shape: PolygonMesh, shifts: np.ndarray) -> PolygonMesh:
 
 
 def _numbers(model: Model, names: Sequence[str] | None) -> np.ndarray | None:
-    """By what number each compartment of a model is called; None where it has but one."""
+    """The numbers by which the compartments of a model are named; None where it has only one."""
     own = model.compartment_names
     names = list(own if names is None else names)
     if max(len(own), len(names)) < 2:

@@ -40,7 +40,7 @@ from .units import METERS, MODEL_UNIT
 
 @dataclass(frozen=True)
 class Source:
-    """Where in a project file a rock mass or a surface is written."""
+    """The place of a rock mass or a surface in a project file."""
 
     document: TomlDocument
     path: tuple
@@ -118,7 +118,7 @@ class Surface:
         )
 
     def shape_source(self) -> tuple[Path | None, int | None]:
-        """Where the shape comes from, for messages: its file, or its line in the project file."""
+        """The source of the shape, for messages: its file, or its line in the project file."""
         if self.shape_file is not None:
             return self.shape_file, None
         if self.source is not None:
@@ -177,16 +177,16 @@ class Rock:
         return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
 
     def constraint_lines(self) -> list[np.ndarray]:
-        """Of constraints that are arrays, the lines (N, 2)."""
+        """The lines (N, 2) of constraints that are arrays."""
         return [line for line in self.constraints if len(line) > 1]
 
     def constraint_points(self) -> np.ndarray | None:
-        """Of constraints that are arrays, the points (N, 2); None where there are none."""
+        """The points (N, 2) of constraints that are arrays; None where there are none."""
         points = [point for point in self.constraints if len(point) == 1]
         return np.concatenate(points) if points else None
 
     def region_source(self) -> tuple[Path | None, int | None]:
-        """Where the region comes from, for messages: its file, or its line in the project file."""
+        """The source of the region, for messages: its file, or its line in the project file."""
         if self.shape_file is not None:
             return self.shape_file, None
         if self.source is not None:
@@ -194,7 +194,7 @@ class Rock:
         return None, None
 
     def edge_length_source(self) -> tuple[Path | None, int | None]:
-        """Where the edge length is written, for messages."""
+        """The place of the edge length in the project file, for messages."""
         if self.source is not None:
             return self.source.document.file, self.source.line("edge_length")
         return None, None
@@ -344,7 +344,7 @@ def _check_boreholes(rock: Rock, refuse) -> None:
 
 
 def _check_mesh(rock: Rock, refuse) -> None:
-    """Refuses what a planar mesh cannot be made by."""
+    """Refuses settings from which no planar mesh can be made."""
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
         raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
     try:
@@ -377,7 +377,8 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
 
 
 def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
-    """continues: a ready mesh may have a method too, by which it is continued to faults."""
+    """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
+    continued to faults."""
     arrays = surface.vertices is not None or surface.triangles is not None
     shapes = [
         name
@@ -453,8 +454,7 @@ def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
 
 
 def _check_references(rock: Rock) -> None:
-    """Refuses names of surfaces that are not there, a minimum thickness above nothing, and surfaces each of
-    which is to be made from the other."""
+    """Refuses unknown names of surfaces, a minimum thickness above nothing, and circular references."""
     numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
     needs: list[list[tuple[str, int]]] = []
     for number, surface in enumerate(rock.surfaces):

@@ -129,7 +129,7 @@ def _is_list_of_rings(region: list) -> bool:
 
 
 def _read_layer(table: Table, key: str, given, folder: Path):
-    """A file, well-known text, or a table that says more about a file."""
+    """Reads a file, well-known text, or a table with a file and its options."""
     if isinstance(given, str) and is_wkt(given):
         return given
     if not isinstance(given, dict):
@@ -188,7 +188,7 @@ def _inner(table: Table, key: str, content: dict) -> Table:
 
 
 def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
-    """One outline of coordinates, refused with the line of the corner that is not two numbers."""
+    """One outline of coordinates. Errors name the line of the corner that is not two numbers."""
 
     def refuse(what: str, *corner: int):
         where = Table(table.document, {}, (*table.path, *path, *corner), table.item)

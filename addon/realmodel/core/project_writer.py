@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A project to a project file, with its library, meshes and points in files beside it.
+"""Writes a project to a project file, with its library, meshes and points in files beside it.
 
-The numbers are written with as many digits as it takes: what is read back is the same project, bit for bit.
+Numbers have as many digits as they need: the project that is read back is the same, bit for bit.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
     values = {"name": given.name}
     if shape is not None:
         values[shape[0]] = shape[1]
-    # of a ready mesh the method is that by which it is continued to faults
+    # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     values |= {
         "minimum_thickness": given.minimum_thickness,
@@ -211,7 +211,7 @@ def off_text(vertices, triangles) -> bytes:
 
 
 def _rows(numbers: np.ndarray, apart: str) -> bytes:
-    """One row a line, each number with the fewest digits that stand for it alone."""
+    """One row per line, each number with the fewest digits that identify it."""
     text = io.StringIO()
     for row in numbers.tolist():
         text.write(apart.join(map(repr, row)) + "\n")

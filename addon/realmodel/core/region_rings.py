@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rings that bound a region in plan: checked, and what is wrong with them in words."""
+"""Checks of the rings that bound a region in plan, and their error messages."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class NamedRing:
 
 
 def numbered_ring(ring, item: str) -> np.ndarray:
-    """One ring as (N, 2) float64, its corners all there, so that they keep their numbers. Raises InputRefused
-    where it bounds nothing."""
+    """One ring as (N, 2) float64, all its corners kept, so that their numbers are those of the input. Raises
+    InputRefused where it bounds nothing."""
     corners = _corners(ring, item)
     _require_corners(corners, item)
     return corners
@@ -66,7 +66,7 @@ def _without_repetition(corners: np.ndarray) -> np.ndarray:
 
 
 def is_several(outline) -> bool:
-    """Whether what is given as an outline is a list of them."""
+    """Whether a given outline is a list of several."""
     if isinstance(outline, np.ndarray):
         return outline.ndim == 3
     try:
@@ -144,7 +144,7 @@ def region_rings(outline, holes: Iterable = ()) -> list[np.ndarray]:
 
 
 def refused_rings(error, names: Sequence[str], counts: Sequence[int] = ()) -> InputRefused:
-    """What the native part found wrong with rings, in the words of who drew them. Corners count from 0."""
+    """The error that the native module found in rings, in the user's terms. Corners count from 0."""
     place = tuple(error.place[:2]) if error.place is not None else None
     at = f" at {place_text(place)}" if place is not None else ""
     items = error.items

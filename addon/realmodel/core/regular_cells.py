@@ -82,7 +82,7 @@ def regular_cells(model, size: float | Sequence[float] | None = None) -> Regular
         whole = np.bincount(flat, area, nx * ny * nz).reshape(nz, ny, nx)
         own[:-1] += np.cumsum(whole[::-1], axis=0)[::-1][1:]  # beneath a face cells are full
         volumes[block] = own
-    # what rounding leaves of cells that are empty is less than this
+    # volumes below this are rounding errors of empty cells
     volumes[np.abs(volumes) < 1e-12] = 0.0
     return RegularCells(origin, size, counts, np.maximum(volumes, 0.0) * size.prod())
 
@@ -97,7 +97,7 @@ def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]
 
 
 def _triangles(model, block: int) -> np.ndarray:
-    """(T, 3, 3): the boundary of a block, without what is upright."""
+    """(T, 3, 3): the boundary of a block, without vertical triangles."""
     shape = model.block_boundary(block)
     if not len(shape.faces):
         return np.empty((0, 3, 3))
@@ -160,8 +160,8 @@ class PlanGrids:
 
 
 def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
-    """Exact at the centers of cells. size: as of `checked_size`; the height does not count. Raises
-    UsageError."""
+    """The plan grids, exact at the centers of cells. size: as of `checked_size`; the height is ignored.
+    Raises UsageError."""
     size = checked_size(model, size)
     origin, (nx, ny, _) = frame_of(model, size)
     if float(nx) * ny * max(len(model.blocks), 1) > MOST_CELLS:

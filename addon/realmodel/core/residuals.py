@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the points of surfaces are from the surfaces that were interpolated from them."""
+"""The distances of points from the surfaces that were interpolated from them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _heights(model: Model, number: int, at: int, entry, points: np.ndarray) -> n
 
 
 def residuals(model: Model) -> list[Residuals]:
-    """Of each surface of a model that was interpolated from points, in the model's order."""
+    """The residuals of each surface of a model that was interpolated from points, in the model's order."""
     found, number = [], 0
     for rock, entry in zip(model.project.rocks, model.rock_inputs or model.project.rocks, strict=True):
         for at, surface in enumerate(rock.surfaces):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a rock mass as the user gives it to what the stack builder takes: triangulations, and the region."""
+"""Prepares a rock mass for the stack builder: reads its files, meshes its region, interpolates its
+surfaces."""
 
 from __future__ import annotations
 
@@ -42,22 +43,22 @@ _EDGE_LENGTH_KINDS = (
     "size",
     "density",
     "too_large",
-)  # what native meshing lays to the edge length
+)  # kinds of errors of native meshing that the edge length causes
 
 
 @dataclass
 class RockInput:
-    """A rock mass with all that was read and interpolated.
+    """A rock mass, read and interpolated.
 
-    rock: as given, but with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles
-    (T, 3) int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None.
-    interpolations: what interpolating each surface gave, None for ready meshes. file_faces: for each
-    surface None, or the face of its file that each triangle is of. told: of each interpolated surface what is
-    known of its vertices (surface_heights.told_of). warnings: what reading and interpolating
-    had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
-    structure: the compartments of a rock mass with faults, and their sheets; a surface is all its sheets.
-    torn: the refusal of a surface whose triangles overlap in a sheet, by number, where a fault is the reason.
-    draws: how each surface is drawn in a realization of an ensemble; else None.
+    rock: as given, with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles (T, 3)
+    int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None. interpolations:
+    the result for each surface, None for ready meshes. file_faces: for each surface None, or the face of its
+    file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
+    number (`variance`, `distance`). warnings: of reading and interpolating. whole: for a stage, the entry
+    with all surfaces: those of a stage may depend on younger ones. structure: the compartments of a rock mass
+    with faults, and their sheets; a surface is all its sheets. torn: by number, the error of a surface whose
+    triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization of an
+    ensemble; else None.
     """
 
     rock: Rock
@@ -67,19 +68,19 @@ class RockInput:
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
     whole: RockInput | None = None
-    told: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
+    attributes: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
     torn: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
 
     def native(self) -> tuple:
-        """As the native stack builder takes it: surfaces, region, base elevation, rules."""
+        """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
         rules = [surface.rule for surface in self.rock.surfaces]
         return self.surfaces, self.region, self.rock.base_elevation, rules
 
     def stage(self, m: int) -> RockInput:
-        """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
-        is gone keeps its heights as a ready mesh, if it has them yet."""
+        """The entry with the surfaces up to m only; the region stays the same. A surface that depends on a
+        removed one keeps its heights as a ready mesh, if it has them already."""
         gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
         surfaces = self.rock.surfaces[: m + 1]
         for number, surface in enumerate(surfaces):
@@ -103,7 +104,7 @@ class RockInput:
             self.file_faces[: m + 1],
             [warning for warning in self.warnings if warning.surface not in gone],
             self,
-            {number: told for number, told in self.told.items() if number <= m},
+            {number: each for number, each in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
             self.torn,
         )
@@ -112,35 +113,37 @@ class RockInput:
 def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None. reader: how surfaces are read."""
-    rocks, warnings, asked = [], [], []
+    rocks, all_warnings, asked = [], [], []
     for rock in project.rocks:
-        rock, told = _read_region(work, rock, project.units)
+        rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
         picks = _read_picks(rock, project.units)
-        told += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
+        warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
         for surface in rock.surfaces:
             met = picks.points.pop(surface.name, None) if surface.interpolated else None
             asked.append(SurfaceInput.of(rock, surface, met, project.units))
         rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes))
-        warnings.append((told, _unnamed(rock, picks)))
+        all_warnings.append((warnings, _unnamed(rock, picks)))
     found = dict(reader(work, asked))
     inputs, first = [], 0
-    for rock, (told, of_picks) in zip(rocks, warnings, strict=True):
+    for rock, (warnings, of_picks) in zip(rocks, all_warnings, strict=True):
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
-        told += [
-            BuildWarning(text, "points", rock.name, each.surface.name) for each in own for text in each.told
+        warnings += [
+            BuildWarning(text, "points", rock.name, each.surface.name)
+            for each in own
+            for text in each.warnings
         ]
-        told += of_picks
+        warnings += of_picks
         rock = replace(rock, surfaces=[each.surface for each in own])
         require_points_near(rock, project.units)
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        inputs.append(RockInput(rock, shapes, None, [None] * len(own), faces, told))
+        inputs.append(RockInput(rock, shapes, None, [None] * len(own), faces, warnings))
     return inputs
 
 
 def _unnamed(rock: Rock, picks: Picks) -> list[BuildWarning]:
-    """What to tell of picks that are left when surfaces have taken theirs."""
+    """The warning about picks of names that no surface has."""
     if not picks.points:
         return []
     what = f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
@@ -148,8 +151,8 @@ def _unnamed(rock: Rock, picks: Picks) -> list[BuildWarning]:
 
 
 def with_arrays(project: Project) -> Project:
-    """A project in which files stay, but for what cannot be kept as one file and how it is read - regions of
-    layers or of text, boreholes - which is read. For those who keep paths only. Raises InputRefused."""
+    """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
+    or of text and boreholes, which are read into arrays. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
@@ -190,7 +193,7 @@ def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWa
 
 
 def _read_constraints(rock: Rock, units: str) -> Rock:
-    """The rock mass with arrays (N, 2) as constraints, points in one row, and local lengths at places."""
+    """The rock mass with its constraints as arrays (N, 2), points with one row, and its mesh sizes read."""
     key = "constraints"
     try:
         lines = read_constraints(rock.constraints, units)
@@ -202,7 +205,7 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
 
 
 def _read_picks(rock: Rock, units: str) -> Picks:
-    """What the boreholes of a rock mass met."""
+    """The picks of the boreholes of a rock mass."""
     if rock.boreholes is None:
         return Picks()
     try:
@@ -240,7 +243,7 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
 
 
 def _density_points(rock: Rock) -> np.ndarray:
-    """(P, 2) the points of all surfaces of a rock mass, by which an automatic edge length goes."""
+    """(P, 2) the points of all surfaces of a rock mass, which decide an automatic edge length."""
     given = [
         np.asarray(s.points, float)[:, :2] for s in rock.surfaces if s.interpolated and s.points is not None
     ]
@@ -248,7 +251,8 @@ def _density_points(rock: Rock) -> np.ndarray:
 
 
 def settle_methods(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
-    """Gives surfaces with the method "auto" the one that it chooses. Progress goes from `start` to `end`."""
+    """Replaces the method "auto" of surfaces by the one that it chooses. Progress goes from `start` to
+    `end`."""
     waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
@@ -266,10 +270,10 @@ def interpolate_rock(
     keep: Keep = as_it_is,
     flat: Collection[int] = (),
 ) -> None:
-    """Gives heights to each surface of a rock mass that is interpolated; for a stage only to those that it
-    takes. Progress goes from `start` to `end`. keep: where surfaces are then; unless this is in memory,
-    nothing else is known of them. flat: the numbers of those that only lie at 0, for others to give heights
-    to; these look for points on wrong sides, too."""
+    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. Progress goes from
+    `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
+    attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
+    these, and looks for points on wrong sides, too."""
     if keep is not as_it_is and entry.region is not None:
         entry.region = tuple(map(keep, entry.region))
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
@@ -285,6 +289,6 @@ def interpolate_rock(
         if keep is not as_it_is:
             entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
             entry.interpolations[number] = None
-            del entry.told[number]
+            del entry.attributes[number]
     if not flat:
         entry.warnings += points_too_low(work, entry, sorted(waiting), threads)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a surface does to rock that is older, and to what is younger: one registry (docs/dev/extending.md)."""
+"""The rules of surfaces: their effect on older and on younger rock: one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lies on a cutter: polygons that know their block and its property."""
+"""Sections: polygons of blocks on a cutter, each with its block and property."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Section:
 
     @property
     def area(self) -> float:
-        """Of all polygons, model units squared."""
+        """The area of all polygons, model units squared."""
         return float(self.polygon_areas.sum())
 
     def area_by_block(self) -> np.ndarray:
@@ -81,8 +81,8 @@ class Section:
         return arrays | {name: np.array(getattr(self, name)) for name in lists}
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
-        """Writes the polygons, with block and property, to a file whose ending says the format, or a drawing
-        of them to a .svg, .dxf or .png, heights exaggerated. The file appears whole or not at all. Raises
+        """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
+        of them to a .svg, .dxf or .png with exaggerated heights. The file appears whole or not at all. Raises
         UsageError, OutputFailed."""
         writer = section_writer(path, exaggeration)
         with Outputs() as outputs, outputs.file(path) as file:

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 MOST_EXAGGERATION = 1000.0
 _POINT = 0.0254 / 72  # meters
-_PLOT = (560.0, 360.0)  # the most that the section takes of the page, in points
+_PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
 _FAULT_WIDTH = 1.4
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
-_LEGEND = "Block"  # what the names in the legend are; views have those of properties
+_LEGEND = "Block"  # title of the legend; views have the names of properties
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 
@@ -117,7 +117,7 @@ def flat_of(section: Section, points: np.ndarray) -> np.ndarray:
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
-    """Faults as thick lines, and the name of each at its lower end, or as low as other names allow."""
+    """Draws faults as thick lines, with their names at the lower end, or as low as other names allow."""
     right = axes.box[0] + axes.box[2]
     taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
     for trace in section.faults:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where faults are in a section: the segments in which its planes meet their faces."""
+"""The traces of faults in a section: the segments in which its planes meet the faces of faults."""
 
 from __future__ import annotations
 
@@ -76,6 +76,6 @@ def _on_panel(model: Model, start: np.ndarray, end: np.ndarray) -> tuple[np.ndar
     kept = (share.min(axis=1) < 1.0) & (share.max(axis=1) > 0.0)
     ends, share, surface = ends[kept], share[kept], surface[kept]
     length = share[:, 1:] - share[:, :1]
-    part = np.tile([0.0, 1.0], (len(ends), 1))  # of each segment, what is on the panel
+    part = np.tile([0.0, 1.0], (len(ends), 1))  # for each segment, the part on the panel
     np.divide(np.clip(share, 0.0, 1.0) - share[:, :1], length, out=part, where=length != 0)
     return ends[:, :1] + part[:, :, None] * (ends[:, 1:] - ends[:, :1]), surface

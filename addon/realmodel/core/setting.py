@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a setting is. From one declaration follow the key of the project file and its check, the property and
-the row of the panel, and the row of the table in docs/reference/project_file.md."""
+"""Declarations of settings. From one declaration follow the key of the project file and its check, the
+property and the row of the panel, and the row of the table in docs/reference/project_file.md."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the stack builder refuses, said in the user's names: rock mass, surface, file, triangles, place."""
+"""Errors of the stack builder in the user's terms: rock mass, surface, file, triangles, position."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
 
 
 def _beyond_its_points(entry, lowest: float) -> str:
-    """What to say where the lowest place is none that points show, but where a method took a surface."""
+    """The advice where the lowest position is not at a point, but extrapolated by a method."""
     for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
         if shape is None or shape[0][:, 2].min() > lowest or not surface.interpolated:
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Heights for the surfaces of a rock mass: in which order, with which others, and kept in order."""
+"""The heights of the surfaces of a rock mass: the order of interpolation, and minimum thicknesses."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
     return [number for number in order if rock.surfaces[number].interpolated]
 
 
-def told_of(
+def _vertex_attributes(
     work: Work, points: np.ndarray, result: Interpolation, region: Triangulation, threads: int
 ) -> dict:
-    """What interpolating points on a region's mesh tells of the vertices that `where_known` keeps, (V,) each:
-    `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest of the
-    points, NaN where there are none."""
+    """Attributes (V,) of the vertices that `where_known` keeps, for points interpolated on a region's mesh:
+    `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
+    NaN where there are no points."""
     nodes, triangles = region
     kept = np.isfinite(result.z)
     if not kept.all():
@@ -85,18 +85,18 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
         give = heights if entry.draws is None else entry.draws[number].heights
         result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
         shape = where_known(nodes, triangles, result.z)
-        told_of_vertices = told_of(work, surface.points, result, entry.region, threads)
+        attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
             warnings += _older_points_above(work, rock, number, shape, threads)
-            shape, told = _above_older(work, entry, number, shape, threads)
-            warnings += told
+            shape, raised = _above_older(work, entry, number, shape, threads)
+            warnings += raised
     except InputRefused as error:
         file, line = surface.shape_source()
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
     entry.surfaces[number] = shape
     entry.interpolations[number] = result
-    entry.told[number] = told_of_vertices
+    entry.attributes[number] = attributes
     entry.warnings += warnings
 
 
@@ -112,7 +112,7 @@ def _older_points_above(
 
 
 def settle_method(work: Work, entry, number: int, threads: int) -> None:
-    """Gives a surface of a RockInput with the method "auto" the one that it would choose."""
+    """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     method, settings = surface.method_options()
     if method != "auto":
@@ -146,7 +146,7 @@ def no_triangle_known() -> InputRefused:
 
 
 def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
-    """The shape, raised to the minimum thickness above the older surface, and what to tell: where it was
+    """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
     surface = rock.surfaces[number]
@@ -162,10 +162,10 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
         return shape, []
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())
-    told = raised_above(
+    warning = raised_above(
         rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
     )
-    return (np.column_stack([vertices[:, :2], raised]), triangles), [told]
+    return (np.column_stack([vertices[:, :2], raised]), triangles), [warning]
 
 
 def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
@@ -179,8 +179,8 @@ def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.nd
 def raised_above(
     rock: Rock, number: int, count: int, nodes: int, thickness: float, by, place
 ) -> BuildWarning:
-    """What to tell of a surface that was raised at some of its nodes to keep its thickness above the one
-    before: by how much at most, and where."""
+    """The warning about a surface that was raised at some of its nodes to its minimum thickness above the
+    older one. count: of these nodes; by, place: the largest rise, and where it is."""
     text = (
         f"raised at {count} of {nodes} nodes to stay {thickness:g} above "
         f"'{rock.surfaces[number - 1].name}', by up to {by:.4g} at {place_text(place)}"

@@ -21,16 +21,17 @@ from .work import Work
 
 @dataclass(frozen=True)
 class ReadSurface:
-    """surface: with arrays in the place of files. shape: its triangulation where it is a ready mesh, faces:
-    the face of its file that each triangle is of, where these differ. told: sentences."""
+    """surface: with arrays in the place of files. shape: the triangulation of a ready mesh, else None. faces:
+    (T,) the face of its file that each triangle belongs to, None where these are equal. warnings:
+    sentences."""
 
     surface: Surface
     shape: Triangulation | None
     faces: np.ndarray | None
-    told: list[str]
+    warnings: list[str]
 
     def with_arrays(self, change: Keep) -> ReadSurface:
-        """The same with other arrays in the place of these."""
+        """The same, with each array replaced by `change` of it."""
         surface, shape = self.surface, self.shape
         faces = None if self.faces is None else change(self.faces)
         if shape is None:
@@ -42,8 +43,9 @@ class ReadSurface:
 
 @dataclass(frozen=True)
 class SurfaceInput:
-    """A surface as it is given, with all that reading it takes: another process may do that. rock: the name
-    of its rock mass; boreholes: the last file of boreholes, where there is one; met: its points in them."""
+    """A surface before it is read, with all that reading it needs: another process may read it. rock: the
+    name of its rock mass; boreholes: the last file of boreholes, if any; met: the points where they meet
+    it."""
 
     rock: str
     surface: Surface
@@ -65,30 +67,30 @@ class SurfaceInput:
             file = self.boreholes
         try:
             if surface.interpolated:
-                points, told = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, told)
-            vertices, triangles, faces, told = self._mesh(step, arrays)
+                points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
+                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, warnings)
+            vertices, triangles, faces, warnings = self._mesh(step, arrays)
         except InputRefused as error:
             raise error.within(surface_item(Rock(self.rock, []), surface)) from error
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
-        return ReadSurface(surface, (vertices, triangles), faces, told)
+        return ReadSurface(surface, (vertices, triangles), faces, warnings)
 
     def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
-        points, told = surface.points, []
+        points, warnings = surface.points, []
         if surface.point_file is not None:
-            points, told = read_point_file(surface.point_file, self.units, step, gather)
+            points, warnings = read_point_file(surface.point_file, self.units, step, gather)
         if self.met is not None:
             own = np.empty((0, 3)) if points is None else checked_points(points)
             points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
         if points is None and surface.needs_points:
             raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
         if points is None or (not len(points) and not surface.needs_points):
-            return np.empty((0, 3)), told
+            return np.empty((0, 3)), warnings
         checked = checked_points(points)
-        # what is checked may be another array with the same values
+        # checked_points may return another array with the same values
         is_kept = surface.point_file is not None or self.met is not None
-        return points if is_kept else checked, told
+        return points if is_kept else checked, warnings
 
     def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface
@@ -96,19 +98,19 @@ class SurfaceInput:
             return *checked_triangulation(surface.vertices, surface.triangles), None, []
         if arrays is None:
             mesh = read_mesh(surface.input_file, step)
-            vertices, told = mesh.in_model(surface.mesh_file, self.units)
+            vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
         else:
             mesh = read_mesh(surface.input_file, step, arrays.rows)
-            vertices, told = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
-        return vertices, mesh.triangles, mesh.face_of_triangle, told
+            vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
+        return vertices, mesh.triangles, mesh.face_of_triangle, warnings
 
 
-# Reads surfaces in any order: the number of each, and what it is then. Tells the work of its progress.
+# Reads surfaces in any order: pairs of number and surface. It reports its progress to the Work.
 Reader = Callable[[Work, list[SurfaceInput]], Iterable[tuple[int, ReadSurface]]]
 
 
 def read_each(work: Work, surfaces: list[SurfaceInput]) -> Iterator[tuple[int, ReadSurface]]:
-    """One after another."""
+    """Reads surfaces one after another."""
     for number, surface in enumerate(surfaces):
         yield number, surface.read(lambda share, number=number: work.step((number + share) / len(surfaces)))
         work.step((number + 1) / len(surfaces))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What there is to judge a surface of a built model by."""
+"""The data by which a surface of a built model is judged."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def surface_quality(
 
 
 def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[CrossValidation | None, str]:
-    """By the method that the heights were made with, or why there is none."""
+    """Cross-validation by the method of the heights, or the reason why there is none."""
     result = model.interpolations[number]
     if result is None:
         return None, "its shape is a mesh: nothing was interpolated"
@@ -84,7 +84,7 @@ def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[Cro
 
 
 def _deviation(vertices, triangles, variance) -> tuple[float | None, float | None]:
-    """Mean over the area, and maximum, of the root of the variances (V,)."""
+    """The mean over the area, and the maximum, of the square root of the variances (V,)."""
     deviation = np.sqrt(np.maximum(variance, 0.0))
     corners = deviation[triangles]
     known = np.isfinite(corners).all(axis=1)

@@ -25,7 +25,7 @@ from .surface_input import Reader, read_each
 from .work import Cancel, Progress, Work, native_module, run
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
-_CHOSEN = 0.3  # of what is left
+_CHOSEN = 0.3  # of the rest of the progress
 
 
 @dataclass(eq=False)
@@ -45,7 +45,7 @@ class SurfaceSet:
 
     @property
     def interpolations(self) -> list[Interpolation | None]:
-        """What interpolating each surface gave; None for ready meshes."""
+        """The interpolation of each surface; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -86,10 +86,10 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
 
 
 def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:
-    """What is known of the vertices (V, 3) of one surface, by its global index: `height`, and `variance` and
+    """The attributes (V,) of the vertices of one surface, by its global index: `height`; `variance` and
     `distance`, NaN where there are none."""
-    told = [entry.told.get(k, {}) for entry in inputs for k in range(len(entry.surfaces))]
-    known = told[number] if number < len(told) else {}  # nothing of faults and bodies
+    interfaces = [entry.attributes.get(k, {}) for entry in inputs for k in range(len(entry.surfaces))]
+    known = interfaces[number] if number < len(interfaces) else {}  # faults and bodies have none
     unknown = np.full(len(vertices), np.nan)
     return {
         "height": vertices[:, 2].copy(),
@@ -132,8 +132,8 @@ def _build(
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project, reader)
-        faults, bodies, told = read_structures(work, project, threads)
-        inputs[0].warnings += told
+        faults, bodies, warnings = read_structures(work, project, threads)
+        inputs[0].warnings += warnings
     count = len(inputs)
     for number, entry in enumerate(inputs):
         begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""On which line of a TOML text each key stands.
+"""The lines of the keys of a TOML text.
 
-tomllib reads values but forgets where they were. This walks the same text, already known to be valid,
-and notes the line of every table, key and array element.
+tomllib reads values without their lines. This walks the same text, already known to be valid, and records the
+line of every table, key and array element.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""TOML tables that are read strictly: every key is known, every value of its kind, or a line is named."""
+"""Strict reading of TOML tables: unknown keys and wrong values are refused with their line."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _syntax_refused(file: Path, text: str, error: tomllib.TOMLDecodeError) -> In
 
 
 class Table:
-    """One table of a document, read key by key. `item` says in messages what it is."""
+    """One table of a document, read key by key. `item`: its name in messages."""
 
     def __init__(self, document: TomlDocument, content: dict, path: tuple, item: str):
         self.document = document

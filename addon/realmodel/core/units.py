@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units of length, and what a file in one is multiplied by in a model of another."""
+"""Units of length, and the factors between them."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 
-MODEL_UNIT = "m"  # of a project that does not say
+MODEL_UNIT = "m"  # of a project without units
 # Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
 METERS = {
     "mm": Fraction(1, 1000),
@@ -32,7 +32,7 @@ UNIT_NAMES = {
 
 
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
-    """What lengths in a unit are multiplied by; 1 where none is given."""
+    """The factor from a unit to the model's unit; 1 where none is given."""
     return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
 
 

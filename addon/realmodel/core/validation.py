@@ -22,7 +22,7 @@ _DTYPES = {
     "face_surface": np.int32,
     "cell_block": np.int32,
 }
-# By the name of a test: its number in docs/dev/geometry.md, and what it says of the model.
+# By the name of a test: its number in docs/dev/geometry.md, and its statement about the model.
 _SAYS = {
     "arrays": (0, "array lengths and indices are consistent"),
     "closed": (1, "every cell is closed: its faces use each edge once in each direction"),
@@ -48,8 +48,8 @@ PLACES_OF_REPORT = 4_000  # in every report.json
 
 @dataclass(frozen=True)
 class Offender:
-    """One thing that is wrong: a sentence, the numbers of the cell, face, vertex and block meant (None: no
-    such), and the place (x, y, z) in model units or None."""
+    """One failure: a sentence, the numbers of the cell, face, vertex and block (None: not applicable), and
+    the position (x, y, z) in model units or None."""
 
     text: str
     cell: int | None = None
@@ -122,7 +122,7 @@ class ValidationReport:
         return sum(test.seconds for test in self.tests)
 
     def _cost(self) -> list[str]:
-        """Lines: what it took to look at all of the model, and at places in it."""
+        """Lines about the time that validation took."""
         sampled = sum(test.seconds for test in self.tests if test.number == 5)
         whole = self.seconds - sampled
         line = f"every cell, face and vertex in {whole:.2f} s"
@@ -253,7 +253,7 @@ def _wrong_arrays(model) -> list[str]:
 
 
 def _native_model(model) -> dict:
-    """What the native tests take."""
+    """The model as the native tests take it."""
     return {
         **{name: getattr(model, name) for name in _DTYPES},
         "block_volume": np.array([block.volume for block in model.blocks], np.float64),
@@ -291,7 +291,7 @@ def _block_of_surface(model) -> np.ndarray:
 
 
 def _test(entry: dict, model) -> ValidationTest:
-    """A test as the native part tells it; -1 stands for no number there."""
+    """A test from the dictionary of the native module, in which -1 means no number."""
     number, says = _SAYS[entry["name"]]
     if model.structures is not None:
         says = _SAYS_OF_STRUCTURES.get(entry["name"], says)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Semivariograms: how heights differ with distance."""
+"""Semivariograms: the difference of heights as a function of distance."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ VARIOGRAMS = {  # label and tooltip in the panel
 }
 NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 
-# A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.
+# A fit is not significant where neighbouring points differ as much as any, or its range exceeds the data.
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
 _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill
@@ -76,7 +76,7 @@ class Variogram:
 
     @classmethod
     def from_settings(cls, settings: dict) -> Variogram:
-        """Of what `settings` gives."""
+        """The variogram of the dictionary that `settings` returns."""
         if "structures" not in settings:
             return cls(**settings)
         structures = tuple(Structure(**part) for part in settings["structures"])
@@ -86,7 +86,7 @@ class Variogram:
 
     @classmethod
     def from_fit(cls, fit: dict, finds_anisotropy: bool) -> Variogram:
-        """Of what the native fit returns; with the anisotropy that it found, if it was to find one."""
+        """The variogram that the native fit returns; with the fitted anisotropy, if it was to be fitted."""
         found = None
         if finds_anisotropy and fit["anisotropy_ratio"] != 1.0:
             found = {"ratio": fit["anisotropy_ratio"], "azimuth": fit["anisotropy_azimuth"]}
@@ -113,13 +113,13 @@ class Variogram:
         return np.where(distance > 0, gamma, 0.0)
 
     def settings(self) -> dict:
-        """As a project file writes it."""
+        """The settings as in a project file."""
         if self.structures or self.anisotropy:
             return {"nugget": self.nugget, "structures": [part.settings() for part in self.parts()]}
         return {"model": self.model, "range": self.range, "sill": self.sill, "nugget": self.nugget}
 
     def parts(self) -> tuple[Structure, ...]:
-        """Those of a sum, or the one there is."""
+        """The structures of a sum, or the only one."""
         own = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
         return self.structures or (own,)
 
@@ -149,8 +149,8 @@ class Variogram:
 
 
 def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
-    """Warnings about a fitted variogram that means little, as sentences. has_trend: heights far from points
-    follow a trend."""
+    """Warnings about a fitted variogram of little significance, as sentences. has_trend: heights far from
+    points follow a trend."""
     warnings = []
     pairs = int(variogram.pairs.sum())
     if pairs < _FEW_PAIRS:

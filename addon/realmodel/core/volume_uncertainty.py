@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the volumes of blocks may be off because heights were interpolated."""
+"""The uncertainty of the volumes of blocks that follows from interpolated heights."""
 
 from __future__ import annotations
 
@@ -63,14 +63,14 @@ def _middles(model) -> np.ndarray:
 
 
 def _plan(model) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the corners of all faces, from the first vertex."""
+    """x and y of the corners of all faces, relative to the first vertex."""
     plan = model.vertices[:, :2] - model.vertices[:1, :2]
     x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
     return x, y
 
 
 def _next(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Of each corner of polygons, what the next corner has."""
+    """For each corner of polygons the value at the next corner."""
     found = np.empty_like(values)
     found[:-1] = values[1:]
     found[last] = values[first]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long work in a thread of its own, while the caller's thread shows progress and listens.
+"""Long work in a separate thread, while the caller's thread reports progress and checks for cancellation.
 
 Only the caller's thread calls progress() and cancel(): in Blender these touch the window, and Ctrl-C
 reaches the main thread alone.
@@ -25,12 +25,12 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
-_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or what Blender calls an extension
+_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or the name of the extension in Blender
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
 class Work:
-    """What a working thread tells of itself, and how it learns that it should stop."""
+    """The progress of a working thread, and the request to cancel it."""
 
     def __init__(self):
         self._lock = threading.Lock()
@@ -39,7 +39,7 @@ class Work:
         self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
         self._part = 0.0, 1.0
         self._share = 0.0
-        self._told = 0.0
+        self._reported = 0.0
         self._text = ""
         self._cancelled = False
 
@@ -47,7 +47,7 @@ class Work:
 
     @contextmanager
     def phase(self, start: float, end: float, text: str):
-        """Work that takes the progress from `start` to `end`, both between 0 and 1."""
+        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
@@ -56,8 +56,8 @@ class Work:
 
     @contextmanager
     def part(self, start: float, end: float):
-        """Phases in here take the progress from `start` to `end` only: what is a job elsewhere, as a part of
-        this one."""
+        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job as a
+        part of another."""
         before = self._part
         low, high = before
         with self._lock:
@@ -74,7 +74,7 @@ class Work:
         return self._start, self._end
 
     def step(self, share: float) -> None:
-        """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
+        """Sets the progress of the present phase, 0 to 1. Raises Cancelled if the caller has cancelled."""
         self.check()
         with self._lock:
             self._share = min(max(share, self._share), 1.0)
@@ -105,14 +105,14 @@ class Work:
     def each(
         self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
     ) -> list[Result]:
-        """[task(work, item, threads) for item in items] as the present phase, several items at once where
-        `threads`, 0 for all, allows that. Each has a Work of its own, whose phases go from 0 to 1, and a
-        share of the threads. Raises what the first item raised that raised anything."""
+        """[task(work, item, threads) for item in items] as the present phase, several items in parallel where
+        `threads` (0: all) allows it. Each item has its own Work, whose phases go from 0 to 1, and a share of
+        the threads. Raises the error of the first item that failed."""
         items = list(items)
         all_threads = threads or os.cpu_count() or 1
         at_once = min(len(items), all_threads)
         if at_once > 1:
-            # twice as many as there are: where one item has work for one thread only, another goes on
+            # twice as many threads as there are: while one item keeps one thread busy, another uses the rest
             threads = -(-2 * all_threads // at_once)
         works = [Work() for _ in items]
 
@@ -152,12 +152,12 @@ class Work:
             text = self._text
             if self._works:
                 states = [work.state() for work in self._works]
-                share = max(share, sum(told for told, _ in states) / len(states))
-                text = next((text for told, text in states if text and told < 1.0), text)
+                share = max(share, sum(each for each, _ in states) / len(states))
+                text = next((text for each, text in states if text and each < 1.0), text)
             low, high = self._part
             share = self._start + (self._end - self._start) * share
-            self._told = max(self._told, low + (high - low) * share)
-            return self._told, text
+            self._reported = max(self._reported, low + (high - low) * share)
+            return self._reported, text
 
     def cancel(self) -> None:
         with self._lock:
@@ -185,11 +185,11 @@ class Job:
 
     def _run(self, task, leaving: list[threading.Thread]) -> None:
         try:
-            for thread in leaving:  # so that two never hold memory at once
+            for thread in leaving:  # so that only one holds memory at a time
                 thread.join()
             _current.work = self._work
             self._result = task(self._work)
-        except BaseException as error:  # handed to the thread that asks for the result, which raises it
+        except BaseException as error:  # raised by result() in the other thread
             self._error = error
         finally:
             self._ended.set()
@@ -199,8 +199,8 @@ class Job:
         return self._work.state()
 
     def cancel(self) -> None:
-        """Tells the task to stop. It is waited for, but not for long: freeing what a large model has taken so
-        far may need seconds, and goes on in its own thread, which later jobs wait for."""
+        """Asks the task to stop. result() waits for it only briefly: freeing the memory of a large model may
+        take seconds. The thread goes on alone, and later jobs wait for it."""
         if self._leaves_at is None:
             self._leaves_at = time.monotonic() + _SECONDS_TO_LEAVE
             _leaving.append(self._thread)
@@ -225,7 +225,7 @@ class Job:
         return self.done
 
     def result(self):
-        """What the task has returned, once it has; raises what it has raised, and Cancelled."""
+        """The result of the task, once it is done; raises its error, or Cancelled."""
         self.wait()
         if self._leaves_at is not None:
             raise Cancelled("cancelled")
@@ -236,7 +236,7 @@ class Job:
 
 
 def start(task: Callable[[Work], Result]) -> Job:
-    """Begins task(work) in a thread of its own. What it calls with `run` becomes a part of it."""
+    """Starts task(work) in a new thread. Calls of `run` within the task become parts of it."""
     return Job(task)
 
 
@@ -275,7 +275,7 @@ def run(
 
 
 _current = threading.local()  # work: of the job that this thread does
-_leaving: list[threading.Thread] = []  # told to stop, but perhaps not gone yet
+_leaving: list[threading.Thread] = []  # asked to stop, but perhaps still running
 
 
 @contextmanager

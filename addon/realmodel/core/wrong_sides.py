@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points of a surface that lie where the rules do not let the surface be: usually errors in the data."""
+"""Points of a surface on the wrong side of another surface by the rules: usually errors in the data."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ class WrongPoints:
         )
 
     def joined(self, other: WrongPoints) -> WrongPoints:
-        """Both, of parts of a surface."""
+        """The wrong points of two parts of a surface."""
         worst = min((self, other), key=lambda each: (-each.by, each.worst))
         items, others = (
             tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")
@@ -166,8 +166,8 @@ class WrongPoints:
 
 
 def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
-    """What to tell of the points of a surface so far (N,) beyond other surfaces; others: their numbers, one
-    or (N,)."""
+    """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
+    others: the numbers of these surfaces, one or (N,)."""
     points = rock.surfaces[number].points
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
     return [] if found is None else [found.warning(rock, number, len(points), side)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that the panel does, as operators: `bpy.ops.realmodel.*`, for scripts and F3 as well."""
+"""The operators of the panel, `bpy.ops.realmodel.*`, also for scripts and F3."""
 
 from ..registration import register_modules, unregister_modules
 from . import (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Long work of operators: at once for scripts; with progress and Esc where there is a window."""
+"""Long work of operators: blocking in scripts; with progress and Esc in a window."""
 
 import bpy
 
@@ -8,7 +8,7 @@ from ..core import Cancelled, RealModelError
 from .reporting import Reporting
 
 _STEP = 0.05  # seconds between two looks at the work
-_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
+_SLICE = 0.05  # seconds of making meshes, before the window is updated again
 
 running = []  # the jobs that are shown with progress
 
@@ -69,7 +69,7 @@ class InBackground(Reporting):
         return {"FINISHED"}
 
     def cancel(self, context):
-        """Blender ends the operator: another file is opened, or the window is closed."""
+        """Called when Blender ends the operator: another file is opened, or the window is closed."""
         self._job.cancel()
         self._job.leave()
         self._leave(context)

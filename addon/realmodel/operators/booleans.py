@@ -26,8 +26,8 @@ def _selected(context):
 
 
 def _two_meshes(context):
-    """Also after the operation, when the other object is hidden: Blender asks before it takes the operation
-    back to do it anew with what was changed in its panel."""
+    """Valid also after the operation, when the other object is hidden: Blender polls before it repeats the
+    operation with settings of the redo panel."""
     done = context.window_manager.operators
     if len(done) and done[-1].bl_idname == REALMODEL_OT_boolean.__name__:
         return None
@@ -51,13 +51,13 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
 
     operation: EnumProperty(
         name="Operation",
-        description="What is made of the two objects",
+        description="Operation on the two objects",
         items=OPERATIONS,
         default="DIFFERENCE",
     )
     keep_operands: BoolProperty(
         name="Keep Operands",
-        description="Leave both objects as they are and make a new one of the result. Otherwise the active "
+        description="Keep both objects as they are and add a new one with the result. Otherwise the active "
         "object gets the result, its modifiers are applied, and the other object is hidden",
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boreholes give points to all surfaces of a rock mass at once."""
+"""Import of boreholes: points for all surfaces of a rock mass at once."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
@@ -40,16 +40,16 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     downward_dip: EnumProperty(
         name="Downward Dip",
-        description="Which dips of holes go down",
+        description="Sign of the dips of holes that go down",
         items=[
-            ("TOLD", "As in the table", "All dips of a table have one sign, and go down"),
+            ("TABLE", "As in the table", "All dips of a table have one sign, and go down"),
             ("NEGATIVE", "Negative", "-90 is straight down"),
             ("POSITIVE", "Positive", "90 is straight down"),
         ],
     )
     columns: StringProperty(
         name="Columns",
-        description="Columns that are called otherwise, in any of the tables, such as hole = BHID; "
+        description="Columns with other names, in any of the tables, such as hole = BHID; "
         "depth = FROM. There are " + ", ".join(COLUMNS),
     )
     units: EnumProperty(
@@ -71,7 +71,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             reading_text.named_columns(self.columns),
             units=None if self.units == "NONE" else self.units,
             survey=_beside(picks, self.survey),
-            downward_dip=None if self.downward_dip == "TOLD" else self.downward_dip.lower(),
+            downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
         )
         for file in given.files:
             require_file(file)
@@ -81,10 +81,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
-        told = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
+        warnings = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
         borehole_picks.keep(rock, found.holes)
         arrived(context, rock, list(found.points.values()))
-        for text in [*found.warnings, *told]:
+        for text in [*found.warnings, *warnings]:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, f"Points for {len(found.points)} surfaces: {', '.join(found.points)}")
 

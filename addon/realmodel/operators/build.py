@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building: at once for scripts; with progress and Esc from the panel."""
+"""The build operator: blocking in scripts; with progress and Esc from the panel."""
 
 import bpy
 
@@ -15,7 +15,7 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     bl_label = "Build"
     needs = (not_building,)
 
-    _scene = ""  # whose model is built, and whether it is its first one
+    _scene = ""  # the name of the scene that is built
     _is_first = False
     _spaces = ()  # pointers of the viewports that are turned to a first model
 
@@ -83,12 +83,12 @@ class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
 
 
 def a_message(context):
-    told = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
-    return None if told else "there is no message"
+    message = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
+    return None if message else "there is no message"
 
 
 class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
-    """Take the message out of the panel; the report of the model keeps its warnings"""
+    """Remove the message from the panel; the report of the model keeps its warnings"""
 
     bl_idname = "realmodel.dismiss"
     bl_label = "Dismiss Message"

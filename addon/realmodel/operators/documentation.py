@@ -37,7 +37,7 @@ def _help_menu(self, _context):
 
 
 def _manual_map():
-    """For F1 and "Online Manual" over a button of the tab."""
+    """Links for F1 and "Online Manual" over a button of the tab."""
     page = guide()
     folder = "" if page is None else page.resolve().parent.as_uri() + "/"
     tour = "tour.html" if folder and page.suffix == ".html" else "tour.md"

@@ -22,7 +22,11 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
     needs = (not_building, a_model)
 
     realizations: IntProperty(
-        name="Realizations", description="How often the model is built", default=40, min=2, max=MOST
+        name="Realizations",
+        description="Number of times that the model is built",
+        default=40,
+        min=2,
+        max=MOST,
     )
     seed: IntProperty(name="Seed", description="Of the random numbers", min=0)
     along: EnumProperty(

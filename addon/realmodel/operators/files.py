@@ -153,7 +153,7 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 
     contour_interval: FloatProperty(
         name="Contour Interval",
-        description="Of maps (GeoPackage, GeoJSON), in model units; 0: automatic",
+        description="Contour interval of maps (GeoPackage, GeoJSON), in model units; 0: automatic",
         min=0.0,
         default=0.0,
     )
@@ -199,7 +199,7 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(_MESHES)
     edge_length: FloatProperty(
         name="Edge Length",
-        description="In plan, in model units; what is smaller is lost. 0: a fiftieth of the model",
+        description="Length in plan, in model units; smaller details are lost. 0: a fiftieth of the model",
         min=0.0,
     )
     minimum_thickness: FloatProperty(
@@ -217,7 +217,7 @@ class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     )
     elements: EnumProperty(
         name="Elements",
-        description="What the mesh consists of",
+        description="Elements of the mesh",
         items=(
             ("PRISMS", "Prisms", "Prisms, with pyramids and tetrahedra where layers end"),
             ("TETRAHEDRA", "Tetrahedra", "Tetrahedra alone"),
@@ -276,7 +276,7 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
-    """Write what was built: a full report, or the table of blocks"""
+    """Write a report of the model, or the table of blocks"""
 
     bl_idname = "realmodel.report"
     bl_label = "Write Report"

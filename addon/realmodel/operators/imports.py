@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces from files, of which tables are looked at first, and from objects."""
+"""Import of surfaces from files, with a preview of tables, and from objects."""
 
 import contextlib
 import os
@@ -91,7 +91,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     )
     split: BoolProperty(
         name="One Surface for Each Value",
-        description="Rows of a table that have different values in a column are different surfaces",
+        description="Make one surface for each value in a column of the table",
         options={"SKIP_SAVE"},
     )
     split_column: StringProperty(
@@ -119,7 +119,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
             invoke(bpy.ops.realmodel.surface_add, self, **chosen)
             return
         scene = context.scene
-        given, told = self._given(context)
+        given, warnings = self._given(context)
         rock = settings.active_rock(scene) or add_rock(scene)
         read = {}
         with settings.filling():
@@ -136,7 +136,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1
         arrived(context, rock, [s.places for s in given if s.item is None and s.places is not None], read)
-        for text in told:
+        for text in warnings:
             self.report({"WARNING"}, text)
 
     def invoke(self, context, event):
@@ -187,12 +187,14 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def _looked_at(self):
         for path in self._paths():
             if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
-                with contextlib.suppress(InputRefused):  # what is no table of text says so when it is read
+                with contextlib.suppress(
+                    InputRefused
+                ):  # files that are no tables are refused when they are read
                     if not is_mesh_file(path):
                         yield preview_table(path)
 
     def _given(self, context):
-        """The surfaces to add, the lowest first, and what to tell about them. Raises InputRefused."""
+        """The surfaces to add, the lowest first, and warnings about them. Raises InputRefused."""
         if self.use_object:
             item = context.active_object
             if item is None or item.type != "MESH":
@@ -202,17 +204,17 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         paths = [] if self.empty else self._paths()
         if not paths:
             return [_Given(self.name.strip() or "surface")], []
-        found, told = [], []
+        found, warnings = [], []
         for path in paths:
             for surface in self._of_file(path):
                 texts = _read(surface, context.scene.realmodel.units)
-                told += [text for text in texts if text not in told]
+                warnings += [text for text in texts if text not in warnings]
                 found.append(surface)
         if len(found) == 1:
             found[0].name = self.name.strip() or found[0].name
         elif all(surface.places is not None for surface in found):
             found.sort(key=lambda surface: float(surface.places[:, 2].mean()))
-        return found, told
+        return found, warnings
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
@@ -243,21 +245,21 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
 
 
 def _read(surface, unit):
-    """Reads the points or the mesh of a surface, and returns what there is to tell. Raises InputRefused for a
-    file that cannot be read as what it is, however it is looked at: what holds the heights of shapes may be
-    chosen once the surface is there."""
+    """Reads the points or the mesh of a surface, and returns warnings. Raises InputRefused where no import
+    options could make the file readable. Missing heights of shapes are no error: their source can be chosen
+    once the surface is there."""
     if surface.source == "MESH_FILE":
         mesh = read_mesh(surface.path)
-        surface.places, told = mesh.in_model(MeshFile(surface.path), unit)
-        return told
+        surface.places, warnings = mesh.in_model(MeshFile(surface.path), unit)
+        return warnings
     given = PointFile(surface.path, **surface.reading)
     try:
         given.check()
     except ReadingRefused as error:
         raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
-        surface.places, told = read_point_file(given, unit)
-        return told
+        surface.places, warnings = read_point_file(given, unit)
+        return warnings
     return []
 
 
@@ -277,10 +279,8 @@ def _draw_preview(box, preview):
 
 
 def arrived(context, rock, places, read=None):
-    """New data of a rock mass: the origin where there is none, an edge length, and all is shown and framed.
-
-    places: arrays (N, 3) in model coordinates. read: as for data_objects.update.
-    """
+    """Updates the scene for new data of a rock mass: the origin if there is none, an edge length, the display
+    and the view. places: arrays (N, 3) in model coordinates. read: as for data_objects.update."""
     scene = context.scene
     if places:
         points = np.concatenate(places)

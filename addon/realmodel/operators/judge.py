@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How good a surface is: its charts, and its worst points."""
+"""The quality of a surface: its charts, and its worst points."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty
@@ -24,8 +24,8 @@ def _checking(_context):
 
 
 class REALMODEL_OT_check_quality(Reporting, bpy.types.Operator):
-    """Find out how well the active surface fits its points: estimate each point from the others, and measure
-    the triangles"""
+    """Check how well the active surface fits its points: estimate each point from the others, and measure the
+    triangles"""
 
     bl_idname = "realmodel.check_quality"
     bl_label = "Check Quality"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How rock looks in rendered pictures: textures, and weathering."""
+"""The looks of rock in renders: textures, and weathering."""
 
 import math
 
@@ -145,7 +145,7 @@ class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
 
     directory: StringProperty(
         name="Folder",
-        description="Where the library goes; empty: Blender's folder of the user",
+        description="Folder of the library; empty: Blender's folder of the user",
         subtype="DIR_PATH",
     )
 

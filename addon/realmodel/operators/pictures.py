@@ -26,7 +26,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
 
     view: EnumProperty(
         name="View",
-        description="Where the camera looks from",
+        description="View direction of the camera",
         items=(
             ("VIEWPORT", "Viewport", "As the viewport does"),
             ("MODEL", "Whole Model", "From the southeast, at the whole model"),
@@ -34,7 +34,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
     )
     sun_azimuth: FloatProperty(
         name="Sun Azimuth",
-        description="Where the light is from, clockwise from north (+Y)",
+        description="Direction of the sun, clockwise from north (+Y)",
         default=picture.SUN_AZIMUTH,
         min=0.0,
         max=2.0 * math.pi,
@@ -74,7 +74,7 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
     frames: IntProperty(name="Frames", description="Frames of one turn", default=120, min=2, soft_max=1000)
     elevation: FloatProperty(
         name="Elevation",
-        description="How far above the horizon the camera is, seen from the model",
+        description="Height of the camera above the horizon, seen from the model",
         default=CAMERA_ELEVATION,
         min=0.0,
         max=math.radians(85.0),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shapes the mesh of a region: where its triangles are smaller, what lines and points it contains."""
+"""The planar mesh of a region: refinement, constraints."""
 
 import bpy
 from bpy.props import IntProperty
@@ -20,7 +20,7 @@ from .reporting import (
 
 
 class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
-    """Have smaller triangles somewhere: along the outline, or at the active curve or mesh object"""
+    """Add smaller triangles: along the outline, or at the active curve or mesh object"""
 
     bl_idname = "realmodel.size_add"
     bl_label = "Add Smaller Triangles"
@@ -37,7 +37,7 @@ class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
-    """Have triangles there as large as elsewhere"""
+    """Remove the smaller triangles there"""
 
     bl_idname = "realmodel.size_remove"
     bl_label = "Remove Smaller Triangles"
@@ -51,7 +51,7 @@ class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
-    """Have the mesh contain the edges of the active curve or mesh object, such as a river or a fault trace"""
+    """Add the edges of the active curve or mesh object to the mesh, such as a river or a fault trace"""
 
     bl_idname = "realmodel.constraint_add"
     bl_label = "Add Constraint"
@@ -65,7 +65,7 @@ class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
-    """Take a constraint out of the mesh; its object stays in the scene"""
+    """Remove a constraint from the mesh; its object stays in the scene"""
 
     bl_idname = "realmodel.constraint_remove"
     bl_label = "Remove Constraint"

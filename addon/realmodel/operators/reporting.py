@@ -40,8 +40,9 @@ class Reporting:
 
 def an_own_scene(context):
     scene = context.scene
-    told = f"scene '{scene.name}' is linked from another file; make it local first"
-    return None if scene.library is None else told
+    if scene.library is None:
+        return None
+    return f"scene '{scene.name}' is linked from another file; make it local first"
 
 
 def a_rock(context):
@@ -130,8 +131,8 @@ def building(context):
 
 
 def not_building(context):
-    told = "RealModel is at work; wait, or cancel with Esc"
-    return told if context.window_manager.realmodel.running else None
+    running = context.window_manager.realmodel.running
+    return "RealModel is at work; wait, or cancel with Esc" if running else None
 
 
 def place_property(description):

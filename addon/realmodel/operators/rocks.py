@@ -87,7 +87,7 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
 
     shape: EnumProperty(
         name="Shape",
-        description="What is drawn around the points",
+        description="Shape of the outline around the points",
         items=(
             (
                 "RECTANGLE",
@@ -99,7 +99,7 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
     )
     margin: FloatProperty(
         name="Margin",
-        description="How far the region goes beyond the points, in percent of their extent",
+        description="Distance of the region from the points, in percent of their extent",
         subtype="PERCENTAGE",
         default=5.0,
         min=0.0,

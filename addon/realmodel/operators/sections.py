@@ -19,7 +19,7 @@ _FLAT = "Unroll the section beside the model instead of leaving it in its place"
 
 
 def _show(operator, context, made):
-    """Selects a new section alone, and says where it went."""
+    """Selects a new section alone, and reports its collection."""
     display.exaggeration_changed(context.scene)
     visible.select_alone(context, made)
     hidden = "" if operator.flat or cuts.is_on(context.scene) else "; blocks are in front of it"
@@ -27,12 +27,12 @@ def _show(operator, context, made):
 
 
 def _plane_of(operator, context):
-    """Point and normal that an operator was given, else those of the section plane."""
+    """The point and the normal given to an operator, else those of the section plane."""
     scene = context.scene
     given = any(operator.properties.is_property_set(key) for key in ("location", "normal"))
     if given:
         if not any(operator.normal):
-            raise UsageError("the normal is zero: give the direction that the plane is square to")
+            raise UsageError("the normal is zero: give the direction that is normal to the plane")
         return tuple(operator.location), tuple(operator.normal)
     if cuts.plane_of(scene) is None:
         raise InputRefused("there is no section plane", advice="add one first (Section Plane)")
@@ -44,7 +44,7 @@ def _plane_of(operator, context):
 _PLACE = place_property("A point of the plane, in the coordinates of the scene")
 _NORMAL = FloatVectorProperty(
     name="Normal",
-    description="The direction that the plane is square to",
+    description="Normal of the plane",
     subtype="XYZ",
     default=(0.0, -1.0, 0.0),
 )
@@ -103,7 +103,7 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     )
     exaggeration: FloatProperty(
         name="Vertical Exaggeration",
-        description="How many times as high as they are heights are drawn",
+        description="Factor by which heights are exaggerated",
         default=1.0,
         min=0.01,
         max=MOST_EXAGGERATION,
@@ -136,7 +136,7 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
 
     axis: EnumProperty(
         name="Axis",
-        description="The direction that the plane is square to",
+        description="Normal of the plane",
         items=(
             ("Y", "South", "Upright, seen from the south"),
             ("X", "East", "Upright, seen from the east"),
@@ -162,7 +162,7 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
-    """Take off the other side of the section plane"""
+    """Flip the section plane, so that the cut removes the other side"""
 
     bl_idname = "realmodel.section_flip"
     bl_label = "Flip Section Plane"
@@ -183,8 +183,7 @@ def _a_cut(context):
 
 
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
-    """Cut the model along the section plane where it is now: for scripts, which do not wait for the hand to
-    rest"""
+    """Cut the model along the section plane now: for scripts, which do not wait for the pause"""
 
     bl_idname = "realmodel.section_update"
     bl_label = "Cut at Section Plane"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a model begins: empty, from a project file, from meshes; and how it goes to a project file."""
+"""The start of a model: empty, from a project file, from meshes; and saving a project file."""
 
 import math
 from pathlib import Path
@@ -46,7 +46,8 @@ def _begin(current, name):
 
 
 def invoke(call, operator, **arguments):
-    """Has another operator go on: with its window where the first was invoked. Raises BuildFailed."""
+    """Continues with another operator: with its window where the first one was invoked. Raises
+    BuildFailed."""
     try:
         call("INVOKE_DEFAULT" if operator.options.is_invoke else "EXEC_DEFAULT", **arguments)
     except RuntimeError as error:
@@ -62,7 +63,7 @@ class Replacing(Reporting):
     needs = (not_building,)
 
     def ask(self, context):
-        """Carries on, or opens the question first."""
+        """Continues, or shows the question first."""
         group = context.scene.realmodel
         if not (settings.has_rows(context.scene) or len(group.results)):
             return self.execute(context)
@@ -204,7 +205,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
     add_base: BoolProperty(
         name="Base",
-        description="Lay a block beneath the oldest surface, down to a fifth of the height of all below it",
+        description="Add a block beneath the oldest surface, down to a fifth of the height of all below it",
         options={"SKIP_SAVE"},
     )
 

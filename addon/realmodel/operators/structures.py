@@ -81,8 +81,8 @@ def _kind_of_shape(wanted, vertices, triangles):
     return "fault" if len(open_edges(vertices, triangles)) else "body"
 
 
-def _told(kinds):
-    """What was added, in words."""
+def _counts_text(kinds):
+    """The numbers of faults and bodies, as text."""
     counts = [(kinds.count("fault"), "fault", "faults"), (kinds.count("body"), "body", "bodies")]
     return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count)
 
@@ -118,7 +118,7 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
             with settings.filling():
                 row.object = item
         live.touch(scene)
-        self.report({"INFO"}, f"Added {_told(kinds)}")
+        self.report({"INFO"}, f"Added {_counts_text(kinds)}")
 
 
 class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
@@ -169,7 +169,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             with settings.filling():
                 row.filepath = str(path)
         live.touch(scene)
-        self.report({"INFO"}, f"Added {_told([kind for kind, *_ in found])}")
+        self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
 
     def _paths(self):
         names = [file.name for file in self.files if file.name]
@@ -289,7 +289,7 @@ class REALMODEL_OT_fault_body_edit(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_body_property(Reporting, bpy.types.Operator):
-    """Choose from the library what the active body is made of"""
+    """Choose the property of the active body from the library"""
 
     bl_idname = "realmodel.body_property"
     bl_label = "Property of the Body"

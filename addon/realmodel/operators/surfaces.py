@@ -106,7 +106,7 @@ def library_items(_operator, context):
 
 
 class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
-    """Choose from the library what was deposited beneath the active surface"""
+    """Choose the property of the rock beneath the active surface from the library"""
 
     bl_idname = "realmodel.surface_property"
     bl_label = "Property of the Surface"

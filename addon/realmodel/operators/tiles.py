@@ -21,7 +21,7 @@ class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
     what: EnumProperty(
         name="Read",
-        description="How much of the model",
+        description="Part of the model to import",
         items=[
             ("WHOLE", "All, Coarse", "One object for each block of the whole model, with few triangles"),
             ("TILES", "Tiles", "Some tiles as they are, with an object for each block of each"),
@@ -29,7 +29,7 @@ class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     squares: IntProperty(
         name="Squares",
-        description="How many squares with a vertex each lie along the longer side of the model",
+        description="Number of squares along the longer side of the model, with one vertex each",
         default=200,
         min=2,
         soft_max=2000,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of a surface: the structures of a nested variogram, the filters of its file."""
+"""Operators for rows of a surface: the structures of a nested variogram, the filters of its file."""
 
 import bpy
 from bpy.props import BoolProperty

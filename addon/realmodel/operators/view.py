@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looking at the model: standard views, capture, coordinates, hiding blocks by their property."""
+"""Operators of the view: standard views, capture, coordinates, hiding blocks by their property."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
@@ -40,7 +40,7 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
 
     direction: EnumProperty(
         name="Direction",
-        description="Where to look from",
+        description="View direction",
         items=[(key, *_LOOKING[key]) for key in viewpoints.DIRECTIONS],
     )
 
@@ -53,7 +53,7 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
-    """Go back to how the viewports looked at the model before"""
+    """Go back to the previous view of the viewports"""
 
     bl_idname = "realmodel.view_previous"
     bl_label = "Previous View"
@@ -65,7 +65,7 @@ class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
-    """Go forth again to how the viewports looked at the model before Previous View"""
+    """Go forth to the next view of the viewports, after Previous View"""
 
     bl_idname = "realmodel.view_next"
     bl_label = "Next View"
@@ -77,7 +77,7 @@ class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
-    """Bring the whole model into the frame, without turning the view"""
+    """Zoom to the whole model, without rotating the view"""
 
     bl_idname = "realmodel.view_all"
     bl_label = "Frame Model"
@@ -99,14 +99,14 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
     filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
     width: IntProperty(
         name="Width",
-        description="Pixels across; 0: as the viewport has",
+        description="Width in pixels; 0: that of the viewport",
         min=0,
         max=capture.LARGEST,
         subtype="PIXEL",
     )
     height: IntProperty(
         name="Height",
-        description="Pixels upwards; 0: as the viewport has",
+        description="Height in pixels; 0: that of the viewport",
         min=0,
         max=capture.LARGEST,
         subtype="PIXEL",
@@ -142,7 +142,7 @@ class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
 
 
 def edit_interface(context, item):
-    """Enters Edit Mode of an interface, with the blocks in view."""
+    """Enters Edit Mode on an interface, with the blocks visible."""
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     context.scene.realmodel.display = "BLOCKS"
@@ -175,7 +175,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
     property_id: IntProperty(name="Property", description="ID of the property in the library; 0: none given")
     action: EnumProperty(
         name="Action",
-        description="What to do with the blocks of the property",
+        description="Hide or show the blocks of the property",
         items=(
             ("TOGGLE", "Toggle", "Hide them where they are shown, show them where they are hidden"),
             ("HIDE", "Hide", "Hide them"),
@@ -207,7 +207,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
-    """Tell the coordinates of the model, its block, property and thickness: under the mouse until you click,
+    """Show the coordinates of the model, its block, property and thickness: under the mouse until you click,
     or at the 3D cursor"""
 
     bl_idname = "realmodel.coordinates"
@@ -295,17 +295,17 @@ def place_text(scene, place):
 
 
 class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
-    """Tell coordinates also as distances from a point: the one that was asked for last, or the 3D cursor. The
-    model itself does not move"""
+    """Set the point that distances are measured from: the last coordinates, or the 3D cursor. The model
+    itself does not move"""
 
     bl_idname = "realmodel.set_origin"
     bl_label = "Set Origin"
 
     action: EnumProperty(
         name="Origin",
-        description="The point that distances are told from",
+        description="The point that distances are measured from",
         items=(
-            ("PLACE", "Last Place", "The coordinates that were asked for last"),
+            ("PLACE", "Last Place", "The last requested coordinates"),
             ("CURSOR", "3D Cursor", "Where the 3D cursor is"),
             ("NONE", "None", "No distances"),
         ),

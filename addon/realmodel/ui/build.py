@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building, its progress, what is missing for it, and what it had to tell."""
+"""The Build panel: the operator, its progress, missing input, warnings."""
 
 import bpy
 
@@ -53,7 +53,7 @@ def _draw_progress(layout, activity):
 
 
 def _draw_missing(layout, group):
-    """What a build would ask for, with the button that gives it."""
+    """Draws the input that a build still needs, with the button that adds it."""
     for number, rock in enumerate(group.rocks):
         has_region = rock.region is not None or rock.region_file or rock.region_stored
         if method_settings.interpolates(rock) and not has_region:
@@ -74,7 +74,7 @@ def _draw_problem(box, activity):
 
 
 def _draw_warnings(box, group, activity):
-    """Folded: a line for each of the first ones. Unfolded: all of them in full."""
+    """Draws warnings: folded, a line for each of the first ones; unfolded, all of them in full."""
     given = notices.read(group.warnings)
     row = box.row(align=True)
     count = "1 Warning" if len(given) == 1 else f"{len(given)} Warnings"

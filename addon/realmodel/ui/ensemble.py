@@ -51,7 +51,8 @@ class REALMODEL_PT_ensemble(OfABuiltModel, TabPanel, bpy.types.Panel):
 
 
 def _draw_table(layout, scene, found):
-    """Volumes in thousands, millions and so on, with few digits: the sidebar is narrow."""
+    """Draws the table: volumes in thousands, millions and so on, with few digits, as the sidebar is
+    narrow."""
     unit, factor = units.shown_unit(scene, 3)
     largest = factor * max(row["percentiles"][-1] for row in found["blocks"])
     power = 3 * math.floor(math.log10(largest) / 3) if largest > 0.0 else 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How good the active surface is: charts and figures."""
+"""The quality of the active surface: charts and statistics."""
 
 import bpy
 

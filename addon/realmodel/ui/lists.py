@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the rows of the lists are drawn."""
+"""Drawing of the rows of the lists."""
 
 import bpy
 

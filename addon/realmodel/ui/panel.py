@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all panels of the tab share."""
+"""Common parts of all panels of the tab."""
 
 import re
 
@@ -21,7 +21,7 @@ class TabPanel:
 
 
 def ui_scale():
-    """Pixels by Blender's units of the interface, which has none before its first window is drawn."""
+    """Pixels per unit of Blender's interface, which has none before its first window is drawn."""
     return bpy.context.preferences.system.ui_scale or 1.0
 
 
@@ -67,7 +67,7 @@ def hint(layout, text):
 
 
 def letters():
-    """How many letters fit into a line of the sidebar that is being drawn."""
+    """The number of letters that fit into a line of the sidebar that is being drawn."""
     region = bpy.context.region
     if region is None:
         return 40

@@ -35,7 +35,7 @@ class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
 
 
 def _block_lines(scene, row):
-    """What there is to say of a block."""
+    """The statistics of a block, as lines."""
     yield row.name
     if not row.volume:
         yield "Eroded: nothing of it is left"

@@ -136,7 +136,7 @@ class REALMODEL_UL_structures(bpy.types.UIList):
 
 
 def _said(item):
-    """What is special about a fault or a body, in two words."""
+    """The special settings of a fault or a body, in two words."""
     if settings.kind_of(item) == "body":
         return "void" if item.void else ""
     return "dies out" if item.dies_out else ""

@@ -95,7 +95,7 @@ def draw_figures(layout, context, surface):
 
 
 def _figures(scene, figures):
-    """What a build tells of a surface, in sentences."""
+    """The statistics of a surface, as sentences."""
     points = f"{figures['points']:,} points, " if figures["points"] else ""
     yield f"{points}{figures['triangles']:,} triangles"
     low, high = (units.length_text(scene, figures[key]) for key in ("low", "high"))
@@ -181,7 +181,7 @@ def _draw_variogram(layout, scene, surface):
 
 
 def _variogram_text(scene, fitted):
-    """What a build fitted, in words."""
+    """The fitted variogram, as text."""
     parts = fitted.get("structures") or [fitted]
     said = [
         f"{VARIOGRAMS[part['model']][0]}, range {units.length_text(scene, part['range'])}, "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the model is looked at."""
+"""The View panel."""
 
 import bpy
 
@@ -144,7 +144,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
 
 
 def _section_buttons(layout, operator, along, saving):
-    """What is made of a cut: an object in its place, one beside the model, a file."""
+    """Buttons for the results of a cut: an object in its place, one beside the model, a file."""
     column = layout.column(align=True)
     row = column.split(factor=0.7, align=True)
     row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False

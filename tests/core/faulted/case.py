@@ -38,7 +38,7 @@ class RockCase:
 @dataclass
 class FaultCase:
     """beyond: further triangles that make the fault a surface which divides all of the space around the rock.
-    The program does not get them: they tell the judge which side a point is on."""
+    The program does not get them: they give the judge the side of each point."""
 
     name: str
     vertices: np.ndarray

@@ -87,7 +87,7 @@ class Worker:
             return [f"crash: exit status {self.process.exitcode}"]
 
     def _answers(self):
-        """Waits by processor time: on a busy machine the clock tells nothing."""
+        """Waits by processor time: on a busy machine wall time means nothing."""
         begun, latest = _processor_time(self.process.pid), time.monotonic() + STALLED
         while not self.pipe.poll(2.0):
             if _processor_time(self.process.pid) - begun > PATIENCE or time.monotonic() > latest:

@@ -80,7 +80,7 @@ def _volume_failures(case, result, exact, allowed, cells):
 
 
 def _sum_failures(case, result, m, allowed, cells):
-    """The volumes told are those of the cells, by the outside check's own divergence theorem."""
+    """The reported volumes are those of the cells, computed independently by the divergence theorem."""
     own = places.checker().cell_volumes(m)
     summed = np.bincount(result["cell_block"], weights=own, minlength=len(allowed))
     for k in block_surfaces(case):

@@ -3,7 +3,7 @@
 
     HOME=FOLDER blender -b --python-exit-code 1 -P install.py -- ZIP
 
-Newer ones are told to on the command line: blender --command extension install-file.
+Newer versions install it from the command line: blender --command extension install-file.
 """
 
 import sys

@@ -51,7 +51,7 @@ def disabled():
 def leave():
     """Ends a script that has succeeded.
 
-    As a module Blender 4.5 may wait for ever then, for a thread of its own that nobody told to end.
+    As a module Blender 4.5 may wait for ever then, for one of its own threads, which is never asked to end.
     """
     if not bpy.app.binary_path:
         sys.stdout.flush()

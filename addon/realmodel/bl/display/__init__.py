@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colors, the cut.
+"""The display of a built model: display modes, stage, exploded view, colors, cut.
 
-The settings call one function here when they change, the build calls `built` and `cleared`. All of it leaves
-the model as it is: see docs/guide/tour.md, "View".
+Each setting calls one function of this module when it changes; the build calls `built` and `cleared`. Nothing
+here changes the model: see docs/guide/tour.md, "View".
 
 shown_models   the model at a stage, from the core
 stages         the blocks' shapes at a stage
@@ -11,13 +11,13 @@ visible        hiding and showing objects without taking back what the user does
 bodies, cells  objects that are only for viewing
 drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
-colors        what the colors tell
+colors        the meaning of the colors
 ensembles      the section of an ensemble
 cuts, sections the movable plane; sections as mesh objects
-preparing      what takes long, in a thread
-viewpoints     where the viewports look from
+preparing      long work, in a thread
+viewpoints     the view directions of the viewports
 capture        pictures
-coordinates    what is under the cursor
+coordinates    the block, property and thickness under the cursor
 """
 
 import json
@@ -57,31 +57,31 @@ def register():
 
 
 def unregister():
-    """Called when the add-on is disabled: no handler of drawing may stay."""
+    """Called when the add-on is disabled; removes all draw handlers."""
     drawing.handler.unregister()
     stop()
 
 
 def stop():
-    """Ends what is under way: another file was opened, or the add-on is disabled."""
+    """Stops all work: another file was opened, or the add-on is disabled."""
     cuts.stop()
     preparing.stop()
     replacing.stop()
 
 
 def forget_meshes():
-    """Lets go of what was read from meshes."""
+    """Clears the caches of data read from meshes."""
     drawing.forget()
     coordinates.forget()
 
 
 def show_all(scene):
-    """Shows everything as the settings say."""
+    """Updates the whole display from the settings."""
     _show(scene, **{key: getattr(scene.realmodel, key) for key in _ANIMATED})
 
 
 def opened():
-    """A .blend was opened, which may have been saved before all that its settings ask for was made."""
+    """A .blend was opened: updates the display, which may not have been complete when it was saved."""
     for scene in bpy.data.scenes:
         group = scene.realmodel
         different = {
@@ -94,12 +94,12 @@ def opened():
 
 
 def mode_changed(scene):
-    """Another display mode, another surface or property hidden."""
+    """The display mode was changed, or a surface or property hidden or shown."""
     _show(scene, display=scene.realmodel.display)
 
 
 def stage_changed(scene):
-    """Another stage."""
+    """The stage was changed."""
     _show(scene, stage=scene.realmodel.stage)
 
 
@@ -137,7 +137,7 @@ def boreholes_changed(scene):
 
 
 def ensemble_changed(scene):
-    """Another coloring of the ensemble's section, or another realization."""
+    """The coloring of the ensemble's section, or its realization, was changed."""
     try:
         ensembles.recolor(scene)
     except RealModelError as error:
@@ -145,7 +145,7 @@ def ensemble_changed(scene):
 
 
 def colors_changed(scene):
-    """Another rule of coloring, or another color in the library."""
+    """The coloring, or a color in the library, was changed."""
     _show(scene, color_by=scene.realmodel.color_by)
 
 
@@ -206,10 +206,8 @@ def cleared(scene):
 
 
 def frame_changed(scene, depsgraph=None):
-    """Another frame of an animation: keyframed settings have changed without their callbacks.
-
-    depsgraph: the evaluated one; while an animation is rendered only that has their values.
-    """
+    """The frame of an animation was changed: keyframed settings have changed without their callbacks.
+    depsgraph: the evaluated one; while an animation is rendered only that one has their values."""
     if not len(scene.realmodel.results):
         return
     evaluated = scene if depsgraph is None else scene.evaluated_get(depsgraph)
@@ -226,7 +224,7 @@ def frame_changed(scene, depsgraph=None):
 
 
 def render_begins(scene):
-    """From now on nothing may be freed that a renderer may hold."""
+    """A render begins: from now on no data may be freed that the renderer may use."""
     replacing.tidy()
     replacing.begin_render()
     if len(scene.realmodel.results) and scene.library is None:
@@ -241,14 +239,14 @@ def render_ends(scene):
 
 
 def undoing():
-    """Blender is about to undo or redo. It keeps objects that did not change between two of its steps, and
-    does not know what a live build has changed since: they must not point to materials that it takes away."""
+    """Called before undo and redo. Blender keeps objects that are equal in two undo steps, without the
+    changes that a live build made in between: they must not point to materials that undo removes."""
     for scene in bpy.data.scenes:
         colors.take_off(scene)
 
 
 def undone():
-    """Blender has undone or redone something: what was read from meshes may be of others now."""
+    """Called after undo and redo: cached data of meshes may be outdated."""
     forget_meshes()
     for scene in bpy.data.scenes:
         if len(scene.realmodel.results):
@@ -258,7 +256,7 @@ def undone():
 
 
 def changed(scene, depsgraph):
-    """Blender has evaluated changed objects."""
+    """Called when Blender has evaluated changed objects."""
     plane = scene.realmodel.view.plane
     for update in depsgraph.updates:
         item = update.id.original
@@ -275,8 +273,8 @@ def _applied(scene):
 
 
 def _show(scene, has_shapes=False, **wanted):
-    """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
-    have the shapes of the stage already."""
+    """Updates the display for all settings, or for some that can be animated, by their names. has_shapes: the
+    blocks have the shapes of the stage already."""
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
         return

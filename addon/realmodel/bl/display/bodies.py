@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that are only for viewing: cut halves of blocks, single cells, points and lines of renders. They
-stand beside the model, in the collection "<project> view", each a child of the block that it stands for, and
-go where that goes."""
+"""Objects for display only: cut halves of blocks, single cells, points and lines of renders. They are in the
+collection "<project> view" beside the model, each a child of the block that it stands for, and move with
+it."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from mathutils import Matrix
 from .. import exaggeration, meshes, scene
 from . import replacing
 
-KIND = "realmodel_view"  # on an object: what it is for
+KIND = "realmodel_view"  # on an object: its purpose
 CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
 SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
 
@@ -27,9 +27,9 @@ def _listed(current, kind):
 
 
 def put(current, kind, shapes, material=None):
-    """Makes the bodies of a kind, in place of those that are there.
+    """Makes the bodies of a kind, in place of the present ones.
 
-    shapes: for each block that has one (block object, PolygonMesh). material: where it is not the block's.
+    shapes: for each block that has one (block object, PolygonMesh). material: if it is not the block's.
     """
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
@@ -41,7 +41,7 @@ def put(current, kind, shapes, material=None):
         else:
             item = add(current, kind, f"{block.name} {kind}", shape)
             item[scene.BLOCK] = block.get(scene.BLOCK, "")
-            item.hide_viewport = kind == MARKS  # which viewports draw themselves
+            item.hide_viewport = kind == MARKS  # viewports draw marks themselves
             item.parent = block
         if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
             item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
@@ -90,7 +90,7 @@ def remove_collection_if_empty(current):
 
 
 def view_collection(current):
-    """The collection of what is only for viewing; made and linked where it is not there."""
+    """The collection of objects for display only; made and linked if it does not exist."""
     view, group = current.realmodel.view, current.realmodel
     collection = view.collection
     if collection is None or collection.library is not None:

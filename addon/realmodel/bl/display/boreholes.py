@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boreholes as tubes in the colors of what they met: below the pick of a surface the layer that it bounds."""
+"""Boreholes as tubes in the colors of their picks: below the pick of a surface, the color of the layer
+beneath it."""
 
 from itertools import pairwise
 

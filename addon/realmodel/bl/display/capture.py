@@ -39,7 +39,7 @@ def viewport(context):
 
 
 def _draw(context, path, size):
-    """Draws the viewport into a picture that is not on the screen."""
+    """Draws the viewport into an offscreen picture."""
     import gpu
 
     found = viewport(context)
@@ -74,8 +74,8 @@ def _draw(context, path, size):
 
 
 def _window_matrix(region, view, size):
-    """The viewport's projection, with as much to the right and left, or above and below, as a picture of
-    another shape asks for."""
+    """The viewport's projection, widened to the right and left, or above and below, for a picture of another
+    aspect ratio."""
     matrix = view.window_matrix.copy()
     wider = (size[0] / size[1]) / (region.width / region.height)
     if wider >= 1.0:
@@ -99,7 +99,7 @@ def _save(pixels, path, size):
 
 
 def _render(context, path, size):
-    """Renders what the first viewport of the screens looks at, in a copy of the scene."""
+    """Renders the view of the first viewport of the screens, in a copy of the scene."""
     current = context.scene
     points = viewpoints.model_points(current)
     if not modes.shows_something(current):

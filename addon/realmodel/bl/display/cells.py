@@ -10,18 +10,19 @@ from ..threads import threads
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen
-_kept = caches.new(most=1)  # by what the cells are of: {(rock mass, block): PolygonMesh}
+_kept = caches.new(most=1)  # by the state that they are made from: {(rock mass, block): PolygonMesh}
 
 
 def made_of(scene, stage, apart=False):
-    """What the cells of a scene at a stage are made of, as text. apart: of the parts in compartments."""
+    """The state that the cells of a scene are made from, as text: model, stage, settings. apart: whether
+    compartments are separate parts."""
     cut = scene.realmodel.view.cut if cuts.is_shown(scene) else ""
     return json.dumps([scene.realmodel.built_stamp, stage, cut] + ["apart"] * bool(apart))
 
 
 class Recipe:
-    """How the meshes of cells are made: those of the model at a stage, or of its half where the cut is shown.
-    Used as `shown_models.Recipe` is. Raises InputRefused."""
+    """Makes the meshes of cells: of the model at a stage, or of its half where the cut is shown. Used like
+    `shown_models.Recipe`. Raises InputRefused."""
 
     def __init__(self, scene, stage, apart=False):
         self.made_of = made_of(scene, stage, apart)
@@ -54,14 +55,14 @@ class Recipe:
         return self.shapes
 
     def keep(self):
-        """Keeps what was made until other cells are asked for."""
+        """Caches the result until other cells are requested."""
         _kept[self.made_of] = self.shapes
         if self._model is not None:
             self._model.keep()
 
 
 def of_scene(scene, stage, apart=False):
-    """The meshes of the cells, made in this thread if they are not at hand. Raises RealModelError."""
+    """The meshes of the cells, made in this thread if they are not in the cache. Raises RealModelError."""
     recipe = Recipe(scene, stage, apart)
     shapes = recipe.make()
     recipe.keep()
@@ -69,5 +70,5 @@ def of_scene(scene, stage, apart=False):
 
 
 def forget():
-    """Lets go of the cells: they are in the scene, or no longer wanted."""
+    """Clears the cached cells: they are in the scene, or no longer wanted."""
     _kept.clear()

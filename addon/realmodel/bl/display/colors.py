@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the colors of blocks and interfaces mean: their property, themselves, their rock mass, their age, or a
-value (`shades`).
+"""The colors of blocks and interfaces: by property, block, rock mass, age, or a value (`shades`).
 
-The mesh of a block keeps its property's material. Other colors are materials that the object, not the mesh,
-has in its slot, so they show in every way of shading and in renders, and go without a trace.
+The mesh of a block keeps its property's material. Other colors are materials in the slots of the object, not
+of the mesh. So they show in every shading mode and in renders, and can be removed completely.
 """
 
 import colorsys
@@ -16,14 +15,14 @@ from ...core.drawing.overlay import ColorKey
 from .. import compartments, library_rows, materials, settings, viewports
 from . import bodies, modes, shades, stages
 
-KEY = "realmodel_colour"  # on a material: what it stands for; .blend files hold this name
+KEY = "realmodel_colour"  # on a material: the value that it shows; .blend files contain this name
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 _FAULTS = "#c8504a"
 _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value at the ends of the ages
 
 
 def apply(scene):
-    """Gives all blocks and interfaces the colors that the settings ask for."""
+    """Sets the colors of all blocks and interfaces by the settings."""
     by = scene.realmodel.color_by
     shades.apply(scene, by)
     common = shades.material() if by in shades.IN_MESH else None
@@ -54,14 +53,14 @@ def apply(scene):
 
 
 def take_off(scene):
-    """Takes the colors off the interfaces. `apply` puts them on again."""
+    """Removes the colors of the interfaces. `apply` sets them again."""
     for _, surface in settings.interface_rows(scene):
         if _can_take(surface.interface):
             _put_into_slot(surface.interface, None)
 
 
 def key(scene):
-    """The core's ColorKey of what is in sight, or None where nothing is."""
+    """The core's ColorKey of the visible objects, or None where nothing is visible."""
     by, group = scene.realmodel.color_by, scene.realmodel
     if by in shades.TITLES:
         low, high = shades.limits(scene)
@@ -89,8 +88,8 @@ def key(scene):
 
 
 def shade_viewports(by, before):
-    """The viewport in use shows the colors of vertices in solid shading while these are what is to be seen;
-    all show those of materials again afterwards. before: the settings that were shown before."""
+    """Sets solid shading in the active viewport to vertex colors while these are displayed; resets all
+    viewports to material colors afterward. before: the settings that were shown before."""
     wanted, was = by in shades.IN_MESH, before.get("color_by") in shades.IN_MESH
     if wanted == was:
         return
@@ -102,7 +101,7 @@ def shade_viewports(by, before):
 
 
 def forget(scene):
-    """Takes all such colors out of a scene."""
+    """Removes all such colors from a scene."""
     for item in _colored(scene):
         slot = item.material_slots[0]
         if slot.link == "OBJECT" and not _is_of_user(slot):
@@ -136,7 +135,7 @@ def _can_take(item):
 
 
 def _entry(scene, by, row):
-    """(name, "#rrggbb") of what a block is colored by."""
+    """(name, "#rrggbb") of the color of a block."""
     if by == "ROCK":
         number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
         return f"Rock mass {row.rock}", _hue(number)

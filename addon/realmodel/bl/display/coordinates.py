@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is at a place of the model: its coordinates, the block, its property, its thickness there."""
+"""The coordinates of a position in the model, with its block, property and thickness."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -120,17 +120,14 @@ def _span(item, local):
 
 
 def _hits(soup, start, direction):
-    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction."""
+    """The intersections of a ray with triangles, (N,) float64 ascending, in lengths of the direction."""
     return _crossings(soup, start, direction)[0]
 
 
 def _crossings(soup, start, direction):
-    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction, and whether it
-    leaves what they bound, (N,) bool.
-
-    soup: (T, 3, 3). Seen along the ray the start is a point, which lies in the triangles whose three edges
-    it is on one side of.
-    """
+    """The intersections of a ray with triangles, (N,) float64 ascending, in lengths of the direction, and
+    (N,) bool, whether the ray leaves the solid there. soup: (T, 3, 3). Projected along the ray, the start is
+    a point; it lies in the triangles for which it is on the same side of all three edges."""
     length = np.linalg.norm(direction)
     if not length > 0.0 or not len(soup):
         return np.empty(0), np.empty(0, bool)
@@ -171,24 +168,24 @@ def _soup(mesh):
 
 
 def forget(names=None):
-    """Lets go of what was prepared for meshes, by their names, or for all."""
+    """Clears the cached data of meshes, by their names, or of all."""
     for key in [key for key in _soups if names is None or key in names]:
         del _soups[key]
 
 
 def remember(scene, place):
-    """Keeps a place as the one that was asked for last."""
+    """Stores the last position."""
     scene.realmodel.view.place = "" if place is None else json.dumps(asdict(place))
 
 
 def last(scene):
-    """The Place that was asked for last, or None."""
+    """The last requested Place, or None."""
     text = scene.realmodel.view.place
     return Place(**json.loads(text)) if text else None
 
 
 def set_zero(scene, point):
-    """The point, in model coordinates, that distances are told from; None for none."""
+    """Sets the point, in model coordinates, that distances are measured from; None for none."""
     scene.realmodel.view.zero = "" if point is None else json.dumps([float(value) for value in point])
 
 

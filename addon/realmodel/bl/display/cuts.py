@@ -27,18 +27,18 @@ from ..debounce import DebouncedJob
 from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
 
-REST_SECONDS = 0.08  # without a movement of the plane, after which it is cut
-_halves = caches.new(most=1)  # by what it was cut from and where: the half as a Model
+REST_SECONDS = 0.08  # pause after a movement of the plane, before it cuts
+_halves = caches.new(most=1)  # by model and plane: the half as a Model
 
 
 def is_on(current):
-    """Whether a scene asks for the cut."""
+    """Whether the cut of a scene is switched on."""
     view = current.realmodel.view
     return view.use_section and plane_of(current) is not None and len(current.realmodel.results) > 0
 
 
 def is_shown(current):
-    """Whether the cut was made and is what is to be seen."""
+    """Whether the cut was made and is displayed."""
     return is_on(current) and bool(current.realmodel.view.cut)
 
 
@@ -83,7 +83,7 @@ def _square(size):
 
 
 def remove_plane(current):
-    """Removes the plane where it was made for this, lets go of it where it is an object of the user's."""
+    """Removes the plane if it was made for the cut; an object of the user stays."""
     view, item = current.realmodel.view, current.realmodel.view.plane
     with settings.filling():
         view.plane, view.use_section = None, False
@@ -96,14 +96,14 @@ def remove_plane(current):
 
 
 def _state(current, stage, matrix=None):
-    """What a cut is made of, as text: [point, normal, stage, stamp of the model]."""
+    """The state that a cut is made from, as text: [point, normal, stage, stamp of the model]."""
     point, normal = plane_in_model(current, matrix)
     return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
 
 
 def known_half(state, cells=None):
-    """The half that is left by a cut, as a realmodel.core.Model; None where it is not at hand. state: as
-    `view.cut` has it."""
+    """The remaining half of a cut, as a realmodel.core.Model; None where it is not in the cache. state: as of
+    `view.cut`."""
     model = _halves.get(state)
     return model if cells is None or (model is not None and model.cell_kind == cells) else None
 
@@ -118,7 +118,7 @@ def cut_now(current, stage=None, matrix=None):
 
 
 def follow(current, depsgraph):
-    """Another frame: whether the plane is elsewhere than where the cut was made; then it is made anew."""
+    """The frame was changed: updates the cut if the plane has moved."""
     if not is_on(current):
         return False
     plane = plane_of(current)
@@ -134,7 +134,7 @@ def follow(current, depsgraph):
 
 
 def refresh(current, stage=None):
-    """Makes the cut anew: at once where nobody waits for the window, else after a short pause."""
+    """Updates the cut: at once in background mode, otherwise after a short pause."""
     if replacing.nobody_waits():
         cut_now(current, stage)
     else:
@@ -153,7 +153,7 @@ def _put(current, shapes, state):
 
 
 def take_off(current):
-    """Forgets the cut: the blocks are whole again."""
+    """Removes the cut: the blocks are shown whole again."""
     bodies.remove(current, bodies.CUT)
     _halves.pop(current.realmodel.view.cut, None)
     current.realmodel.view.cut = ""
@@ -183,7 +183,7 @@ def _begun(current, state):
 
 
 def _take(current, made):
-    """Shows the halves that a job has made, and keeps them."""
+    """Shows the halves that a job has made, and caches them."""
     state, model, shapes, recipe = made
     recipe.keep()
     _halves[state] = model
@@ -230,13 +230,13 @@ def is_working(current):
 
 
 def show_with(show):
-    """show(scene) is called when a cut was made that nobody waited for."""
+    """Sets show(scene), which is called when a cut was made in the background."""
     global _show
     _show = show
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running jobs."""
     _work.stop()
 
 

@@ -16,7 +16,7 @@ _batches = caches.new()  # (mesh name, "POINTS" or "LINES") -> (vertices, edges 
 
 
 def forget(names=None):
-    """Lets go of the arrays of meshes, by their names, or of all."""
+    """Clears the cached arrays of meshes, by their names, or of all."""
     for key in [key for key in _batches if names is None or key[0] in names]:
         del _batches[key]
 

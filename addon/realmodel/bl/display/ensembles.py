@@ -91,7 +91,7 @@ def item_of(current):
 
 
 def remove(current):
-    """Takes the ensemble out of a scene."""
+    """Removes the ensemble from a scene."""
     group, item = current.realmodel.ensemble, item_of(current)
     group.object, group.table = None, ""
     if item is not None:
@@ -101,7 +101,7 @@ def remove(current):
 
 
 def recolor(current):
-    """Gives the section its colors. Raises InputRefused where the .blend is damaged."""
+    """Sets the colors of the section. Raises InputRefused where the .blend is damaged."""
     item = item_of(current)
     if item is None or item.mode != "OBJECT" or item.data.library is not None:
         return
@@ -138,7 +138,7 @@ def _of_scale(current, blocks):
 
 
 def _values(current, blocks):
-    """What the colors show of each cell."""
+    """The value of each cell that its color shows."""
     names = [row["name"] for row in table(current)["blocks"]]
     if current.realmodel.ensemble.color_by == PROBABILITY:
         wanted = current.realmodel.ensemble.block

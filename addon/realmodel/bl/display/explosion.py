@@ -39,7 +39,7 @@ def apply(scene, amount, direction):
 
 
 def move(item, shift):
-    """Moves an object by its delta location, in place of where this has moved it before."""
+    """Moves an object by its delta location, in place of an earlier move."""
     if item.library is not None:
         return
     before = np.array(item.get(KEY, (0.0, 0.0, 0.0)))
@@ -52,11 +52,11 @@ def move(item, shift):
     else:
         del item[KEY]
         if np.abs(np.array(item.delta_location)).max() < 1e-6 * max(np.abs(before).max(), 1.0):
-            item.delta_location = (0.0, 0.0, 0.0)  # what single precision has left over
+            item.delta_location = (0.0, 0.0, 0.0)  # remainders of single precision
 
 
 def set_bounds(scene, low, high):
-    """Keeps how large the whole model is, so that a stage of it comes apart as far."""
+    """Stores the size of the whole model: stages of it move apart by the same distances."""
     scene.realmodel.view.bounds_low, scene.realmodel.view.bounds_high = low, high
 
 

@@ -16,8 +16,8 @@ def points(places, radius):
 
 
 def lines(places, pairs, radius, sides=3):
-    """A bar of so many sides along each pair (E, 2) of places (V, 3), as `points`. Pairs at one
-    place have none."""
+    """A bar with this number of sides along each pair (E, 2) of places (V, 3), as `points`. Pairs of equal
+    places have none."""
     begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
     length = np.linalg.norm(along, axis=1)
@@ -43,6 +43,6 @@ def _around(sides):
 
 
 def _repeated(faces, count, vertices):
-    """(offsets, corners) int32 of a body that is there so many times."""
+    """(offsets, corners) int32 of a body repeated this many times."""
     corners = (np.arange(count, dtype=np.int32)[:, None, None] * vertices + faces).astype(np.int32)
     return np.arange(0, corners.size + 1, faces.shape[1], dtype=np.int32), corners.ravel()

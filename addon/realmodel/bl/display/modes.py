@@ -18,14 +18,14 @@ from . import bodies, cells, cuts, shown_models, stages
 from .visible import WANTED, want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
-SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are in sight
+SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are visible
 DRAWN = ("POINTS", "LINES")
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
 
 def apply(scene, mode, stage, apart=0.0):
-    """Shows a scene's model, which is at a stage, in a display mode. apart: how far its compartments are to
-    be moved apart."""
+    """Shows a scene's model, which is at a stage, in a display mode. apart: the factor by which its
+    compartments are moved apart."""
     view = scene.realmodel.view
     subject = view.subject
     apart = apart if has_parts(scene, mode, apart) else 0.0
@@ -108,7 +108,7 @@ def drawn(scene, mode=None):
 
 
 def apart_shown(scene):
-    """By how much compartments are moved apart in what is to be seen; 0 where they are not."""
+    """The factor by which compartments are moved apart in the display; 0 where they are not."""
     group = scene.realmodel
     apart = group.explode if group.explode_direction == "COMPARTMENT" else 0.0
     shown = has_parts(scene, group.display, apart) and bodies.of_kind(scene, bodies.CELLS)
@@ -124,8 +124,8 @@ def body_of(scene, row):
 
 
 def _see_through(item, wanted):
-    """Draws an interface as wires where blocks are in sight too, whoever shows it: it lies on their faces,
-    and the two would flicker. One that the user draws otherwise than solid is left as it is."""
+    """Draws an interface as wires where blocks are visible, too: it coincides with their faces, and the two
+    would flicker. One that the user does not display as solid is left unchanged."""
     if item is None or item.library is not None:
         return
     if wanted and item.display_type == "TEXTURED":
@@ -183,7 +183,7 @@ def _make_cells(scene, stage, mode, apart):
 
 
 def _make_surviving(scene, stage):
-    """What is left of each interface, or of its half: {interface: body}."""
+    """The parts of the interfaces that survive erosion, or of their halves: {interface: body}."""
     view = scene.realmodel.view
     made_of = cells.made_of(scene, stage)
     if view.surviving_of != made_of:
@@ -201,7 +201,7 @@ def _make_surviving(scene, stage):
 
 
 def without_blocks(scene):
-    """Shows the interfaces alone, as ordinary objects: the blocks are gone."""
+    """Shows the interfaces alone as ordinary objects, when the blocks were removed."""
     for _, surface in settings.interface_rows(scene):
         item = surface.interface
         if item is not None and item.library is None:
@@ -211,7 +211,7 @@ def without_blocks(scene):
 
 
 def let_go(item):
-    """Draws an interface as Blender does of its own accord."""
+    """Resets the display of an interface to Blender's default."""
     _wires(item, False)
     _see_through(item, False)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the view is to show is made in a thread, while the window stays alive: a stage that was not shown yet,
-the cells of a large model. Then the view is asked again, and finds it at hand."""
+"""Prepares shapes for the view in a thread while the window stays responsive: a stage that was not shown yet,
+the cells of a large model. Then the view is updated again and finds them in the cache."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from . import cells, modes, replacing, shown_models
 def lacks(scene, stage, mode):
     """Whether something is yet to be made to show a scene at a stage in a display mode; stage: None where the
     blocks have their shapes already. Where a window would freeze for it, it is begun."""
-    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without which nothing is kept
+    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without a stamp nothing is cached
         return False
     if not _is_missing(scene, stage, mode):
         return False
@@ -52,8 +52,8 @@ def _begin(name, _changed_at):
 
 
 def _hand_over(name, job):
-    """Gives Blender some of the meshes of cells that will be shown; whether all are there. (The blocks' own
-    meshes take the shapes of a stage in place, for the sake of what points to them.)"""
+    """Makes some of the meshes of cells that will be shown. Returns whether all are made. (The blocks' meshes
+    are updated in place for a stage, so that references to them stay valid.)"""
     scene = bpy.data.scenes.get(name)
     if scene is None or not job.succeeded:
         return True
@@ -99,20 +99,20 @@ def is_working(scene):
 
 
 def show_with(show_all):
-    """show_all(scene) is called when what was lacking has been made."""
+    """Sets show_all(scene), which is called when the missing shapes have been made."""
     global _show_all
     _show_all = show_all
 
 
 def stop():
-    """Ends what is under way."""
+    """Stops the running jobs."""
     _work.stop()
     for slices in _slices.values():
         slices.clear()
     _slices.clear()
 
 
-_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
+_SLICE = 0.05  # seconds of making meshes, before the window is updated again
 _slices = {}  # by the name of a scene: the meshes that are being made for it
 _show_all = None
 _work = DebouncedJob(lambda: 0.0, _begin, _finish, hand_over=_hand_over)

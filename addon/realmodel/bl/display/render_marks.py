@@ -11,7 +11,7 @@ POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
 
 
 def put(scene, mode):
-    """Makes the bodies of what a display mode draws, or removes them in the other modes."""
+    """Makes the bodies for points or lines of a display mode, or removes them in the other modes."""
     if mode not in (*modes.DRAWN, "AREAS"):
         bodies.remove(scene, bodies.MARKS)
         return

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Other shapes for objects, also from the handler of a frame while an animation is rendered.
+"""Replaces the shapes of objects, also from the frame handler while an animation is rendered.
 
-A renderer still holds what it has read from the frame before, so nothing may be freed as long as it works:
-meshes are then exchanged instead of filled anew, and what is left over is removed when the render has ended.
+A renderer still uses the data of the previous frame, so nothing may be freed while it works: then meshes are
+exchanged instead of refilled, and unused ones are removed when the render has ended.
 """
 
 import bpy
@@ -20,7 +20,7 @@ def begin_render():
 
 
 def end_render():
-    """The renderer may still be about to let go of its data: what is left over goes a moment later."""
+    """Removes unused data a moment later, as the renderer may still free its own."""
     global _rendering
     _rendering = False
     if bpy.app.background:
@@ -40,7 +40,7 @@ def nobody_waits():
 
 
 def give_shape(item, shape):
-    """Gives an object's mesh other contents; shape: PolygonMesh."""
+    """Replaces the contents of an object's mesh. shape: PolygonMesh."""
     if not _rendering and not meshes_ahead.has(shape):
         meshes.refill(item.data, shape)
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points of surfaces as small bodies, colored by point minus surface; and what that is in numbers."""
+"""The residuals of surfaces: points as small bodies, colored by point minus surface; and their statistics."""
 
 import json
 
@@ -11,7 +11,7 @@ from ...core.residuals import residuals
 from .. import library_rows, project_settings
 from . import bodies, colors, explosion, marks, shown_models
 
-_MOST = 20_000  # points that are shown: of more those that are farthest from their surfaces
+_MOST = 20_000  # points shown at most: those farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _RADIUS = 0.007  # of the model's size
 
@@ -51,7 +51,7 @@ def show(current):
 
 
 def hide(current):
-    """Takes the residuals out of a scene."""
+    """Removes the residuals from a scene."""
     bodies.remove(current, bodies.RESIDUALS)
     current.realmodel.view.residuals = ""
 

@@ -15,8 +15,8 @@ FLAT = "realmodel_flat"  # on the object of a section that lies beside the model
 BLOCK_ATTRIBUTE = "realmodel_block"  # of each face: the number of its block, as in the results
 
 
-_AWAY = 2e-3  # of the model's size: so far a section stands off the face of the cut that it lies in
-_BESIDE = 0.12  # of the model's size: between the model and sections that lie beside it
+_AWAY = 2e-3  # of the model's size: offset of a section from the cut face, against flickering
+_BESIDE = 0.12  # of the model's size: distance of flat sections from the model
 
 
 def by_plane(current, location, normal):
@@ -74,7 +74,7 @@ def add(current, found, name, flat=False):
 
 
 def stand(current, item, plane):
-    """Puts the object of a section into the scene. plane: of the section, where it is one."""
+    """Adds the object of a section to the scene. plane: of the section, if it is plane."""
     item[scene.TAG] = "section"
     if plane is not None:
         normal = np.asarray(plane[1], np.float64)

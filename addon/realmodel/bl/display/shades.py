@@ -23,8 +23,8 @@ _FROM_ZERO = ("THICKNESS", "UNCERTAINTY")
 
 
 def apply(scene, by):
-    """Gives the meshes of blocks and interfaces, and what stands for them, their colors. by: one of IN_MESH;
-    any other takes the colors out of the meshes."""
+    """Sets or removes the colors in the meshes of blocks and interfaces, and of the bodies that stand for
+    them. by: one of IN_MESH; for any other value the colors are removed."""
     shown = list(_shown(scene))
     if by == COMPARTMENT:
         for item, _ in shown:
@@ -155,7 +155,7 @@ def _write_compartments(mesh):
 
 
 def write(mesh, colors, domain="POINT"):
-    """Gives the vertices, or the corners of the faces of a mesh colors, (V, 4) sRGB."""
+    """Writes colors, (V, 4) sRGB, of the vertices of a mesh, or of its face corners."""
     if not len(colors):
         return
     attribute = mesh.color_attributes.get(ATTRIBUTE)

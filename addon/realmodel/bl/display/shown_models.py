@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model that is drawn: the built one, or a stage of it. Stages are kept once they were asked for.
+"""The displayed model: the built one, or a stage of it. Requested stages are cached.
 
-A stage costs about as much as building the surfaces up to it anew with whole blocks as cells; to show it,
-only the blocks that differ go to Blender.
+A stage costs about as much as building the surfaces up to it with whole blocks as cells; to show it, only the
+blocks that differ are transferred to Blender.
 """
 
 from ...core import build, polygon_mesh
@@ -16,12 +16,12 @@ _shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
 class Recipe:
-    """How the model of a scene just after surface `stage` of each rock mass is made.
+    """Makes the model of a scene at a stage: just after surface `stage` of each rock mass.
 
-    cells: "columns" or "blocks"; None: of a stage whole blocks, of the whole model whichever is at hand. A
-    recipe is taken from the scene by the main thread, carried out by any (`make`), and what was made is
-    kept by the main thread again (`keep`). A model that is not at hand at all - a .blend was opened - is
-    built from the settings, without touching the scene. Raises InputRefused.
+    cells: "columns" or "blocks"; None: whole blocks for a stage, and the cells in the cache for the whole
+    model. The main thread makes the recipe from the scene, any thread runs it (`make`), and the main thread
+    caches the result (`keep`). Without a model in the cache (after a .blend was opened) the model is built
+    from the settings; the scene does not change. Raises InputRefused.
     """
 
     def __init__(self, scene, stage, cells=None):
@@ -65,7 +65,7 @@ class Recipe:
         return found
 
     def keep(self, shapes=None):
-        """Keeps what was made, for the next time."""
+        """Caches the result."""
         if not self.stamp:
             return
         if shapes is not None:
@@ -107,12 +107,12 @@ def shapes_at_stage(scene, stage):
 
 
 def has_shapes(scene, stage):
-    """Whether the shapes of the blocks at a stage are at hand."""
+    """Whether the shapes of the blocks at a stage are in the cache."""
     return (scene.realmodel.built_stamp, stage) in _shapes
 
 
 def remember_stage(scene, stage, model, shapes):
-    """Keeps a stage that was made together with the model."""
+    """Caches a stage that was made together with the model."""
     stamp = scene.realmodel.built_stamp
     _stages[stamp, stage, model.cell_kind] = model
     _shapes[stamp, stage] = shapes
@@ -132,6 +132,6 @@ def _make_room():
 
 
 def forget():
-    """Lets go of all stages."""
+    """Clears all cached stages."""
     _stages.clear()
     _shapes.clear()

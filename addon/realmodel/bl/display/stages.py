@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The stage in the scene: the block objects take the shapes that their blocks had just after a surface.
+"""The stage in the scene: the block objects get the shapes that their blocks had just after a surface.
 
-Objects stay the same, so what the user did to them stays. A block that was not there yet, or not any more,
-has an empty mesh; one that was eroded away later gets an object for as long as it is shown.
+Objects are kept, so the user's changes to them stay. A block that does not exist at a stage has an empty
+mesh; one that is eroded later gets an object while it is shown.
 """
 
 import bpy

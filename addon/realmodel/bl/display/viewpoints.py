@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a 3D viewport looks from: the six standard views, previous and next, the whole model in the frame.
-
-In background mode the turned viewport is what `capture` looks through.
-"""
+"""The view directions of a 3D viewport: the six standard views, previous and next, the whole model in the
+frame. In background mode `capture` renders from the turned viewport."""
 
 from dataclasses import dataclass
 
@@ -25,8 +23,8 @@ DIRECTIONS = {  # as Blender's own axis views
 }
 _MARGIN = 1.1
 _MOST_KEPT = 50
-_history = caches.new(list)  # views that were left, and the one that is shown, the oldest first
-_at = -1  # which of them is shown
+_history = caches.new(list)  # earlier views, and the present one, the oldest first
+_at = -1  # index of the present view
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ class _View:
 
 
 def turn(context, direction):
-    """Looks along an axis, without perspective, at the whole model. direction: a key of DIRECTIONS."""
+    """Looks at the whole model along an axis, in orthographic view. direction: a key of DIRECTIONS."""
     found = viewports.spaces(context)
     _remember(found[0])
     for space in found:
@@ -66,7 +64,7 @@ def turn(context, direction):
 
 
 def frame(context):
-    """Brings the whole model into the frame. Raises InputRefused where there is none."""
+    """Zooms to the whole model. Raises InputRefused where there is none."""
     found = viewports.spaces(context)
     if len(model_points(context.scene)) == 0:
         raise InputRefused("there is no model to be seen", advice="build one first")
@@ -78,7 +76,7 @@ def frame(context):
 
 
 def step(context, by):
-    """Goes back (by -1) or forth (+1) among the views that were left. Raises InputRefused at the ends."""
+    """Goes back (-1) or forth (+1) in the history of views. Raises InputRefused at the ends."""
     global _at
     found = viewports.spaces(context)
     _remember(found[0])
@@ -148,12 +146,13 @@ def _frame(scene, space):
 
 
 def width_at_distance(space):
-    """How much a viewport shows across its longer side, as a part of its distance: Blender lets 72 mm see."""
+    """The width of the longer side of a viewport's view, divided by its distance; Blender's view covers 72
+    mm."""
     return 72.0 / space.lens
 
 
 def _aspect(space):
-    """Width by height of the region that a viewport is drawn in."""
+    """Width divided by height of the region that a viewport is drawn in."""
     for screen in bpy.data.screens:
         for area in screen.areas:
             if area.type == "VIEW_3D" and area.spaces.active == space:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Showing and hiding the model's objects, without taking back what the user hides or shows by hand."""
 
-WANTED = "realmodel_shown"  # on an object: what was last wanted of it in the viewport
-RENDER_HIDDEN = "realmodel_render_hidden"  # on an object that the view took out of renders
+WANTED = "realmodel_shown"  # on an object: whether the view last showed it in the viewport
+RENDER_HIDDEN = "realmodel_render_hidden"  # on an object that the view excluded from renders
 
 
 def show(scene, item, shown):
@@ -15,8 +15,8 @@ def show(scene, item, shown):
 
 
 def want(scene, item, shown, rendered):
-    """What the view wants of an object; it acts only where that has changed, so an object that the user hid
-    stays hidden. One that is being edited stays in sight."""
+    """Shows or hides an object for the view, and renders it or not. It acts only where this has changed, so
+    an object that the user hid stays hidden. An object in an edit mode stays visible."""
     if item is None or item.library is not None:
         return
     if item.mode != "OBJECT" and not shown:

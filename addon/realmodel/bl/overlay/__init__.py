@@ -12,15 +12,15 @@ from .. import caches, exaggeration, project_settings
 from ..display import colors, ensembles, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
-_drawings = caches.new(most=8)  # by what they are made of: a viewport is drawn again and again
+_drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
 
 
 def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):
-    """The Drawing of what a scene's settings ask for, or None where that is nothing.
+    """The Drawing of a scene's overlay, or None where nothing is switched on.
 
     projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
-    size: of the picture in points. margins: at the left and right what else covers it, in points. stretched:
-    (4, 4), by what the vertical is exaggerated, where it is not as in the scene.
+    size: of the picture in points. margins: the widths covered by other things at the left and right, in
+    points. stretched: (4, 4), the exaggeration of the vertical, if it is not that of the scene.
     """
     group = scene.realmodel
     view_settings = group.view

@@ -14,7 +14,7 @@ _NEAR = 0.01  # of the way from the camera to the zero of the scene
 
 
 def put(scene, draw=drawing_for, depsgraph=None):
-    """Puts the overlay of a scene before its camera, in place of the one that is there. draw: as
+    """Places the overlay of a scene in front of its camera, in place of the previous one. draw: as
     `drawing_for`. depsgraph: the evaluated one, where the camera may be animated."""
     camera, size = scene.camera, _pixels(scene)
     if camera is None or camera.type != "CAMERA" or camera.data.type == "PANO":
@@ -100,7 +100,7 @@ def _material(image):
 
 
 def remove(scene):
-    """Takes the overlay away from the camera, with all that was made for it."""
+    """Removes the overlay from the camera, with all data made for it."""
     for item in [item for item in scene.objects if KEY in item]:
         mesh, material = item.data, item.data.materials[0]
         image = material.node_tree.nodes[KEY].image

@@ -32,8 +32,8 @@ def draw():
 
 
 def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=None):
-    """Draws the overlay of a scene into what is bound, so many pixels large. view: RegionView3D. scale:
-    pixels for a point. projection: where it is not that of the view."""
+    """Draws the overlay of a scene into the bound framebuffer, size in pixels. view: RegionView3D. scale:
+    pixels per point. projection: if it is not that of the view."""
     projection = view.window_matrix if projection is None else projection
     size = width / scale, height / scale
     found = drawing_for(scene, projection, view.view_matrix, view.is_perspective, size, margins)
@@ -42,7 +42,7 @@ def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=N
 
 
 def draw_items(drawing, scale):
-    """Draws a Drawing with the lower left corner of what is bound as its own."""
+    """Draws a Drawing, its lower left corner at that of the bound framebuffer."""
     import gpu  # not there in Blender's background mode before 4.0
 
     if not _batches or _batches[-1][:2] != (drawing, scale):
@@ -60,7 +60,7 @@ def draw_items(drawing, scale):
 
 
 def _prepared(drawing, scale):
-    """Texts, and batches of what lies between them."""
+    """Texts, and batches of the shapes between them."""
     for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
         if is_text:
             yield from items
@@ -92,7 +92,7 @@ def _text(item, scale):
 
 
 def _margins(area, scale):
-    """What the tools at the left and the sidebar at the right cover, in points."""
+    """The widths that the toolbar at the left and the sidebar at the right cover, in points."""
     widths = {region.type: region.width for region in area.regions if region.width > 1}
     if not bpy.context.preferences.system.use_region_overlap:
         return 0.0, 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What charts, sections, and legends are put together from."""
+"""Common parts of charts, sections, and legends."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def round_length(most: float) -> float:
 
 
 def tick_texts(values: np.ndarray) -> list[str]:
-    """The numbers of an axis with as many decimals as tell them apart, thousands set apart by commas."""
+    """The labels of an axis: as many decimals as make them distinct, thousands separated by commas."""
     step = float(np.diff(values).min()) if len(values) > 1 else abs(float(values[0])) or 1.0
     largest = float(np.abs(values).max())
     if largest >= 1e9 or step < 1e-6:
@@ -55,7 +55,7 @@ class Axes:
     size: float = 8.0  # of texts
 
     def at(self, points) -> np.ndarray:
-        """(N, 2) in points of what is at x and y (N, 2)."""
+        """(N, 2) positions in points of x and y (N, 2)."""
         low = np.array([self.x_range[0], self.y_range[0]])
         extent = np.array([self.x_range[1], self.y_range[1]]) - low
         x, y, width, height = self.box
@@ -86,7 +86,7 @@ class Axes:
             drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
 
     def _x_ticks(self) -> tuple[np.ndarray, list[str]]:
-        """As many as there is room for."""
+        """As many ticks as there is room for."""
         for most in range(9, 1, -1):
             values = ticks(*self.x_range, most)
             texts = tick_texts(values)
@@ -104,7 +104,7 @@ def legend(
     size=8.0,
     layer="",
 ) -> None:
-    """A title that says what the names are, then boxes of color with their names, the first on top.
+    """A title, then boxes of color with their names, the first on top.
 
     x, y: the upper left corner.
     """

@@ -90,7 +90,7 @@ class _Pairs:
 
 
 def _escaped(text: str) -> str:
-    """With the codes that AutoCAD has for letters which the file's code page does not have."""
+    """The text with AutoCAD's codes for letters that the file's code page lacks."""
     known = text.encode(CODE_PAGE, "ignore").decode(CODE_PAGE)
     return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
 

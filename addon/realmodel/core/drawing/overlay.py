@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands over a view of a model: legend, north arrow, scale bar, and a box of coordinates."""
+"""The overlay of a view of a model: legend, north arrow, scale bar, and a box of coordinates."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _AXIS_NAMES = ("Easting", "Northing", "Elevation")
 
 @dataclass(frozen=True)
 class ColorKey:
-    """What colors mean: names with colors, the first on top; or a range (low, high) with its colors (N, 3),
+    """The key to colors: names with colors, the first on top; or a range (low, high) with its colors (N, 3),
     the lowest first."""
 
     title: str
@@ -54,7 +54,8 @@ class Eye:
         return self.back[3] != 0.0
 
     def at(self, places) -> np.ndarray:
-        """(N, 2): where places of the world (N, 3) are in the picture, in points; NaN for what is behind."""
+        """(N, 2): the positions of places of the world (N, 3) in the picture, in points; NaN for places
+        behind the eye."""
         places = np.asarray(places, np.float64).reshape(-1, 3)
         found = np.column_stack([places, np.ones(len(places))]) @ self.projection.T
         ahead = np.where(found[:, 3:] > 1e-12, found[:, 3:], np.nan)
@@ -63,11 +64,8 @@ class Eye:
 
 @dataclass(frozen=True)
 class Shown:
-    """What is looked at.
-
-    low, high: (3,) model coordinates of the box around it. placed: (4, 4), from these to the world. unit: of
-    lengths. exaggeration: of the vertical.
-    """
+    """The model in the picture. low, high: (3,) model coordinates of the box around it. placed: (4, 4), from
+    these to the world. unit: of lengths. exaggeration: of the vertical."""
 
     low: np.ndarray
     high: np.ndarray
@@ -89,7 +87,7 @@ def draw_overlay(
     axes: bool,
     margins: tuple[float, float] = (0.0, 0.0),
 ) -> Drawing:
-    """A Drawing as large as the picture. keys: its legends. margins: what is covered at the left and
+    """A Drawing as large as the picture. keys: its legends. margins: the widths covered at the left and
     right, in points."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
@@ -109,7 +107,7 @@ def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) ->
 
 
 def legend_extent(key: ColorKey) -> tuple[float, float]:
-    """Width and height of a legend's paper in points."""
+    """Width and height of the background of a legend, in points."""
     if key.colors is None:
         width, height = legend_size(key.title, key.entries, SIZE)
     else:
@@ -123,8 +121,8 @@ def legend_extent(key: ColorKey) -> tuple[float, float]:
 
 
 def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
-    """In the lower left corner; returns where it ends at the right. Entries for which there is no room are
-    counted in the last line."""
+    """Draws the legend in the lower left corner; returns its right end. Entries without room are counted in
+    the last line."""
     most = max(int((drawing.height - 2 * _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
     if len(key.entries) > most:
         more = (f"and {len(key.entries) - most + 1} more", _PAPER)
@@ -141,7 +139,8 @@ def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
 
 
 def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: float) -> None:
-    """At the bottom. In perspective it holds for the middle of the model, and says so."""
+    """Draws the scale bar at the bottom. In perspective it is valid for the center of the model, and labeled
+    so."""
     middle = shown.world((shown.low + shown.high) / 2)[0]
     step = 1e-3 * float(np.linalg.norm(shown.high - shown.low)) or 1.0
     here, there = eye.at([middle, middle + step * eye.right])
@@ -165,7 +164,7 @@ def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: flo
 
 
 def _north_arrow(drawing: Drawing, eye: Eye, edge: float) -> None:
-    """In the lower right corner, lying on the ground: it turns with the view."""
+    """Draws the north arrow in the lower right corner, lying on the ground: it turns with the view."""
     right = np.array(eye.right[:2]) / (np.hypot(*eye.right[:2]) or 1.0)
     ahead = np.array([-right[1], right[0]])
     slope = float(np.dot(eye.up[:2], ahead))
@@ -250,7 +249,7 @@ def _ticks(drawing: Drawing, eye: Eye, shown: Shown, axis: int, edge, center: np
 
 
 def _label(drawing: Drawing, at: np.ndarray, text: str, anchor: str) -> None:
-    """Text on a piece of paper, to be read on any ground."""
+    """Text on a background, readable over any color."""
     x, y = at.tolist()
     width = text_width(text, SIZE)
     left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings as pixels, with smooth edges."""
+"""Rasterization of drawings, with antialiasing."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def rasterize(drawing: Drawing, scale: float, background=WHITE) -> np.ndarray:
 
 
 def over(below: np.ndarray, above: np.ndarray, x: int, y: int) -> None:
-    """Puts the pixels `above`, as `rasterize` returns them, into opaque ones `below`, their upper left corner
-    at column x and row y."""
+    """Composites the pixels `above`, as of `rasterize`, over opaque ones `below`, their upper left corner at
+    column x and row y."""
     part = below[y : y + above.shape[0], x : x + above.shape[1]]
     above = above[: part.shape[0], : part.shape[1]]
     part[..., :3] += above[..., 3:] * (above[..., :3] - part[..., :3])
@@ -44,7 +44,7 @@ def _rgba(color) -> np.ndarray:
 
 
 def item_shapes(item):
-    """What an item covers, as (rings, color): rings (N, 2) in points."""
+    """The shapes of an item, as (rings, color): rings (N, 2) in points."""
     if isinstance(item, Polygon):
         if item.fill is not None:
             yield item.rings, item.fill
@@ -71,7 +71,7 @@ def _normals(steps: np.ndarray) -> np.ndarray:
 
 
 def _miters(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """From the corners of a line to its edge, for normals before and after them."""
+    """Offsets from the corners of a line to its edge, for normals before and after them."""
     return (before + after) / np.maximum(1 + (before * after).sum(axis=1), _SHARPEST)[:, None]
 
 

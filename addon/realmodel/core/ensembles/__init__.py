@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many models of one project: what is known of each block when heights are uncertain."""
+"""Ensembles: many models of one project, and the probabilities of blocks when heights are uncertain."""
 
 from .ensemble import PERCENTILES, Ensemble, ensemble
 from .places import Probabilities, blocks_at

@@ -31,9 +31,9 @@ _NUGGET = -1  # where a noise has the numbers of the nugget; those of lines coun
 
 @dataclass(frozen=True)
 class _Known:
-    """What does not change from one realization to the next: the interpolated heights, the method and the
-    options that reproduce them from the points that count, (P,) bool, and the variogram. Of a surface that is
-    parallel to another one: of its thickness."""
+    """The data of a surface that do not change between realizations: the interpolated heights, the method and
+    the options that reproduce them, counts, (P,) bool, the points that they use, and the variogram. For a
+    surface parallel to another one these are of its thickness."""
 
     result: Interpolation
     method: str
@@ -55,7 +55,7 @@ class Draw:
     def heights(
         self, work: Work, points, nodes, method: str, settings: dict, threads: int, triangles, surfaces
     ) -> Interpolation:
-        """As heights.heights, with an error drawn at random added; 0 at the points."""
+        """As heights.heights, with a random error added, which is 0 at the points."""
         own = self._known(work, points, nodes, method, settings, threads, triangles, surfaces)
         if own.variogram is None:
             return own.result
@@ -64,12 +64,13 @@ class Draw:
         drawn = np.column_stack([points[:, :2], at_points])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
-        told = heights(work, drawn, nodes, own.method, plain, threads, triangles)
-        z = own.result.z + (at_nodes - told.z)
+        interpolated = heights(work, drawn, nodes, own.method, plain, threads, triangles)
+        z = own.result.z + (at_nodes - interpolated.z)
         return replace(own.result, z=_bounded(z, settings, own, work, nodes, threads, triangles, surfaces))
 
     def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
-        """Of a surface that is made from others, which are drawn too, not kept."""
+        """The data that do not change between realizations. They are not cached for a surface that depends on
+        others, as those change, too."""
         if any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS):
             result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
             return self._found(work, points, nodes, method, settings, threads, surfaces, result)
@@ -131,7 +132,7 @@ class Draw:
 
 
 def _bounded(z, settings, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
-    """Heights that keep to the surfaces that the options name, as the interpolated ones do."""
+    """Heights limited by the surfaces that the options name, as the interpolated ones are."""
     task = Task(work, np.empty((0, 3)), nodes, settings, threads, triangles, surfaces=surfaces or {})
     for option, limit in (("above", np.fmax), ("below", np.fmin)):
         if settings.get(option) is not None:

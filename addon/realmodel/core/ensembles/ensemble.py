@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What many realizations of a model say together: volumes, heights, and which block is where."""
+"""Ensembles: statistics of many realizations of a model: volumes, heights, and probabilities of blocks."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def batches(realizations: int) -> list[range]:
 
 
 def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 0) -> Sums:
-    """Those of one realization. places: (N, 3)."""
+    """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
     found = differences(realizer.model, model, threads)
     blocks = blocks_at(model, places, threads)
@@ -123,7 +123,7 @@ class Ensemble:
         return np.percentile(self.volumes, list(percent), axis=0)
 
     def at(self, begin: int = 0, end: int | None = None) -> Probabilities:
-        """How probable each block is at some of the places."""
+        """The probability of each block at some of the places."""
         return Probabilities(self.block_names, self.probability[begin:end])
 
     def entropy(self) -> np.ndarray:
@@ -171,7 +171,7 @@ def realized(
     threads: int = 0,
     each: Callable[[Sums], None] | None = None,
 ) -> Ensemble:
-    """Those of a built model, in this thread. points: (N, 3). each: is called with the sums of each
+    """An ensemble of a built model, in this thread. points: (N, 3). each: is called with the sums of each
     realization, in their order."""
     steps = np.linspace(0.0, 1.0, realizations + 1)
 

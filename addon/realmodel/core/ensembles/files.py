@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an ensemble leaves in a folder: a report, a table of volumes, and all arrays."""
+"""The files of an ensemble: a report, a table of volumes, and all arrays."""
 
 from __future__ import annotations
 

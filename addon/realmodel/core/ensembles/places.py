@@ -46,7 +46,8 @@ def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Probabilities:
-    """Of blocks at places. probability: (N, B) float64; what lacks to 1 is that of no block."""
+    """Probabilities of blocks at places. probability: (N, B) float64; the rest to 1 is the probability of no
+    block."""
 
     block_names: list[str]
     probability: np.ndarray

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One realization of a model: its surfaces drawn anew, intersected and cut as in every build."""
+"""Realizations of a model: its surfaces with random errors, intersected and cut as in every build."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Realizer:
             raise error.within(f"realization {number}") from error
 
     def prepare(self, threads: int = 0) -> None:
-        """Finds what all realizations share, so that workers that are given this do not find it again."""
+        """Computes the data that all realizations share, so that workers do not compute them again."""
         run(lambda work: self._interpolated(work, 0, threads))
 
     def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
@@ -89,7 +89,7 @@ class Realizer:
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:
-        """Of the errors of each surface of a rock mass with those of the next older one."""
+        """The correlations of the errors of each surface of a rock mass with those of the next older one."""
         own = [surface.correlation for surface in entry.rock.surfaces]
         return [self.correlation if each is None else each for each in own]
 
@@ -109,7 +109,7 @@ class Realizer:
             ],
             interpolations=[None] * len(surfaces),
             warnings=[],
-            told={},
+            attributes={},
             structure=None,
             draws=draws,
         )

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an ensemble is asked for its blocks: at the middles of the cells of a section, a fence, a borehole or
-a regular grid."""
+"""The samples of an ensemble: the centers of cells of a section, a fence, a borehole or a regular grid."""
 
 from __future__ import annotations
 
@@ -62,8 +61,9 @@ class GridSamples(Samples):
 
 
 def section_samples(model, section: Section, size: float | Sequence[float] | None = None) -> SectionSamples:
-    """Of a section by a plane, or a fence, of the model. size: of cells, in plan and in height (of a level
-    plane along x and y); None: 200 columns and 100 rows. Raises UsageError where the section is empty."""
+    """Samples of a section of the model by a plane, or of a fence. size: of cells, in plan and in height (of
+    a level plane along x and y); None: 200 columns and 100 rows. Raises UsageError where the section is
+    empty."""
     if not len(section):
         raise UsageError("the section does not meet the model: choose another one")
     flat = flattened(section)
@@ -98,7 +98,8 @@ def section_samples(model, section: Section, size: float | Sequence[float] | Non
 
 
 def borehole_samples(model, x: float, y: float, height: float | None = None) -> BoreholeSamples:
-    """Of a vertical line through the whole model, as high as it is. height: of cells; None: a hundredth."""
+    """Samples of a vertical line through the whole height of the model. height: of cells; None: a
+    hundredth."""
     low, high = float(model.vertices[:, 2].min()), float(model.vertices[:, 2].max())
     beyond = _BEYOND * (high - low)
     bounds = _bounds(low - beyond, high + beyond, height or (high - low + 2 * beyond) / _ROWS)
@@ -110,7 +111,7 @@ def borehole_samples(model, x: float, y: float, height: float | None = None) -> 
 
 
 def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:
-    """Of cells as of regular_cells, with some more above and below. Raises UsageError."""
+    """Samples at the cells of regular_cells, with some more above and below. Raises UsageError."""
     size = checked_size(model, size)
     origin, (nx, ny, nz) = frame_of(model, size)
     beyond = math.ceil(_BEYOND * nz)
@@ -131,7 +132,7 @@ def _check(model, places: int) -> None:
 
 
 def _bounds(low: float, high: float, step: float) -> np.ndarray:
-    """Of cells of equal size from low to high, about a step long."""
+    """The bounds of cells of equal size from low to high, about a step long."""
     return np.linspace(low, high, max(1, round(min((high - low) / step, MOST_PLACES))) + 1)
 
 

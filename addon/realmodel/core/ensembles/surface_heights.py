@@ -12,8 +12,8 @@ from ..work import native_module
 
 
 def heights(model: Model) -> list[np.ndarray | None]:
-    """Of each surface (V,) float64: at the nodes of the planar mesh, or where faults divide the rock mass at
-    the vertices of its sheets, one after another; None for ready meshes."""
+    """The heights (V,) float64 of each surface: at the nodes of the planar mesh, or where faults divide the
+    rock mass at the vertices of its sheets, one after another; None for ready meshes."""
     return [
         None if _is_ready(entry, number) else _own(entry, number)
         for entry in model.rock_inputs
@@ -22,8 +22,8 @@ def heights(model: Model) -> list[np.ndarray | None]:
 
 
 def differences(base: Model, drawn: Model, threads: int = 0) -> list[np.ndarray | None]:
-    """Of each surface (V,) float64: the heights of a realization less those of the model, as of `heights`.
-    NaN where a sheet of the realization does not reach."""
+    """The differences (V,) float64 of each surface: the heights of a realization minus those of the model, as
+    of `heights`. NaN where a sheet of the realization does not reach."""
     return [
         None if _is_ready(entry, number) else _difference(entry, other, number, threads)
         for entry, other in zip(base.rock_inputs, drawn.rock_inputs, strict=True)

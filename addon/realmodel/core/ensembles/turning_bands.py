@@ -69,8 +69,8 @@ class Noise:
 
 @dataclass(frozen=True)
 class Frame:
-    """Where fields are drawn, from one corner (2,) in plan to the other: fields of one frame are correlated
-    as their noises are."""
+    """The area of random fields, from one corner (2,) in plan to the other. Fields of one frame have the
+    correlation of their noises."""
 
     low: np.ndarray
     high: np.ndarray
@@ -149,7 +149,8 @@ def _process(spectrum: np.ndarray, samples: int, noise: Noise, line: int) -> np.
 
 
 def _directions() -> np.ndarray:
-    """(LINES, 2) float64: what the plan sees of directions that are spread evenly over a half sphere."""
+    """(LINES, 2) float64: the projections to the plan of directions that are spread evenly over a half
+    sphere."""
     number = np.arange(LINES)
     height = (number + 0.5) / LINES
     around = number * math.pi * (3 - math.sqrt(5))  # the golden angle

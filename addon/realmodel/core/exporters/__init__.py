@@ -195,7 +195,7 @@ def output_target(path: str | Path) -> Path:
 
 
 def no_step(_share: float) -> None:
-    """For callers that want no progress."""
+    """For callers without progress."""
 
 
 def write_model(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the ending of an output's name says."""
+"""The formats of outputs, by the ending of their names."""
 
 from __future__ import annotations
 

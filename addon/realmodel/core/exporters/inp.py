@@ -86,7 +86,8 @@ class _Halves:
         self.tetrahedra = halves.reshape(-1, 4)
 
     def sides(self, pyramids: np.ndarray, side: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Of faces of pyramids (numbers in OUTWARD) which half has them, and their number there from 1."""
+        """For faces of pyramids (numbers in OUTWARD): the half that has them, and their number there from
+        1."""
         edge = (side - 1 - self.begin[pyramids]) % 4
         half = np.where(side == 0, 0, edge // 2)
         return half, np.where(side == 0, 1, np.array([2, 3, 3, 4])[edge])

@@ -39,7 +39,7 @@ class _Layer:
 
 
 def write_geojson(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
-    """One collection of the features of all layers; `layer` says which each is of."""
+    """Writes one collection of the features of all layers; `layer` is the name of the layer of each."""
     layers = _layers(model, step, interval)
     with outputs.file(path) as file:
         head = {"type": "FeatureCollection", "name": model.project.name or Path(path).stem}

@@ -182,7 +182,7 @@ def write_disu(
 
 
 def _face_areas(mesh: PolyhedralMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Of each face its area vector, out of its first cell, and the centre of its area, (F, 3) each."""
+    """The area vector of each face, out of its first cell, and the centroid of its area, (F, 3) each."""
     sizes = np.diff(mesh.face_offsets)
     first = np.repeat(mesh.face_offsets[:-1], sizes)
     following = np.arange(1, len(mesh.face_vertices) + 1)

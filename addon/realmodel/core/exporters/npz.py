@@ -47,8 +47,8 @@ def model_arrays(model) -> dict[str, np.ndarray]:
 
 def joined_attributes(model, name: str) -> np.ndarray:
     """(Vs,) float64: an attribute of the vertices of all surfaces, one surface after another."""
-    told = [model.surface_attributes(number)[name] for number in range(len(model.surface_names))]
-    return np.concatenate([np.empty(0), *told])
+    attributes = [model.surface_attributes(number)[name] for number in range(len(model.surface_names))]
+    return np.concatenate([np.empty(0), *attributes])
 
 
 def texts(given) -> np.ndarray:
@@ -73,7 +73,9 @@ def write_arrays(
             entry = zipfile.ZipInfo(f"{name}.npy", _FIRST_DATE)
             entry.create_system = 3
             entry.external_attr = 0o644 << 16
-            entry.file_size = array.nbytes + _HEADER  # tells zipfile which entries need 64-bit sizes
+            entry.file_size = (
+                array.nbytes + _HEADER
+            )  # zipfile decides by it whether an entry needs 64-bit sizes
             with archive.open(entry, "w") as member:
                 np.lib.format.write_array(
                     member, np.ascontiguousarray(array).reshape(array.shape), version=(1, 0)

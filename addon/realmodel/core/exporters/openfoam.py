@@ -71,7 +71,7 @@ def write_openfoam(mesh: PolyhedralMesh, folder: Path, step: Callable[[float], N
     for name, text in _SYSTEM.items():
         head = _HEADER.format(format="ascii", kind="dictionary", arch="", location="system", name=name)
         (folder / "system" / name).write_text(head + text)
-    (folder / f"{folder.stem}.foam").touch()  # what ParaView opens
+    (folder / f"{folder.stem}.foam").touch()  # the file to open in ParaView
     order, inner, patches, starts = _ordered(mesh)
     step(0.2)
     made = native_module().ordered_faces(mesh.face_offsets, mesh.face_vertices, mesh.face_cells, order)
@@ -158,7 +158,7 @@ def _write_zones(mesh: PolyhedralMesh, poly: Path, order: np.ndarray, turned: np
 
 
 def _zones(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
-    """Which have each number from 0, ascending, as labels; those of no number below 0 are left out."""
+    """The elements with each number from 0, ascending, as labels; negative numbers are left out."""
     with_one = np.flatnonzero(number >= 0)
     own = number[with_one]
     # NumPy sorts short numbers by counting

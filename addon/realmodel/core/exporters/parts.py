@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What programs for shapes take: blocks, surfaces and sections as named meshes of polygons."""
+"""Named meshes of polygons for programs that take shapes: blocks, surfaces and sections."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from ..work import native_module
 
-_PLAIN = (0.7, 0.7, 0.7)  # of what has no property
+_PLAIN = (0.7, 0.7, 0.7)  # for parts without a property
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Part:
 
 
 def model_parts(model) -> list[Part]:
-    """The closed boundary of every block that there is, named after it."""
+    """The closed boundary of each existing block, named after it."""
     names = distinct_names(block.name for block in model.blocks)
     materials, colors = block_materials(model), model.block_colors.tolist()
     parts = []
@@ -64,7 +64,7 @@ def model_parts(model) -> list[Part]:
 
 
 def block_materials(model) -> dict[int, str]:
-    """What the property of each block is called."""
+    """The name of the property of each block."""
     library = model.project.library
     used = {block.property for block in model.blocks}
     entries = {number: library.get(number) if library else None for number in sorted(used)}
@@ -107,7 +107,7 @@ def section_parts(section) -> list[Part]:
 
 
 def distinct_names(given: Iterable[str]) -> list[str]:
-    """The same names, on one line; of equal ones the second and further ones with a number behind."""
+    """The same names, each in one line; a number is appended to repeated ones."""
     taken: set[str] = set()
     names = []
     for name in given:
@@ -122,7 +122,7 @@ def distinct_names(given: Iterable[str]) -> list[str]:
 
 
 def plain_words(names: Sequence[str]) -> list[str]:
-    """Names for formats that know no blanks: other signs than letters, digits, - and . become _."""
+    """Names for formats without blanks: characters other than letters, digits, - and . become _."""
     words = ["".join(c if c.isalnum() or c in "-._" else "_" for c in name) for name in names]
     found: list[str] = []
     for word in words:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PLY (Stanford polygon file), binary: triangles that know their part, its property and its color."""
+"""PLY (Stanford polygon file), binary: triangles with the number of their part, its property and its
+color."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was built, as JSON: for programs that read on, and for the reviewer of a model."""
+"""The report of a model as JSON: for other programs, and for reviewers."""
 
 from __future__ import annotations
 
@@ -84,8 +84,8 @@ def model_report(
 
 
 def _erosion(model, erosion: Erosion) -> dict:
-    """What each surface removed and each body took of which blocks, and for each block what was laid down,
-    removed, taken and left."""
+    """The volumes that each surface eroded and each body took of each block, and for each block the volumes
+    deposited, eroded, taken and left."""
     names = [block.name for block in model.blocks]
     rock_of = [rock.name for rock in model.project.rocks for _ in rock.surfaces]
     return {
@@ -147,7 +147,7 @@ def _compartments(model) -> list[dict]:
 
 
 def _faults(model) -> list[dict]:
-    """Throw and heave along each fault: their means, and where they are largest."""
+    """Throw and heave along each fault: their means, and the largest values."""
     found = displacements(model)
     return [
         {
@@ -168,7 +168,7 @@ def _faults(model) -> list[dict]:
 
 
 def fault_entry(fault) -> dict:
-    """What is told of a fault without a model."""
+    """The entry of a fault, as far as it does not need a model."""
     return {
         "name": fault.name,
         "triangles": len(fault.triangles),
@@ -183,7 +183,7 @@ def _mean_and_largest(values: np.ndarray) -> dict:
 
 
 def body_entry(body) -> dict:
-    """What is told of a body."""
+    """The entry of a body."""
     return {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
 
 
@@ -206,7 +206,7 @@ def _block(model, number: int, total: float, deviation: float) -> dict:
 
 
 def warning_entries(model) -> list[dict]:
-    """What was told of a model, or of surfaces."""
+    """The warnings of a model, or of a SurfaceSet."""
     return [
         {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
         for w in model.warnings
@@ -214,7 +214,7 @@ def warning_entries(model) -> list[dict]:
 
 
 def surface_entries(model) -> list[dict]:
-    """What is told of each surface of a model, or of a SurfaceSet."""
+    """The entry of each surface of a model, or of a SurfaceSet."""
     entries = []
     for rock in (entry.rock for entry in model.rock_inputs):
         for surface in rock.surfaces:
@@ -243,7 +243,7 @@ def surface_entries(model) -> list[dict]:
 
 
 def versions() -> dict[str, str]:
-    """Of all that had a part in the result."""
+    """The versions of all software that affects the result."""
     found = {
         "realmodel": native_module().VERSION,
         "python": platform.python_version(),

@@ -103,12 +103,12 @@ def write_section_csv(section, file: BinaryIO) -> None:
     along = section.corner_distances() if is_fence else None
     for k in range(len(section)):
         block = int(section.block[k])
-        told = [k, block, section.block_names[block], int(section.property[k])]
+        common = [k, block, section.block_names[block], int(section.property[k])]
         for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
             place = section.vertices[section.polygon_vertices[corner]].tolist()
             extra = [int(section.panel[k]), repr(float(along[corner]))] if is_fence else []
             extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
-            rows.writerow([*told, *map(repr, place), *extra])
+            rows.writerow([*common, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))
 
 

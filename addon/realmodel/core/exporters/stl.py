@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""STL as text, the form that has names and all digits: a solid for each part."""
+"""STL as text, the variant with names and all digits: a solid for each part."""
 
 from __future__ import annotations
 

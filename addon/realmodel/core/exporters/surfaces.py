@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, shapes, and a report."""
+"""Files of surfaces with their heights, without a model: .npz, .vtu of triangles, shapes, and a report."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def write_pieces(file: BinaryIO, pieces: Sequence[str]) -> None:
 
 
 def write_length(file: BinaryIO, size: int) -> None:
-    """Writes what precedes an array of so many bytes."""
+    """Writes the header of an array of this number of bytes."""
     file.write(np.array([size], "<u8").tobytes())
 
 

@@ -96,15 +96,16 @@ class CellFaces:
         return (self._sides & 1).astype(bool)
 
     def description_length(self) -> int:
-        """How many numbers describe the faces of all cells: for each its number of corners and these."""
+        """The number of integers that describe the faces of all cells: for each face the number of its
+        corners, and the corners."""
         cells = self.mesh.face_cells
         size = np.diff(self.mesh.face_offsets) + 1
         return int(size[cells[:, 0] >= 0].sum() + size[cells[:, 1] >= 0].sum())
 
     def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Of the cells start..end: int64 for each its number of faces, and each face's number of corners and
-        corners; the vertices of each, every one once and in order; how many these are (a cell); and how many
-        of the first numbers are of each cell."""
+        """The description of the cells start..end, int64: for each cell its number of faces, and for each
+        face its number of corners and its corners; the vertices of each cell, each once and in order; the
+        number of these for each cell; and for each cell the number of integers in the first array."""
         return native_module().describe_cells(
             self.mesh.face_offsets, self.mesh.face_vertices, self.begin[start : end + 1], self._sides
         )

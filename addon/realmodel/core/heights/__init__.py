@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each method does with points, nodes and its options: `heights` runs the one that is asked for."""
+"""The implementations of the methods: `heights` runs the requested one on points, nodes and options."""
 
 from .interpolation import Interpolation
 from .run import chosen, heights, left_out_heights

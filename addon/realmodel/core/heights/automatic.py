@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The method that suits some points: by their number, their spread, and how well each tells others."""
+"""The method "auto": chooses a method by the number of points, their spread, and cross-validation."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..methods import checked_options
 from . import from_neighbours
 from .interpolation import Result, Task, run_method
 
-_FEW = 10  # points: below this a variogram shows nothing
-_TOLD = 2000  # points that are left out and told, where there are so many
+_FEW = 10  # points: too few for a variogram
+_LEFT_OUT = 2000  # about as many points are left out and estimated, where there are so many
 _FOLDS = 10
-_AS_GOOD = 1.02  # errors this near tell nothing: then a method with a variance is better
-_ROUNDING = 1e-12  # of the highest point: errors below it are of rounding, and tell nothing either
-_IN_LINE = 1e-3  # of the greatest spread: points of less across it show no slope there
+_AS_GOOD = 1.02  # a ratio of errors below this is insignificant: then a method with a variance is preferred
+_ROUNDING = 1e-12  # of the highest point: smaller errors are rounding errors, and insignificant, too
+_IN_LINE = 1e-3  # of the greatest spread: points of less spread across it are in one line
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,8 @@ _OF_FEW = (Candidate("plane", {}), Candidate("spline", {}), Candidate("idw", {})
 
 @dataclass(frozen=True)
 class Trial:
-    """A candidate made ready for some points. known: the variogram that kriging fits to all of them, once."""
+    """A candidate with its settings for some points. known: for kriging, the variogram fitted to all of
+    them."""
 
     candidate: Candidate
     settings: dict
@@ -55,9 +56,9 @@ class Trial:
         return run_method(self.candidate.method, task)
 
     def error(self, task: Task, points: np.ndarray) -> float:
-        """Root of the mean squared error at points that are left out; the same ones for every candidate."""
+        """The root mean square error at points that are left out, the same points for every candidate."""
         folds = len(points) if len(points) < _FEW else _FOLDS
-        step = max(folds, len(points) // _TOLD)
+        step = max(folds, len(points) // _LEFT_OUT)
         errors = []
         for fold in range(1 if step > folds else folds):
             task.work.check()
@@ -69,13 +70,13 @@ class Trial:
 
 
 def automatic(task: Task) -> tuple[str, str, Result]:
-    """The method chosen, why, and what it gives."""
+    """The chosen method, the reason, and its result."""
     trial, reason = choose(task)
     return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
 
 
 def choose(task: Task) -> tuple[Trial, str]:
-    """The candidate, and why in one sentence."""
+    """The chosen candidate, and the reason in one sentence."""
     places = np.unique(task.points[:, :2], axis=0)
     if len(places) == 1:
         return _trial(task, Candidate("constant", {})), "there is one point only"
@@ -89,15 +90,15 @@ def choose(task: Task) -> tuple[Trial, str]:
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
     trials = [_trial(task, candidate) for candidate in (_OF_FEW if len(places) < _FEW else _CANDIDATES)]
     errors = [trial.error(task, points) for trial in trials]
-    told = np.maximum(errors, _ROUNDING * np.abs(points[:, 2]).max())
-    least = told.min()
+    significant = np.maximum(errors, _ROUNDING * np.abs(points[:, 2]).max())
+    least = significant.min()
     best = next(
         (
             trial
-            for trial, error in zip(trials, told, strict=True)
+            for trial, error in zip(trials, significant, strict=True)
             if error <= _AS_GOOD * least and trial.known is not None
         ),
-        trials[int(np.argmin(told))],
+        trials[int(np.argmin(significant))],
     )
     said = [f"{trial.candidate.name} {error:.4g}" for trial, error in zip(trials, errors, strict=True)]
     return best, f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"

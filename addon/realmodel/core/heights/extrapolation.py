@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes outside the convex hull of the points, and what they get."""
+"""Extrapolation: nodes outside the convex hull of the points, and their heights."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def outside_hull(task: Task) -> np.ndarray:
 
 
 def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Result:
-    """Heights of nodes outside the hull as the option `extrapolate` wants them: those of the method, of the
+    """Replaces the heights of nodes outside the hull by the option `extrapolate`: those of the method, of the
     nearest point, or none (NaN)."""
     wanted = task.settings.get("extrapolate", "method")
     if wanted == "method" or not outside.any():

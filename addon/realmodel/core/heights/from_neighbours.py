@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Methods whose height at a node comes from the points near it: kriging, inverse distance, splines."""
+"""Methods whose height at a node depends on the points near it: kriging, inverse distance, splines."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _neighbourhood(settings: dict) -> dict:
 
 @dataclass(frozen=True)
 class Structure:
-    """What kriging knows of how heights differ: the variogram, the number of neighbours, and what to tell."""
+    """The variogram of kriging, its number of neighbours, and warnings."""
 
     variogram: Variogram
     neighbours: int
@@ -31,8 +31,8 @@ class Structure:
 
 
 def structure(task: Task, are_apart: bool = False) -> Structure:
-    """As the settings have it, or fitted to the points. are_apart: no two points have one place; they may be
-    in a file."""
+    """The variogram of the settings, or fitted to the points. are_apart: no two points have one position;
+    they may be in a file."""
     settings = task.settings
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
@@ -55,7 +55,8 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
 
 
 def krige(task: Task, known: Structure | None = None) -> Result:
-    """Ordinary kriging; universal kriging where the settings have a drift. known: what `structure` found."""
+    """Ordinary kriging; universal kriging where the settings have a drift. known: the result of
+    `structure`."""
     native = native_module()
     settings = task.settings
     if known is None:
@@ -76,7 +77,7 @@ def krige(task: Task, known: Structure | None = None) -> Result:
 
 
 def without_near_points(alone: int, nodes: int) -> list[str]:
-    """What there is to tell of so many nodes that have no point within the radius."""
+    """The warning about nodes without a point within the radius. alone: their number."""
     if not alone:
         return []
     return [
@@ -112,7 +113,8 @@ def inverse_distance(task: Task) -> Result:
 
 
 def thin_plate(task: Task, spacing: float = 0.0) -> Result:
-    """spacing: the mean one of all points where the task has a part of them; 0: it has all."""
+    """Thin-plate splines. spacing: the mean spacing of all points, where the task has a part of them; 0: it
+    has all."""
     arguments = {**_neighbourhood(task.settings), "smoothing": task.settings["smoothing"]}
     z = task.run(native_module().spline, task.points, task.nodes, **arguments, spacing=spacing)
     return Result(z, warnings=_beyond_radius(task))

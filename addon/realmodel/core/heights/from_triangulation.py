@@ -21,7 +21,7 @@ def natural_neighbour(task: Task) -> Result:
 
 
 def _inside_hull(task: Task, function: Callable) -> Result:
-    """Heights of all nodes; outside the hull of the points only where the method is to extrapolate."""
+    """Heights of all nodes; only if the method is to extrapolate also outside the hull of the points."""
     if task.settings.get("extrapolate", "method") == "method":
         return Result(task.run(function, task.points, task.nodes))
     outside = outside_hull(task)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes into a method, and what comes out."""
+"""The input and the result of a method."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Interpolation:
 
 @dataclass(frozen=True)
 class Task:
-    """What a method works on: points (P, 3) of which no two contradict, nodes (N, 2), the complete settings
-    of the method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be told by
+    """The input of a method: points (P, 3) without contradictions, nodes (N, 2), the complete settings of the
+    method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be estimated from
     the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3))."""
 
     work: Work

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Discrete smooth interpolation: the smoothest heights of a mesh that obey points, border and bounds."""
+"""Discrete smooth interpolation: the smoothest heights of a mesh that honor points, border and bounds."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _called(reference) -> str:
 
 
 def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
-    """Refuses heights that are to lie above others and below them: there is no surface."""
+    """Refuses bounds that contradict: no surface lies between them."""
     low, high = (given.get(_ARGUMENTS[option]) for option in (lower, upper))
     if low is None or high is None:
         return
@@ -79,7 +79,7 @@ def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
 
 
 def _beyond(task: Task, option: str) -> list[str]:
-    """What to tell of points on the wrong side of a bound: it goes before them."""
+    """The warning about points on the wrong side of a bound, which takes precedence over them."""
     reference = task.settings[option]
     if reference is None or not len(task.points):
         return []

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What geologists do with few points: a constant, a plane, a surface parallel to another.
-
-Calculated without NumPy's linear algebra, which gives other last digits on other processors.
-"""
+"""Simple methods for few points: a constant, a plane, a surface parallel to another. Calculated without
+NumPy's linear algebra, whose last digits differ between processors."""
 
 from __future__ import annotations
 
@@ -40,7 +38,7 @@ def constant(task: Task) -> Result:
 
 
 def mean_height(points: np.ndarray) -> float:
-    """Of points (P, 3), no two equal, which may be in a file."""
+    """The mean height of points (P, 3), no two equal, which may be in a file."""
     base = float(points[:, 2].min())
     return base + _total(piece[:, 2] - base for piece in in_pieces(points)) / len(points)
 
@@ -84,7 +82,7 @@ class Plane:
         return np.ones(len(plan)) if number == 0 else _along(plan, self.azimuths[number - 1]) / self.unit
 
     def terms(self, plan: np.ndarray) -> list[np.ndarray]:
-        """Those of which the steps are known, orthonormal over all points."""
+        """The terms with known steps, orthonormal over all points."""
         done: list[np.ndarray] = []
         for number, (shares, size) in enumerate(self.steps):
             done.append(_without(self.plain_term(plan, number), shares, done) / size)
@@ -121,7 +119,7 @@ def fitted_plane(points: np.ndarray, settings: dict) -> Plane:
     found = _directed(center, base, settings, lambda: (plan for plan, _ in pieces()))
 
     def left(number: int, shares: list[float]) -> Iterator[tuple[np.ndarray, list[np.ndarray]]]:
-        """What is left of a term, piece by piece, and those before it."""
+        """The remainder of a term, piece by piece, and the terms before it."""
         for plan, _ in pieces():
             done = found.terms(plan)
             yield _without(found.plain_term(plan, number), shares, done), done

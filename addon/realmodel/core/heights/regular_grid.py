@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points that are the nodes of a regular grid, turned in plan or not, and bilinear heights between them.
+"""Regular grids: points that are the nodes of a grid, rotated in plan or not, and bilinear heights between
+them.
 
-Calculated without NumPy's linear algebra, which gives other last digits on other processors.
+Calculated without NumPy's linear algebra, whose last digits differ between processors.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .interpolation import Result, Task
 
 # Of a cell: how far a point may lie from its place in the grid (coordinates are written with few digits).
 _OFF_GRID = 0.02
-_ON_LINE = 1e-9  # of a cell: what is so near a line of the grid lies on it, but for rounding
+_ON_LINE = 1e-9  # of a cell: nearer points lie on a line of the grid, up to rounding
 _SAMPLE = 200  # points whose neighbours show the grid's directions
 _MOST_EMPTY = 100  # nodes of the grid for each point
 _NEAR = 16  # points, in the mean, in a cell where neighbours are looked for
@@ -94,7 +95,7 @@ def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
 def _heights(
     points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, room: Room = np.zeros
 ) -> np.ndarray:
-    """Of the nodes from `low` to `high`; NaN where there is no point."""
+    """The heights of the nodes from `low` to `high`; NaN where there is no point."""
     z = room(tuple((high - low + 1).tolist()), float)
     z.fill(np.nan)
     for piece in in_pieces(points):
@@ -234,7 +235,8 @@ def _axes(points: np.ndarray) -> np.ndarray:
 
 
 def _steps(points: np.ndarray, numbers: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray] | None]:
-    """From some points to the nearest one, and to the nearest one across that direction, if there is one."""
+    """The steps from some points to the nearest one, and to the nearest one across that direction, if there
+    is one."""
     start = points[0, :2]
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     size = high - low
@@ -270,7 +272,8 @@ def _in_cells_around(points: np.ndarray, places: np.ndarray, low: np.ndarray, si
 
 
 def _step(plan: np.ndarray, place: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray] | None, float]:
-    """From a place to the nearest of others, and to the nearest across, if there is one; how far that is."""
+    """The steps from a position to the nearest of others, and to the nearest across, if there is one; and the
+    distance."""
     d = plan - place
     squared = np.square(d).sum(axis=1)
     squared[squared == 0] = np.inf

@@ -76,7 +76,7 @@ def chosen(work: Work, points, settings: dict, threads: int) -> tuple[str, dict]
 
 
 def few_points(points: np.ndarray, method: str) -> list[str]:
-    """What to tell where points are too few for a surface that was to have a shape of its own."""
+    """A warning if the points are too few for the method (Method.has_shape)."""
     if not METHODS[method].has_shape:
         return []
     if not len(points):
@@ -124,7 +124,7 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
 
 
 def left_out_heights(work: Work, points, method: str, settings: dict, threads: int) -> Result:
-    """Each point as the others tell it, by a method that leaves one out."""
+    """The height of each point, estimated from the others by a method that leaves one out."""
     native = native_module()
     task = Task(work, points, np.empty((0, 2)), settings, threads)
     try:

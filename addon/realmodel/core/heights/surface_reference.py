@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Options that mean another surface: a height, heights at the nodes, a triangulated surface, or its name."""
+"""Options that refer to another surface: a height, heights at the nodes, a triangulated surface, or its
+name."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Readers of the files that geologists bring: points, meshes, regions."""
+"""Readers of input files: points, meshes, regions."""
 
 from .boreholes import Picks, read_boreholes
 from .map_input import MAP_ENDINGS, read_region, read_shapes

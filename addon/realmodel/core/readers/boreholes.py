@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points of surfaces from tables of boreholes: collars, and the depths at which surfaces were met."""
+"""Points of surfaces from tables of boreholes: collars, and the depths of picks."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
     """The points of every surface that the picks name, in the model's unit and the order of the table.
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
-    (HolePath); others are vertical, and where a table says otherwise that is told. Rows without a depth are
-    left out, and told: the hole did not reach the surface.
+    (HolePath); all others are vertical, with a warning where a table says otherwise. Rows without a depth are
+    left out with a warning: the hole did not reach the surface.
     Raises InputRefused naming file and line.
     """
     unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
@@ -52,7 +52,7 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
             missing += 1
             continue
         if column == "depth":
-            # Depths, and what a hole has gone sideways, are in the unit of z.
+            # Depths, and horizontal offsets along a hole, are in the unit of z.
             way = holes.way_to(row) * (1.0, 1.0, -1.0) * (scale[2] / scale)
             place = (begin + way) * scale
         else:
@@ -73,21 +73,21 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
 
 
 class _Holes:
-    """Where holes begin and how they go on."""
+    """The collars and the paths of holes."""
 
     def __init__(self, given: Boreholes):
         self._given = given
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
         self._paths: dict[str, HolePath] = {}
-        self._told: list[str] = []
+        self._warnings: list[str] = []
         self._collars = None if given.collars is None else self._read_collars()
         self._unused = set(self._collars or ())
         self._surveyed: set[str] = set()
         if given.survey is not None:
             directions = HoleDirections.of_survey(given)
             surveyed = directions.paths()
-            self._told += directions.warnings
+            self._warnings += directions.warnings
             self._surveyed = set(surveyed)
             self._paths |= surveyed
 
@@ -144,7 +144,7 @@ class _Holes:
         return path.offset(depth)
 
     def refuse_deviated(self, row: Row) -> None:
-        """Refuses an elevation where it does not say at which place the hole was."""
+        """Refuses an elevation that does not determine the position in the hole."""
         path = self._paths.get(row.text("hole"))
         if self._collars is not None and path is not None and not path.is_vertical:
             what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"
@@ -153,28 +153,28 @@ class _Holes:
             )
 
     def warnings(self) -> list[str]:
-        told = list(self._told)
+        warnings = list(self._warnings)
         inclined = [hole for hole in self._inclined if hole not in self._paths]
         if inclined:
-            told.append(
+            warnings.append(
                 f"{self._given.collars or self._given.picks}: {number_list(inclined)} are not vertical, but "
                 "are taken as vertical: add the azimuth, a survey, or x, y and elevation of "
                 "each pick"
             )
         if self._without_survey:
             names = number_list(self._without_survey)
-            told.append(f"{self._given.survey}: no direction for {names}: taken as vertical")
+            warnings.append(f"{self._given.survey}: no direction for {names}: taken as vertical")
         if self._unused:
-            told.append(f"{self._given.collars}: no picks for {number_list(sorted(self._unused))}")
+            warnings.append(f"{self._given.collars}: no picks for {number_list(sorted(self._unused))}")
         if self._collars is not None and (strangers := sorted(self._surveyed - set(self._collars))):
-            told.append(
+            warnings.append(
                 f"{self._given.survey}: {number_list(strangers)} have no collar in {self._given.collars}"
             )
-        return told
+        return warnings
 
 
 def _depth_column(row: Row) -> str:
-    """The column that says where a surface was met."""
+    """The column with the position of a pick."""
     for column in ("depth", "elevation", "z"):
         if column in row.columns:
             return column

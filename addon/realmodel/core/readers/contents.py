@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What there is to choose from in a file of points: its columns or attributes, their values, its layers."""
+"""The choices in a file of points: its columns or attributes, their values, its layers."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def layer_names(file: Path) -> list[str]:
 
 
 def _nothing_selected(file: Path, layer: str | None, attribute: str) -> NothingSelected:
-    """What a layer says when it has no feature as is asked for; geometries are not read."""
+    """The error of a layer that has no matching feature; geometries are not read."""
     try:
         read_shapes(MapLayer(file, layer, {attribute: _NOTHING}))
     except NothingSelected as found:

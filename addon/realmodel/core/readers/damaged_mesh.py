@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of a damaged file of a mesh."""
+"""Errors of damaged mesh files."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)
 
 
 class Damaged(ValueError):
-    """What is wrong, and the line or the byte where."""
+    """An error in a file, with its line or byte."""
 
     def __init__(self, what: str, line: int | None = None, byte: int | None = None):
         super().__init__(what if byte is None else f"{what} (byte {byte})")

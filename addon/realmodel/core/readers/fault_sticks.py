@@ -21,19 +21,18 @@ from .text import LINES_AT_ONCE, Step, no_step, read_bytes, read_text
 
 _END_OF_STICK = 999.0  # in all three columns
 _END_LINE = re.compile(rb"^\s*(?:999(?:\.0*)?\s+){2}999(?:\.0*)?\s*$", re.MULTILINE)
-_COLUMN = "stick"  # that tells sticks apart where nothing else is said
+_COLUMN = "stick"  # the column of a stick's name or number, where none is given
 
 
 def read_fault_points(
     given: PointFile, stick: str | int | None = None, model_unit: str = MODEL_UNIT, step: Step = no_step
 ) -> tuple[list[np.ndarray] | np.ndarray, list[str]]:
-    """Sticks, a list of (N, 3) float64 each, or scattered points (P, 3), in the model's unit, and what to
-    tell about them.
+    """Sticks, a list of (N, 3) float64 each, or scattered points (P, 3), in the model's unit, and warnings.
 
     A file of polylines has x y z in each line, and 999 999 999 ends a stick. stick: the column of a table, by
-    name or by number from 1, in which the rows of one stick say the same; without it a column named "stick"
-    is taken, and where there is none the points are scattered. Raises InputRefused naming the file, and the
-    line where it has some.
+    name or by number from 1, with one value for each stick; default: the column named "stick", and without
+    such a column the points are scattered. Raises InputRefused naming the file, and the line where it has
+    lines.
     """
     file = Path(given.file)
     head = head_of(file)
@@ -96,7 +95,7 @@ def _table_sticks(
     names = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
     sticks, warnings = [], []
     for name in names:
-        points, told = read_point_file(replace(given, where={**given.where, column: name}), model_unit)
+        points, texts = read_point_file(replace(given, where={**given.where, column: name}), model_unit)
         sticks.append(points)
-        warnings += told
+        warnings += texts
     return sticks, list(dict.fromkeys(warnings))

@@ -18,9 +18,9 @@ from .table_layout import names_shown
 from .text import Step, no_step
 
 _MAGIC = b"SQLite format 3\0"
-# Python cannot decode SQLite's message where it names what is damaged
+# Python cannot decode SQLite's message where it contains damaged text
 UNREADABLE = (sqlite3.Error, UnicodeDecodeError)
-_ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by what the flags say
+_ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by the flags
 _POINT, _LINE, _POLYGON = 1, 2, 3
 _COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
 _CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
@@ -90,7 +90,7 @@ def _read(
         advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
         raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
     table = layer if layer is not None else next(iter(layers))
-    if table not in layers:  # SQL does not tell a from A
+    if table not in layers:  # SQL ignores case
         table = next((name for name in layers if name.lower() == table.lower()), table)
     if table not in layers:
         what = f"it has no layer '{layer}'"

@@ -32,7 +32,7 @@ _FEET = {9002: "ft", 9003: "us-ft"}
 _NONE, _LZW, _DEFLATE, _PACKBITS = 1, 5, (8, 32946), 32773
 _MOST_COMPRESSED = 3000  # bytes of one, of LZW; DEFLATE stays below
 _MOST_WITHOUT_BYTES = 1 << 24  # pixels of a strip or tile that is not stored
-_BYTES_PER_PIXEL = 40  # of the height, of the point made of it, and of what they are made from
+_BYTES_PER_PIXEL = 40  # of the height, of its point, and of their raw data
 _WORLD_FILES = (".tfw", ".tifw", ".tiffw", ".wld")
 
 
@@ -42,7 +42,7 @@ def is_tiff(head: bytes) -> bool:
 
 
 def world_file(file: Path) -> Path | None:
-    """The file beside a TIFF that says where it lies, if there is one."""
+    """The world file beside a TIFF, which has its position, if there is one."""
     beside = (file.with_suffix(ending) for ending in _WORLD_FILES)
     return next((path for path in beside if path.is_file()), None)
 
@@ -83,7 +83,7 @@ def read_geotiff(
 
 @contextmanager
 def _no_logging():
-    """tifffile writes to the terminal what it thinks of tags; what matters here raises."""
+    """Suppresses the log messages of tifffile about tags; errors are raised."""
     logger = logging.getLogger("tifffile")
     before, logger.disabled = logger.disabled, True
     try:
@@ -169,7 +169,7 @@ def _bands(file: Path, tifffile, tiff, page, step: Step) -> Iterator[np.ndarray]
 def _divided(
     file: Path, places: list[tuple[int, int]], high: int, rows: int, row: int
 ) -> tuple[int, list[tuple[int, int]]]:
-    """Strips of so many rows that are not compressed as lower ones, and how high these are. row: bytes."""
+    """Divides uncompressed strips into lower ones of this many rows; and the height of these. row: bytes."""
     lower = max(1, ROWS_AT_ONCE * 8 // row)
     if lower >= high:
         return high, places
@@ -236,7 +236,7 @@ def _no_value(file: Path, tags: dict) -> list[float]:
 
 
 def _scaled(z: np.ndarray, metadata) -> np.ndarray:
-    """Heights that GDAL stored as whole numbers with a scale and an offset beside them."""
+    """Heights that GDAL stored as integers with a scale and an offset."""
     parts = {}
     for role in ("scale", "offset"):
         given = re.search(rf'<Item [^>]*role="{role}"[^>]*>([^<]+)</Item>', str(metadata or ""))
@@ -247,7 +247,7 @@ def _scaled(z: np.ndarray, metadata) -> np.ndarray:
 
 
 def _place(file: Path, tags: dict, keys: dict):
-    """Where the first height lies, and the steps to the next one across and down."""
+    """The position of the first height, and the steps to the next one across and down."""
     matrix = None
     if _TRANSFORMATION in tags and len(tags[_TRANSFORMATION]) == 16:
         m = tags[_TRANSFORMATION]

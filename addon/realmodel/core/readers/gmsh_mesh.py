@@ -108,7 +108,7 @@ class _Words:
 
 
 class _Bytes:
-    """The same of a binary section. kinds: i int32, s size_t, d float64."""
+    """The numbers of a binary section. kinds: i int32, s size_t, d float64."""
 
     def __init__(self, raw: bytes, order: str):
         self._raw, self.at = raw, 0

@@ -51,7 +51,7 @@ def grid_heights(
 
 
 def _to_blank(raw: Content, begin: int) -> bytes:
-    """What stands from a byte on, to the end of a number."""
+    """The text from a byte on, to the end of a number."""
     piece = raw[begin : begin + BYTES_AT_ONCE]
     at = begin + len(piece)
     while at < len(raw):
@@ -88,7 +88,7 @@ def require_count(file: Path, value: float, name: str, line: int | None = None) 
 def require_spacing(
     file: Path, low: float, high: float, count: int, axis: str, line: int | None = None
 ) -> float:
-    """The distance of neighbors of a grid of so many between two ends. Raises InputRefused."""
+    """The spacing of this number of grid lines between two ends. Raises InputRefused."""
     spacing = (high - low) / (count - 1) if count > 1 else 1.0
     if not (np.isfinite(spacing) and spacing > 0):
         what = f"the grid must go from a lower to a higher {axis}, not from {low:g} to {high:g}"

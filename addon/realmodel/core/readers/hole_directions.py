@@ -28,9 +28,9 @@ class _Station:
 
 
 class HoleDirections:
-    """Stations of holes, gathered row by row of one table.
+    """Survey stations of holes, gathered from the rows of one table.
 
-    Whether dips that go down are negative or positive can be told only when all of them are there.
+    The sign of downward dips is known only when all rows are read.
     """
 
     def __init__(self, given: Boreholes):
@@ -40,7 +40,7 @@ class HoleDirections:
 
     @classmethod
     def of_survey(cls, given: Boreholes, step: Step = no_step) -> HoleDirections:
-        """Those of the table of a survey. Raises InputRefused naming the line."""
+        """The stations of a survey table. Raises InputRefused naming the line."""
         found = cls(given)
         for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
             depth = row.number("depth")
@@ -83,7 +83,7 @@ class HoleDirections:
         return {hole: self._path(hole, stations, sign) for hole, stations in self._stations.items()}
 
     def _downward(self) -> float:
-        """The sign of dips that go down: as said, or that of all of them."""
+        """The sign of downward dips: as given, or that of all dips."""
         said = self._given.downward_dip
         if said is not None:
             return -1.0 if said == "negative" else 1.0

@@ -41,7 +41,7 @@ COLLARS = {**PICKS, **DIRECTIONS}
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 
-Columns = Mapping[str, Sequence[str]]  # names that a column may have, by what it is
+Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Row:
         return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
 
     def called(self, column: str) -> str:
-        """How the header calls a column, in small letters; empty without a header."""
+        """The name of a column in the header, in small letters; empty without a header."""
         names, at = self.table.layout.names or (), self.columns[column]
         return plain_name(names[at]) if at < len(names) else ""
 
@@ -118,7 +118,7 @@ def _parts(body: str, separator: str):
 
 
 def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
-    """The numbers of the columns that a table has, by what they are."""
+    """The numbers of the columns of a table, by their meaning."""
     names = [plain_name(name) for name in table.layout.names or ()]
     as_written = [name.strip().lower() for name in table.layout.names or ()]
     columns: dict[str, int] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""LandXML (1.0 to 2.0): the triangulated surfaces (TIN) of a file, as one. Points stand as northing, easting,
+"""LandXML (1.0 to 2.0): all triangulated surfaces (TIN) of a file, as one mesh. Points are northing, easting,
 elevation."""
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def read_landxml(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) 
 
 
 class _Surfaces:
-    """What is told of the elements of a file, one after another."""
+    """The handler of the elements of a file (ElementHandler); adds their surfaces to a mesh."""
 
     def __init__(self, mesh: PendingMesh):
         self.mesh = mesh
@@ -58,7 +58,7 @@ class _Surfaces:
         self._text: list[str] = []
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
-        self._end_text()  # what follows another element is not part of it
+        self._end_text()  # text after another element is not part of it
         if name in ("Metric", "Imperial"):
             self.unit = _UNITS.get(attributes.get("linearUnit", ""), self.unit)
         elif name == "Surface":
@@ -99,7 +99,7 @@ class _Surfaces:
         self.mesh.flush_some()
 
     def _number(self, name: str) -> None:
-        """Gives the next vertex its name, mostly a number."""
+        """Adds the name of the next vertex, mostly a number."""
         if _is_number(name):
             self._numbers[int(name)] = self.mesh.vertex_count
         else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outlines, lines and points from any file that holds some: what kind it is, is told from what it holds."""
+"""Outlines, lines and points from files; their format is detected from the content."""
 
 from __future__ import annotations
 
@@ -41,10 +41,8 @@ def _is_json(file: Path, head: bytes) -> bool:
 def read_shapes(
     given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_step, heights: Heights | None = None
 ) -> Shapes:
-    """What a file holds, in the model's unit; with heights where these are wanted.
-
-    Raises InputRefused naming the file.
-    """
+    """The shapes of a file, in the model's unit; with heights where requested. Raises InputRefused naming the
+    file."""
     file = Path(given.file)
     try:
         with file.open("rb") as opened:
@@ -77,8 +75,8 @@ def read_shapes(
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:
-    """The rings (N, 2) float64 of all polygons of a file, not repeated at their end, as they are; they count
-    even-odd. Lines and points have no area: they are left out, and the second result says so.
+    """The rings (N, 2) float64 of all polygons of a file, not repeated at their end, unchecked, for the
+    even-odd rule; and warnings about lines and points, which have no area and are left out.
 
     Raises InputRefused naming the file and the line, or the feature.
     """
@@ -90,14 +88,14 @@ def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str
 
 
 def require_polygons(shapes: Shapes, file: Path | None) -> None:
-    """Refuses what bounds no region."""
+    """Refuses shapes that bound no region."""
     if not shapes.polygons:
         advice = "a region needs polygons: Polygon or MultiPolygon"
         raise InputRefused("there is no polygon in it", file=file, advice=advice)
 
 
 def map_companions(file: Path) -> list[Path]:
-    """Files beside one of outlines that are read with it."""
+    """Other files that are read with a file of outlines."""
     if file.suffix.lower() == ".shp":
         return beside(file)
     return [changes] if file.suffix.lower() == ".gpkg" and (changes := open_changes(file)) else []

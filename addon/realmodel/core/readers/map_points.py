@@ -16,8 +16,8 @@ from .text import Step, no_step
 
 
 def read_map_points(given: PointFile, step: Step = no_step) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) float64, in the file's unit: its points, and the corners of its lines and polygons; and what to
-    tell about them, sentences. Raises InputRefused naming the file and the feature."""
+    """(P, 3) float64, in the file's unit: its points, and the corners of its lines and polygons; and
+    warnings, sentences. Raises InputRefused naming the file and the feature."""
     file = Path(given.file)
     shapes = read_shapes(MapLayer(file, given.layer, given.where), step=step, heights=Heights(given.height))
     parts = [np.atleast_2d(point) for _, point in shapes.points]

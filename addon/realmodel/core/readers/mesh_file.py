@@ -41,7 +41,7 @@ def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
 
 
 def _at_once(read: Callable[[Path, Step], TriangleMesh]) -> Callable[[Path, Step, MakeRows], TriangleMesh]:
-    """Of formats that are read as a whole."""
+    """Adapts the reader of a format that is read as a whole."""
     return lambda file, step, _rows: read(file, step)
 
 
@@ -77,7 +77,7 @@ def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> 
 
 
 def _formats_of(file: Path) -> list[MeshFormat]:
-    """Those that its content says, then the one of its ending."""
+    """The formats that fit the content, then the format of the ending."""
     try:
         with file.open("rb") as opened:
             head = opened.read(_HEAD)

@@ -45,7 +45,7 @@ def read_off(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
                 break
             mesh.add_faces(_faces(lines, numbers, file), numbers)
     except InputRefused:
-        text.require(vertices, faces)  # if there are others, what is wrong follows from that
+        text.require(vertices, faces)  # a wrong number of lines is the cause of other errors
         raise
     text.require(vertices, faces)
     return mesh.mesh()
@@ -83,7 +83,7 @@ class _Lines:
         self.taken, self.last = 0, None
 
     def require(self, vertices: int, faces: int) -> None:
-        """Goes on to the end. Raises InputRefused where there are not as many lines as this takes."""
+        """Reads on to the end. Raises InputRefused where there are fewer lines than this needs."""
         while self.taken <= vertices + faces:
             if not self.some(vertices + faces + 1 - self.taken)[0]:
                 break
@@ -107,7 +107,7 @@ class _Lines:
 
 
 def _counts(file: Path, text: _Lines) -> tuple[int, int]:
-    """How many vertices there are, and how many faces."""
+    """The numbers of vertices and faces."""
     lines, numbers = text.some(1)
     if not lines:
         raise InputRefused("the file is empty", file=file)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes whose vertices and faces come one by one, and vertices that files number as they like."""
+"""Meshes whose vertices and faces come one by one, with the vertex numbers of the file."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class PendingMesh:
 
     @property
     def vertex_count(self) -> int:
-        """With those that wait."""
+        """The number of vertices, including the pending ones."""
         return self._mesh.vertices + len(self.vertices)
 
     def add_face(self, corners: list[int], line: int | None = None) -> None:
-        """line: where it stands in the file; of all faces, or of none."""
+        """Adds a face. line: its line in the file; given for all faces, or for none."""
         self._faces.append(corners)
         if line is not None:
             self._lines.append(line)

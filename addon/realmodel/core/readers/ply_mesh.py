@@ -86,7 +86,7 @@ def _head(raw: FileBytes) -> tuple[bytes, int]:
 
 
 class _Bytes:
-    """What stands behind the header."""
+    """The bytes after the header."""
 
     def __init__(self, raw: FileBytes, begin: int):
         self._raw, self._begin = raw, begin
@@ -99,7 +99,7 @@ class _Bytes:
 
 
 class _Numbers(_Bytes):
-    """What stands behind the header as text, as numbers of one kind."""
+    """The text after the header, as numbers of one kind."""
 
     def __init__(self, raw: FileBytes, begin: int, rows: MakeRows):
         super().__init__(raw, begin)
@@ -172,7 +172,7 @@ def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: 
 
 
 def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
-    """The corners of so many faces, and where they end."""
+    """The corners of this number of faces, and their end."""
     _, sizes, _ = _face(body, at, properties, key)
     fields = []
     for (name, length, form), size in zip(properties, sizes, strict=True):
@@ -192,7 +192,7 @@ def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
 
 
 def _face(body: _Bytes, at: int, properties, key: str):
-    """One face: its corners, the length of each property, and where it ends."""
+    """One face: its corners, the length of each property, and its end."""
     corners, sizes = None, []
     for name, length, form in properties:
         size = 1
@@ -213,7 +213,7 @@ def _face(body: _Bytes, at: int, properties, key: str):
 
 
 class _Cut(ValueError):
-    """What is announced at a byte of the body is not there."""
+    """The file ends before the data that its header announces."""
 
     def __init__(self, at: int):
         super().__init__(f"byte {at}")

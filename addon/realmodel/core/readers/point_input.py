@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points from any file that holds some: what kind it is, is told from what it holds. The formats of rasters
-are one registry (docs/dev/extending.md)."""
+"""Points from files; their format is detected from the content. The formats of rasters are one registry
+(docs/dev/extending.md)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .surfer_grid import is_surfer_grid, read_surfer_grid
 from .text import Step, no_step
 from .zmap_grid import is_zmap_grid, read_zmap_grid
 
-_HEAD = 4096  # comments may stand before what a grid begins with
+_HEAD = 4096  # bytes; comments may come before the first line of a grid
 
 
 @dataclass(frozen=True)
@@ -50,13 +50,13 @@ RASTER_FORMATS = (
     RasterFormat((".gri", ".irap"), is_irap_grid, read_irap_grid),
 )
 RASTER_ENDINGS = tuple(ending for known in RASTER_FORMATS for ending in known.endings)
-# What NumPy raises of a damaged header, which it reads as Python.
+# Errors that NumPy raises for a damaged header, which it parses as Python.
 _DAMAGED_ARRAY = (
     *(ValueError, OSError, EOFError, SyntaxError, TypeError),
     *(tokenize.TokenError, OverflowError, MemoryError, RecursionError),
 )
 _NUMPY = b"\x93NUMPY"
-# What grids and tables of many programs have for "no height".
+# Values that many programs write for "no data".
 _OFTEN_NO_VALUE = (
     -9999.0,
     -99999.0,
@@ -75,10 +75,10 @@ _OFTEN_NO_VALUE = (
 def read_point_file(
     given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step, gather: Gather = in_memory
 ) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) float64 points in the model's unit, and what to tell about them, sentences. gather: where they
-    are kept; files other than of shapes are read piece by piece.
+    """(P, 3) float64 points in the model's unit, and warnings, sentences. gather: where the points are kept;
+    all files but those of shapes are read piece by piece.
 
-    Raises InputRefused naming the file, and the line where it has some.
+    Raises InputRefused naming the file, and the line where it has lines.
     """
     file = Path(given.file)
     head = head_of(file)
@@ -112,7 +112,7 @@ def read_point_file(
 
 
 class _InModel:
-    """Gathers points of a file in the model's unit. heights: those of the file, looked at on the way."""
+    """Gathers points of a file in the model's unit. heights: of the file, examined on the way."""
 
     def __init__(self, given: PointFile, model_unit: str, gather: Gather):
         self._given, self._unit, self._gather = given, model_unit, gather
@@ -162,7 +162,7 @@ def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarra
 
 
 class _Heights:
-    """What there is among heights that come piece by piece: numbers that programs write for none."""
+    """Looks among heights, piece by piece, for values that programs write for no data."""
 
     def __init__(self):
         self._count = 0
@@ -180,7 +180,8 @@ class _Heights:
             self._low, self._high = min(self._low, float(z.min())), max(self._high, float(z.max()))
 
     def like_no_value(self) -> list[str]:
-        """Such heights where no other height is near: told, not left out, as they may be meant."""
+        """Warnings about such heights where no other height is near. Their points are not left out: the
+        heights may be real."""
         said = []
         for value, count in self._of_value.items():
             if not count or count == self._count or self._low > self._high:
@@ -201,7 +202,7 @@ def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
 
 
 def companions(file: Path) -> list[Path]:
-    """Files beside a file of points that are read with it."""
+    """Other files that are read with a file of points."""
     if file.suffix.lower() == ".shp":
         return map_companions(file)
     beside = world_file(file) if file.suffix.lower() in (".tif", ".tiff") else None

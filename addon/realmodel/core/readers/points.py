@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scattered points from tables of text: CSV and its kin, with or without a header, and plain .xyz."""
+"""Scattered points from tables of text: CSV and similar formats, with or without a header, and plain .xyz."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class PointRows:
 
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
-    """(P, 3) float64 points of a table of text; read_point_rows with nothing said about it."""
+    """(P, 3) float64 points of a table of text: read_point_rows with default options."""
     return read_point_rows(file, step=step).points
 
 
@@ -76,12 +76,13 @@ def read_point_rows(
 ) -> PointRows:
     """The points of a table of text, as PointFile describes it, read piece by piece.
 
-    Where nothing is said: values stand apart by semicolons, tabs, commas, bars or blanks, told from the first
-    line of numbers. Lines without numbers before it are headers; columns named x, y and z, or easting,
-    northing and elevation (any case, a unit in brackets behind it) are taken, otherwise the first three.
-    Decimal commas are known where commas do not separate and cannot stand between thousands. '#' begins a
-    comment. Further columns are ignored. Raises InputRefused naming file and line.
-    step(fraction) is called every few milliseconds; what it raises passes through.
+    By default the separator (semicolon, tab, comma, bar or blanks) is detected from the first line of
+    numbers. Earlier lines without numbers are headers; the columns named x, y and z, or easting, northing and
+    elevation (any case, a unit in brackets behind it) are read, otherwise the first three. Decimal commas are
+    detected where commas are not the separator and cannot separate thousands. '#' begins a comment. Further
+    columns are ignored. step(fraction) is called every few milliseconds; its exceptions pass through.
+
+    Raises InputRefused naming file and line.
     """
     file = Path(file)
     table = open_table(file, separator, columns or (), where or {}, KNOWN)
@@ -101,7 +102,7 @@ def read_point_rows(
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text that was opened: what it holds, and how it is written."""
+    """An open table of text: its content and its layout."""
 
     file: Path
     raw: Content
@@ -174,7 +175,7 @@ def _guessed_names(table: Table) -> tuple[str, ...]:
 
 
 def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
-    """What native code compares entries with: numbers as numbers, text as it stands in the file."""
+    """The values that native code compares entries with: numbers as numbers, text as in the file."""
     numbers = [float(value) for value in values if not isinstance(value, str)]
     return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
 
@@ -241,7 +242,8 @@ def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> 
 def _in_order(
     pool: Executor, function: Callable, pieces: Iterable[tuple[int, bytes]], most: int
 ) -> Iterator[tuple[int, Future]]:
-    """Where each piece ends, and what function gives of it; so many are under way."""
+    """For each piece its end and its result of the function, in order; at most this many are processed at a
+    time."""
     waiting: deque[tuple[int, Future]] = deque()
     for begin, piece in pieces:
         waiting.append((begin + len(piece), pool.submit(function, piece)))
@@ -257,13 +259,13 @@ def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> lis
 
 
 def head_rows(table: Table, most: int) -> list[list[str]]:
-    """What stands in the first rows of a table."""
+    """The entries of the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
     return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
 
 
 def body_rows(table: Table) -> Iterator[list[str]]:
-    """What stands in each row of a table that is not blank."""
+    """The entries of each row of a table that is not blank."""
     body = table.raw[table.layout.body :].decode(table.encoding, "replace")
     return (table.layout.fields(line) for line in body.splitlines() if line.strip())
 
@@ -273,15 +275,15 @@ def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
     if "," not in entry:
         return False
     others = _head_entries(table, columns)
-    told = decimal_comma([*others, entry])
-    if told is None and is_number(entry, ",") and not any("." in other for other in others):
+    is_comma = decimal_comma([*others, entry])
+    if is_comma is None and is_number(entry, ",") and not any("." in other for other in others):
         raise InputRefused(
             f"'{entry}' may have a decimal comma or a thousands separator",
             file=table.file,
             line=error.items[0],
             advice='set decimal = "," for decimal commas, or remove the separators',
         ) from error
-    return bool(told)
+    return bool(is_comma)
 
 
 def _entry(table: Table, error) -> str:
@@ -315,7 +317,7 @@ def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
 
 
 def _nothing_matches(table: Table, where: Mapping) -> InputRefused:
-    """No row holds what `where` asks for: said with what there is."""
+    """The error that no row matches `where`; it lists the values that there are."""
     conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
     there = []
     for name in where:

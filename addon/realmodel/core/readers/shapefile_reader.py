@@ -39,8 +39,8 @@ def read_shapefile(
     step: Step = no_step,
     heights: Heights | None = None,
 ) -> Shapes:
-    """What a shapefile holds. Rings count even-odd, whichever way they go round: many writers get the
-    directions wrong that are to tell outlines from holes. Raises InputRefused, BuildFailed without pyshp."""
+    """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
+    write outlines and holes in the wrong directions. Raises InputRefused, and BuildFailed without pyshp."""
     file, where = Path(file), where or {}
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
     files = {path.suffix.lower(): path for path in beside(file)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of outlines, lines and points hold, whatever their format."""
+"""The shapes of files of outlines, lines and points, whatever their format."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .table_layout import names_shown
 
 @dataclass(frozen=True)
 class Polygon:
-    """Rings (N, 2) float64, their first corner not repeated. item: what to call it, "" for the only one.
+    """Rings (N, 2) float64, their first corner not repeated. item: its name in messages, "" for the only one.
 
-    has_roles: the first ring is the outline, the others are holes in it; otherwise they count even-odd, as
-    those of a shapefile, which only their direction tells apart.
+    has_roles: the first ring is the outline, the others are holes in it. Otherwise the even-odd rule applies,
+    as for shapefiles, where outlines and holes differ only in direction.
     """
 
     item: str
@@ -29,10 +29,8 @@ class Polygon:
 
 @dataclass
 class Shapes:
-    """What one file holds: polygons, lines (N, 2) and points (2,), the latter two with what to call them.
-
-    Read with heights, positions have three numbers, the third NaN where the file gives none.
-    """
+    """The shapes of one file: polygons, lines (N, 2) and points (2,), the latter two with their names in
+    messages. Read with heights, positions have three numbers, the third NaN where the file gives none."""
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)
@@ -41,15 +39,15 @@ class Shapes:
 
     @property
     def ordinates(self) -> int:
-        """How many numbers a position has."""
+        """The number of coordinates of a position."""
         return 3 if self.has_heights else 2
 
     def counts(self) -> tuple[int, int, int]:
-        """How many polygons, lines and points there are."""
+        """The numbers of polygons, lines and points."""
         return len(self.polygons), len(self.lines), len(self.points)
 
     def set_height(self, since: tuple[int, int, int], height: float) -> None:
-        """Gives all positions added since there were so many parts one height."""
+        """Sets the height of all positions added after these counts."""
         rings = [ring for polygon in self.polygons[since[0] :] for ring in polygon.rings]
         lines = [line for _, line in self.lines[since[1] :]]
         for places in [*rings, *lines, *(point for _, point in self.points[since[2] :])]:
@@ -63,7 +61,7 @@ class Shapes:
             self.polygons.append(Polygon(item, open_rings, has_roles))
 
     def scaled(self, scale: float) -> Shapes:
-        """All of it in another unit."""
+        """The shapes in another unit."""
         if scale == 1.0:
             return self
         return Shapes(
@@ -73,7 +71,7 @@ class Shapes:
         )
 
     def without_area(self, file: Path) -> list[str]:
-        """Sentences about the lines and points, which bound no region."""
+        """Warnings about lines and points, which bound no region."""
         said = [(item, "LineString") for item, _ in self.lines] + [(item, "Point") for item, _ in self.points]
         items = dict.fromkeys(said)
         return [f"{file}: {item or 'it'} is a {kind}, which bounds no area: left out" for item, kind in items]
@@ -81,20 +79,20 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Heights:
-    """That heights are wanted: those of the positions, or one for each feature, by its attribute."""
+    """The heights to read: those of the positions, or one for each feature, by its attribute."""
 
     attribute: str | None = None
 
 
 class NothingSelected(InputRefused):
-    """No feature is as was asked. names: of the attributes; values: of the first one that was asked for."""
+    """No feature matches. names: of the attributes; values: of the first requested one."""
 
     names: Sequence[str] = ()
     values: Sequence[str] = ()
 
 
 class Selection:
-    """Which features count, by their attributes; remembers what there was for a refusal."""
+    """Selects features by their attributes; records the attributes and values for error messages."""
 
     def __init__(self, file: Path, where: Mapping, layer: str | None = None):
         self.file, self.where = file, where
@@ -139,7 +137,7 @@ class Selection:
         return matches
 
     def require_some(self) -> None:
-        """Refuses what took nothing, saying what there is."""
+        """Refuses a selection without features; the error lists the values that there are."""
         if self.taken or not self.features:
             return
         for name, values in self.seen.items():

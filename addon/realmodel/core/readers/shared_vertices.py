@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that come as the places of their corners: those at one place become one vertex, piece by piece."""
+"""Faces given by the coordinates of their corners: equal corners become one vertex, piece by piece."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..mapped_arrays import MakeRows, Rows, in_pieces
 from .triangle_mesh import MeshRows
 
 _CORNERS_AT_ONCE = 3 << 16
-_OF_PART = 1 << 8  # places that tell where slices end
+_OF_PART = 1 << 8  # sampled corners of a slice, by which the limits of slices are chosen
 _PLACED = np.dtype([("place", np.float64, 3), ("corner", np.int64)])
 _NAMED = np.dtype([("corner", np.int64), ("vertex", np.int64)])
 

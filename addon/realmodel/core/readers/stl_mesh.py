@@ -21,7 +21,7 @@ _END = b"endfacet"
 
 
 def begins_as_stl(head: bytes, size: int) -> bool:
-    """Whether a file of so many bytes that begins so is an STL, as text or binary."""
+    """Whether a file of this size that begins with these bytes is an STL, as text or binary."""
     if head.lstrip().startswith(b"solid") and b"facet" in head:
         return True
     count = int.from_bytes(head[_HEAD - 4 : _HEAD], "little")
@@ -63,7 +63,7 @@ def _of_binary(raw: FileBytes, count: int) -> Iterator[tuple[float, np.ndarray]]
 
 
 def _of_text(raw: FileBytes) -> Iterator[tuple[float, np.ndarray]]:
-    """As _of_binary."""
+    """The same of a text file."""
     rest, line, triangles = b"", 1, 0
     for at in range(0, len(raw), BYTES_AT_ONCE):
         piece, end, more = (rest + raw[at : at + BYTES_AT_ONCE]).rpartition(_END)

@@ -86,10 +86,12 @@ def read_tsurf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) ->
         found.flush_some()
     mesh = found.mesh()
     (unit,) = axis_units if len(axis_units) == 1 else (None,)
-    told = [f"its properties {', '.join(properties)} are not read"] if properties else []
+    warnings = [f"its properties {', '.join(properties)} are not read"] if properties else []
     if len(axis_units) > 1:
-        told.append(f"its axes have different units ({', '.join(sorted(axis_units))}): say which in 'units'")
-    return replace(mesh, unit=unit if unit in METERS else None, warnings=tuple(told))
+        warnings.append(
+            f"its axes have different units ({', '.join(sorted(axis_units))}): say which in 'units'"
+        )
+    return replace(mesh, unit=unit if unit in METERS else None, warnings=tuple(warnings))
 
 
 def _rows(file: Path, step: Step) -> Iterator[tuple[int, list[str]]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a table of text is written: told from its first lines."""
+"""The layout of a table of text, detected from its first lines."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class TableLayout:
 
 
 def fields(line: str, separator: str) -> list[str]:
-    """What stands in a line, without blanks and quotes around it."""
+    """The entries of a line, without blanks and quotes around them."""
     if '"' in line:
         given = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
         try:
@@ -56,7 +56,8 @@ def is_number(entry: str, decimal: str = ".") -> bool:
 
 
 def is_any_number(entry: str, separator: str) -> bool:
-    """With a decimal point, or with a decimal comma where commas do not separate."""
+    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
+    separate."""
     return is_number(entry) or (separator != "," and is_number(entry, ","))
 
 
@@ -113,7 +114,8 @@ def _is_comment(text: str) -> bool:
 
 
 def _separator(texts: list[str], numbers: int, columns: int) -> str:
-    """Of the first line that has enough columns and numbers with one; of the first with enough columns."""
+    """The separator of the first line that has enough columns and numbers; else of the first with enough
+    columns."""
     for text in texts:
         for separator in _SEPARATORS:
             entries = fields(_COMMENT.sub("", text), separator)
@@ -127,8 +129,8 @@ def _separator(texts: list[str], numbers: int, columns: int) -> str:
 
 
 def _header(headings, commented, wanted, known) -> tuple[int | None, tuple[str, ...] | None]:
-    """The line whose names are those of the columns: the one that has what is wanted, if any; a comment
-    counts only if it has all of it."""
+    """The line with the names of the columns: the one that has the requested names, if any; a comment counts
+    only if it has all of them."""
     asked = [name.strip().lower() for name in wanted]
     for n, entries in [*headings, *commented]:
         if asked and set(asked) <= {entry.lower() for entry in entries}:
@@ -181,8 +183,8 @@ def names_shown(names: Sequence[str]) -> str:
 
 
 def decimal_comma(entries: Sequence[str]) -> bool | None:
-    """Whether entries that were to be numbers have decimal commas: None where that cannot be told from
-    commas between thousands, or where some have points."""
+    """Whether entries of a column of numbers have decimal commas; None where the commas may separate
+    thousands, or where some entries have points."""
     with_comma = [entry for entry in entries if "," in entry]
     if not with_comma or any("." in entry for entry in entries):
         return None if with_comma else False

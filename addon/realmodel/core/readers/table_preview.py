@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a table of points holds, to look at before it is read."""
+"""A preview of a table of points, before it is read."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines of numbers in text files, read in pieces so that a caller can show progress and stop."""
+"""Text files with lines of numbers, read in pieces so that a caller can show progress and cancel."""
 
 from __future__ import annotations
 
@@ -25,16 +25,15 @@ Step = Callable[[float], None]
 
 
 def no_step(_fraction: float) -> None:
-    """For callers that want no progress."""
+    """For callers without progress."""
 
 
 class FileBytes:
-    """What a file holds, as far as readers take it for bytes: read where it is asked for, and not kept.
-    Raises InputRefused."""
+    """The bytes of a file for readers: read on demand, not cached. Raises InputRefused."""
 
     def __init__(self, file: Path):
         self._file = file
-        self._block, self._begin = b"", 0  # what was read last, and where it stands
+        self._block, self._begin = b"", 0  # the block read last, and its position
         with _read_of(file):
             self._size = file.stat().st_size
 
@@ -63,7 +62,7 @@ class FileBytes:
         return bytes(found)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
-        """Where a text of one byte stands next; -1 where it does not."""
+        """The next position of a text of one byte; -1 where there is none."""
         end = self._size if end is None else min(end, self._size)
         size = _BYTES_TO_FIND
         while begin < end:
@@ -74,7 +73,7 @@ class FileBytes:
         return -1
 
     def count(self, text: bytes, begin: int, end: int) -> int:
-        """How often a text of one byte stands between two places."""
+        """The number of times that a text of one byte occurs between two positions."""
         places = range(begin, end, BYTES_AT_ONCE)
         return sum(self[at : min(at + BYTES_AT_ONCE, end)].count(text) for at in places)
 
@@ -92,7 +91,8 @@ def _read_of(file: Path) -> Iterator[None]:
 
 
 def content_of(file: Path) -> Content:
-    """What a file holds, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises InputRefused."""
+    """The content of a file, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises
+    InputRefused."""
     content = FileBytes(Path(file))
     return read_bytes(file) if content[:2] in _UTF_16 else content
 
@@ -108,7 +108,7 @@ def text_content(file: Path) -> Content:
 
 
 def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
-    """Whole lines one after another, few at once: where they begin, and what they are."""
+    """Whole lines in pieces: the position of each piece, and its bytes."""
     while begin < len(content):
         last = min(begin + BYTES_AT_ONCE, len(content))
         end = content.find(b"\n", last - 1)
@@ -137,7 +137,7 @@ def _with_plain_ends(text: str) -> str:
 
 
 def encoding_of(content: Content) -> str:
-    """utf-8, or latin-1 where it cannot be that."""
+    """utf-8, or latin-1 where the bytes are not valid UTF-8."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         for at in range(0, len(content), BYTES_AT_ONCE):
@@ -151,7 +151,7 @@ def encoding_of(content: Content) -> str:
 
 
 def read_bytes(file: Path) -> bytes:
-    """What a file holds; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+    """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
     with _read_of(file):
         raw = Path(file).read_bytes()
     if raw[:2] in _UTF_16:
@@ -172,7 +172,7 @@ def line_of_word(raw: bytes, number: int) -> int:
 
 
 def require_text(file: Path, raw: bytes) -> None:
-    """Refuses what cannot be text."""
+    """Refuses binary content."""
     if b"\0" in raw[:4096]:
         raise InputRefused("this is a binary file, not text", file=file)
 

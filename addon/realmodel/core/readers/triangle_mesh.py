@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of triangulated surfaces hold, whatever their format."""
+"""The triangulated surface of a file, whatever its format."""
 
 from __future__ import annotations
 
@@ -37,20 +37,20 @@ class TriangleMesh:
     def in_model(
         self, given: MeshFile, model_unit: str, gather: Gather = in_memory
     ) -> tuple[np.ndarray, list[str]]:
-        """The vertices in the model's unit, z upward, and what to tell. given: what the user says of the
-        file; without a unit of the user's the one of the file counts. gather: where they are kept."""
-        told = [f"{given.file}: {text}" for text in self.warnings]
+        """The vertices in the model's unit, z upward, and warnings. given: the import options of the user;
+        where they have no unit, the unit of the file is used. gather: where the vertices are kept."""
+        warnings = [f"{given.file}: {text}" for text in self.warnings]
         if given.units is None and self.unit not in (None, model_unit):
             given = replace(given, units=self.unit)
-            told.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
+            warnings.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
         if given.units is None and self.said_unit not in (None, model_unit):
             what = f"its header says {self.said_unit}; it is read in the unit of the model, {model_unit}"
-            told.append(f'{given.file}: {what}: write units = "{self.said_unit}" if the header is right')
+            warnings.append(f'{given.file}: {what}: write units = "{self.said_unit}" if the header is right')
         plan_scale, height_scale = given.scale(model_unit)
         if (plan_scale, height_scale) == (1.0, 1.0):
-            return self.vertices, told
+            return self.vertices, warnings
         scale = np.array([plan_scale, plan_scale, height_scale])
-        return gather((piece * scale for piece in in_pieces(self.vertices)), np.empty((0, 3))), told
+        return gather((piece * scale for piece in in_pieces(self.vertices)), np.empty((0, 3))), warnings
 
 
 class MeshRows:
@@ -135,7 +135,7 @@ def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | 
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
     found = MeshRows(file)
-    if len(faces):  # else this is what is wrong
+    if len(faces):  # without faces another error is reported
         found.add_vertices(vertices)
     found.add_faces(faces, lines)
     return found.mesh()

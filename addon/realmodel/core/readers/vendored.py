@@ -8,7 +8,7 @@ from types import ModuleType
 
 from ..errors import BuildFailed
 
-# The add-on is "realmodel", or what Blender calls it as an extension.
+# The add-on is "realmodel", or has the name of the extension in Blender.
 FOLDER = f"{__package__.removesuffix('.core.readers')}.vendor"
 
 

@@ -33,7 +33,7 @@ _BEGINNING = re.compile(
 )
 _TRIANGLE, _STRIP, _POLYGON, _PIXEL, _QUAD = 5, 6, 7, 8, 9
 _APPENDED = re.compile(rb'<AppendedData\s+encoding="(raw|base64)"\s*>\s*_')
-_MOST_COMPRESSED = 1100  # times that zlib makes a block smaller, at most
+_MOST_COMPRESSED = 1100  # the largest compression ratio of zlib
 
 
 def begins_as_vtk_xml(head: bytes) -> bool:

@@ -27,8 +27,8 @@ _DEEPEST = 50
 
 
 def parse_wkt(text: str, file: Path | None = None, heights: bool = False) -> Shapes:
-    """What a text holds; Z only where heights are wanted, never M. Raises InputRefused naming the line of the
-    text."""
+    """The shapes of a text; Z only where heights are requested, never M. Raises InputRefused naming the line
+    of the text."""
     return _Parser(text, file, heights).shapes
 
 
@@ -145,7 +145,7 @@ class _Parser:
         return found
 
     def ordinates(self, numbers: list[str]) -> list[float]:
-        """Those of a position that count."""
+        """The coordinates of a position that are used."""
         place = [float(number) for number in numbers[: self.shapes.ordinates]]
         if self.shapes.has_heights and (len(numbers) < 3 or self.only_m):
             place[2:] = [float("nan")]

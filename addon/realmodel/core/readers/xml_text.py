@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""XML files from anywhere: read without entities of their own, which could grow beyond all memory."""
+"""XML files. Those with entities are refused: expanded, they could exceed all memory."""
 
 from __future__ import annotations
 
@@ -24,23 +24,24 @@ def parse_xml(file: Path, raw: bytes) -> ElementTree.Element:
 
 
 def _damaged(file: Path, error: Exception) -> InputRefused:
-    """error: of the parser, or of an encoding that is not there."""
+    """The error of damaged XML. error: of the parser, or of an unknown encoding."""
     line = error.position[0] if isinstance(error, ElementTree.ParseError) else None
     return InputRefused(f"damaged XML: {error}", file=file, line=line)
 
 
-class Told(Protocol):
-    """Who is told of a file as it is read; names are without namespaces."""
+class ElementHandler(Protocol):
+    """The functions that feed_xml calls for elements and text, in the order of the file. Names come without
+    namespaces."""
 
     def begin(self, name: str, attributes: dict[str, str]) -> None: ...
     def text(self, text: str) -> None: ...
     def end(self, name: str) -> None: ...
 
 
-def feed_xml(file: Path, told: Told, step: Step) -> None:
-    """Reads a file piece by piece. Raises InputRefused naming the line."""
+def feed_xml(file: Path, handler: ElementHandler, step: Step) -> None:
+    """Parses a file piece by piece and calls the handler. Raises InputRefused naming the line."""
     content = content_of(file)
-    parser = ElementTree.XMLParser(target=_Target(file, told))
+    parser = ElementTree.XMLParser(target=_Target(file, handler))
     try:
         for at in range(0, len(content), BYTES_AT_ONCE):
             parser.feed(content[at : at + BYTES_AT_ONCE])
@@ -51,19 +52,19 @@ def feed_xml(file: Path, told: Told, step: Step) -> None:
 
 
 class _Target:
-    """What the parser calls."""
+    """The target of the parser: hands on its calls, without namespaces."""
 
-    def __init__(self, file: Path, told: Told):
-        self._file, self._told, self.data = file, told, told.text
+    def __init__(self, file: Path, handler: ElementHandler):
+        self._file, self._handler, self.data = file, handler, handler.text
 
     def doctype(self, *_) -> None:
         raise InputRefused(_WITH_ENTITIES, file=self._file, advice="export it again")
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        self._told.begin(tag.rpartition("}")[2], attributes)
+        self._handler.begin(tag.rpartition("}")[2], attributes)
 
     def end(self, tag: str) -> None:
-        self._told.end(tag.rpartition("}")[2])
+        self._handler.end(tag.rpartition("}")[2])
 
     def close(self) -> None:
         pass

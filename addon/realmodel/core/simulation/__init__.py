@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for simulation, in the plain form that writers of solvers' formats take."""
+"""Meshes for simulation, in a plain form for the writers of solvers' formats."""
 
 from .cleaned_cells import CleanedCells, cleaned_cells, cleaned_entry
 from .simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh

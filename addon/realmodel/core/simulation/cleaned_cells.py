@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact cells without what is too small for solvers: Model.cleaned_cells."""
+"""The exact cells without details too small for solvers: Model.cleaned_cells."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _assembled(model, tolerance: float, made: dict) -> CleanedCells:
 
 
 def cleaned_entry(cells: CleanedCells) -> dict:
-    """What the report says of cleaned cells: lengths and volumes are in model units."""
+    """The entry of cleaned cells in the report: lengths and volumes are in model units."""
     return {
         "tolerance": cells.tolerance,
         "cells": cells.cells,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for simulation as the command line and the panel ask for them, and what is printed of them."""
+"""Requests for meshes for simulation, of the command line and the panel, and their printed lines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ EDGE_OVER_THICKNESS = 10  # where no minimum thickness is given
 
 @dataclass(frozen=True)
 class MeshRequest:
-    """What is asked for. edge, thickness: None: by the size of the model, and by the edge length."""
+    """The options of a mesh for simulation. edge, thickness: None: by the size of the model, and by the edge
+    length."""
 
     path: Path
     edge: float | None = None
@@ -28,7 +29,7 @@ class MeshRequest:
     elements: str = "prisms"
 
     def target(self) -> Path:
-        """Where it will stand. Raises UsageError, OutputFailed."""
+        """The path of the output. Raises UsageError, OutputFailed."""
         return mesh_target(self.path)
 
     def make(self, model, threads: int, progress=None) -> SimulationMesh:
@@ -50,7 +51,7 @@ class MeshRequest:
         write_mesh(mesh, self.path, outputs, lambda _: progress(1.0, f"writing {self.path.name}"), unit)
 
     def line(self, mesh: SimulationMesh) -> str:
-        """What is printed of it."""
+        """The printed line about the mesh."""
         entry = mesh_entry(mesh)
         counts = ", ".join(f"{count:,} {kind}s" for kind, count in entry["elements"].items())
         counts = counts.replace("tetrahedrons", "tetrahedra")
@@ -61,7 +62,7 @@ class MeshRequest:
 
 
 def cleaned_line(cells: CleanedCells) -> str:
-    """What is printed of cells by --cell-tolerance."""
+    """The printed line about cells cleaned by --cell-tolerance."""
     removed = ", ".join(f"{count:,} {what}" for what, count in cells.removed.items())
     left = ", ".join(f"{count:,} {what.replace('_', ' ')}" for what, count in cells.left.items() if count)
     return (

@@ -8,7 +8,8 @@ from ..work import Work, native_module
 
 
 def call_native(work: Work, function, *arguments):
-    """What `function` gives; the last argument is the number of threads. Raises InputRefused, BuildFailed."""
+    """The result of `function`; its last argument is the number of threads. Raises InputRefused,
+    BuildFailed."""
     native = native_module()
     try:
         return work.native(function, *arguments[:-1], threads=arguments[-1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that solvers like, made from a model: Model.simulation_mesh."""
+"""Meshes for simulation, made from a model: Model.simulation_mesh."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave n
 
 @dataclass(frozen=True, eq=False)
 class SimulationMesh(VolumeMesh):
-    """A mesh for solvers and what it changed.
+    """A mesh for solvers, and its changes of volumes.
 
     volumes: (B,) float64, of the elements of each block; exact_volumes: (B,) float64, of the block itself;
-    model units cubed. warnings: blocks whose volume it changes by more than a tenth.
-    smallest_angle: between two faces of an element, degrees, of a model without columns; else None.
+    model units cubed. warnings: blocks whose volume it changes by more than a tenth. smallest_angle: between
+    two faces of an element, degrees, of a model without columns; else None.
     """
 
     volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -173,7 +173,7 @@ def layer_numbers(model, layers, layer_thickness) -> list[int]:
 
 
 def _without_columns(model) -> str | None:
-    """Why the model has no columns, or None."""
+    """The reason why the model has no columns, or None."""
     if model.is_cut:
         return "a cut model"
     if model.structures is None:
@@ -265,7 +265,7 @@ def _names(model) -> dict:
 
 
 def mesh_entry(mesh: SimulationMesh) -> dict:
-    """What the report says of a mesh: volumes are in model units cubed."""
+    """The entry of a mesh in the report: volumes are in model units cubed."""
     return {
         "elements": {kind: len(corners) for kind, corners in mesh.elements.items()},
         "points": len(mesh.points),

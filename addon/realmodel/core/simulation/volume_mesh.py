@@ -60,7 +60,7 @@ class VolumeMesh:
 
     @property
     def cells(self) -> int:
-        """How many elements there are."""
+        """The number of elements."""
         return sum(map(len, self.elements.values()))
 
 
@@ -91,7 +91,7 @@ class PolyhedralMesh:
 
     @property
     def cells(self) -> int:
-        """How many polyhedra there are."""
+        """The number of polyhedra."""
         return len(self.cell_block)
 
     @classmethod

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blocks whose volume a mesh changes."""
+"""Warnings about blocks whose volume a mesh changes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a fault would go on beyond its tip between two sheets: nothing displaces them there."""
+"""Faults that die out, continued beyond their tips between two sheets: nothing displaces the sheets there."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..algebra import dot, norm
 from .triangles import crossing_pairs
 from .within import Within, box_of, middles_of_parts
 
-_WIDTH = 1e-9  # of the extent of a sheet: what is narrower lies between them by rounding
+_WIDTH = 1e-9  # of the extent of a sheet: narrower gaps are due to rounding
 _INSET = 1e-3  # of a part: its border may lie on another fault, which has no side there
 
 
@@ -67,7 +67,7 @@ def _part_between(triangle: np.ndarray, lower: np.ndarray, upper: np.ndarray) ->
 
 def common_lines(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(2, K, 3) the ends of vertical lines from one triangle (3, 3) to another, just within each corner of
-    what they have in common in plan."""
+    their common area in plan."""
     polygon = _clipped(one, _walls(other))
     if len(polygon):
         polygon = polygon + _INSET * (polygon.mean(axis=0) - polygon)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picks of one side of a fault that reach beyond it: where the other side has picks, too, these tell."""
+"""Picks of one side of a fault that lie beyond it, detected where the other side has picks, too."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import numpy as np
 
 from ..mis_ties import LARGEST_SHARE, heights_apart
 
-_LOOKED_AT = 16  # nearest points that say what sides there are
-_COUNTED = 4  # of each side those whose mean height a point should have
+_LOOKED_AT = 16  # nearest points, whose sides are considered
+_COUNTED = 4  # points of each side, whose mean height is the expected one
 _FAR = 8.0  # mean distances between points: so near the nearest ones are looked for first
 _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
 
@@ -48,7 +48,7 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def _nearest(
     points: np.ndarray, known: np.ndarray, along: np.ndarray, number: int, near_by: float
 ) -> np.ndarray:
-    """Of some points, ordered by x, `along`, the nearest to another one in plan, nearest first. near_by: a
+    """The nearest of some points, ordered by x, `along`, to another one in plan, nearest first. near_by: a
     distance within which they mostly are."""
     place = points[number, :2]
     begin, end = np.searchsorted(along, (place[0] - near_by, place[0] + near_by))
@@ -62,8 +62,8 @@ def _nearest(
 
 
 def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:
-    """How far a point's height is from that of its neighbors on its own side, and of those on that other side
-    which fits it best; 0 and infinite where there are none."""
+    """The difference of a point's height from its neighbors on its own side, and from those on the other side
+    that fits best; 0 and infinite where there are none."""
     off = {
         int(side): abs(float(points[near[row[near] == side][:_COUNTED], 2].mean() - points[number, 2]))
         for side in np.unique(row[near])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults that end at others, and whether they meet these."""
+"""Faults that end at other faults, and the check that they meet them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault 
 
 
 def require_meeting(faults: list[Fault]) -> None:
-    """Refuses a fault, of some with arrays, that ends at one that it does not meet. Raises InputRefused."""
+    """Refuses a fault that ends at one that it does not meet. All have arrays. Raises InputRefused."""
     named = {fault.name: fault for fault in faults}
     for fault in faults:
         for name in fault.ends_at:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuses faults and bodies that make no sense before anything is read."""
+"""Checks of faults and bodies before anything is read."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _is_length(value) -> bool:
 
 
 def _check_names(project, refuse, key: str, rocks, time_key: str, surface) -> None:
-    """Refuses rock masses and surfaces that are not there."""
+    """Refuses unknown rock masses and surfaces."""
     known = {rock.name: [each.name for each in rock.surfaces] for rock in project.rocks}
     for name in rocks:
         if name not in known:
@@ -138,7 +138,7 @@ def _there(names) -> str:
 
 
 def _check_ends(project) -> None:
-    """Refuses faults that end at others that are not there, at each other, or that displace less."""
+    """Refuses faults that end at unknown faults, at each other, or at faults that displace less."""
     faults = {fault.name: fault for fault in project.faults}
 
     def refuse(fault: Fault, what: str, advice: str | None = None) -> InputRefused:
@@ -167,7 +167,7 @@ def _check_ends(project) -> None:
 
 
 def _way_back(name: str, faults: dict[str, Fault]) -> list[str]:
-    """From a fault over the faults at which it ends to itself; [] where there is no such way."""
+    """The path from a fault over the faults at which it ends back to itself; [] where there is none."""
     ways, seen = [[name]], set()
     while ways:
         way = ways.pop()

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is at a point of a rock mass with faults and bodies, from its sheets alone: nothing is built.
-
-An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder but how
-faults go on beyond their borders.
-"""
+"""The block at a point of a rock mass with faults and bodies, from its sheets alone, without building. An
+independent evaluation for tests and for the proof of a model: it shares with the builder only the
+continuation of faults beyond their borders."""
 
 from __future__ import annotations
 
@@ -54,7 +52,7 @@ class ClosedForm:
     grids: dict[tuple[int, int], PlanGrid] = field(default_factory=dict, compare=False)
 
     def _grid(self, shape: Triangulation) -> PlanGrid:
-        """That of a shape of this object, made once."""
+        """The grid of a shape, cached."""
         vertices, triangles = shape
         key = id(vertices), id(triangles)
         if key not in self.grids:
@@ -73,8 +71,8 @@ class ClosedForm:
         return found
 
     def _sides(self, shape: FaultShape, points: np.ndarray) -> np.ndarray:
-        """(N,) the side of a fault on which each point lies; where its border is nearest, that of what it is
-        continued by."""
+        """(N,) the side of a fault on which each point lies; where its border is nearest, the side of its
+        continuation."""
         corners = shape.vertices[shape.triangles]
         nearest = corners[_nearest_triangles(points, corners)]
         sides = orient3d(*nearest.transpose(1, 0, 2), points)
@@ -87,7 +85,7 @@ class ClosedForm:
 
     @staticmethod
     def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
-        """A fault with what it is continued by beyond its border."""
+        """A fault with its continuation beyond its border."""
         if not len(points):
             return shape.vertices, shape.triangles
         box = np.array([points.min(axis=0), points.max(axis=0)])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Throw and heave: how far the two sides of surfaces have moved along each fault."""
+"""Throw and heave: the displacement of surfaces along each fault."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Displacement:
 
 
 def displacements(model) -> list[Displacement]:
-    """Of each fault of a model, and each surface that it displaces where it meets it."""
+    """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
     if model.structures is None:
         return []
     return run(lambda work: _displacements(work, model))

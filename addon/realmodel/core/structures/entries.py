@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults and bodies as a project gives them."""
+"""The entries of faults and bodies in a project."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..point_file import MeshFile, PointFile
 
 
 class _Shape:
-    """What faults and bodies have in common: a mesh from arrays or from a file."""
+    """The common part of faults and bodies: a mesh from arrays or from a file."""
 
     @property
     def mesh_file(self) -> MeshFile | None:
@@ -27,7 +27,7 @@ class _Shape:
         return None if given is None else Path(given.file)
 
     def shape_source(self) -> tuple[Path | None, int | None]:
-        """Where the shape comes from, for messages: its file, or its line in the project file."""
+        """The source of the shape, for messages: its file, or its line in the project file."""
         if self.shape_file is not None:
             return self.shape_file, None
         if self.source is not None:
@@ -41,7 +41,7 @@ class Fault(_Shape):
 
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
     or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
-    file of either (.pol, or a table; `stick` names the column that tells sticks apart). `extend`: how far
+    file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
     such a surface is continued beyond the points, model units.
 
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at

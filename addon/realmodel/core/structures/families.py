@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compartments that share the data of a surface: only faults that die out, or that do not displace it, part
-them."""
+"""Families: compartments that share the data of a surface, separated only by faults that die out or do not
+displace it."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndar
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
-    """Of all compartments of a rock mass, for surface `number`."""
+    """The families of all compartments of a rock mass, for surface `number`."""
     found: dict[tuple[int, ...], Family] = {}
     rows = structure.compartments
     for compartment, key in enumerate(map(tuple, keys_of(structure, number, rows).tolist())):

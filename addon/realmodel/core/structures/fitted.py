@@ -20,8 +20,8 @@ from ..wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
-_TRIED = 100  # sticks of which each is tried as the first one
-_NEIGHBORS = 3  # on either side of a stick that say where it goes on
+_TRIED = 100  # sticks that are tried as the first one
+_NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
 
@@ -62,12 +62,13 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
 
 
 def _without_repeats(stick: np.ndarray) -> np.ndarray:
-    """Of points at one position only the first: a stick does not return to itself."""
+    """The first of the points at each position: a stick does not return to itself."""
     return stick[np.sort(np.unique(stick, axis=0, return_index=True)[1])]
 
 
 def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
-    """Along the fault: of a few orders that with the shortest way over the middles of the sticks."""
+    """The sticks in order along the fault: of a few orders the one with the shortest path through their
+    centers."""
     middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
     _, axes = principal_axes(middles)
     along = dot(middles, axes[0])
@@ -89,7 +90,7 @@ def _nearest_first(middles: np.ndarray, start: int) -> list[int]:
 
 
 def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
-    """All from their upper end down, or in the direction of the stick before where that cannot be told."""
+    """All sticks from their upper end down; level ones in the direction of the previous stick."""
     found, before = [], np.array([0.0, 0.0, -1.0])
     for stick in sticks:
         direction = stick[-1] - stick[0]
@@ -107,8 +108,8 @@ def _unit(direction: np.ndarray) -> np.ndarray:
 
 
 def _longer(sticks: list[np.ndarray], by: float) -> list[np.ndarray]:
-    """Each goes on at both ends in the mean direction of its own end and its neighbors', so that sticks that
-    are not quite parallel do not cross."""
+    """Extends each stick at both ends in the mean direction of its own end and its neighbors', so that sticks
+    that are not quite parallel do not cross."""
     ends = np.array([[_unit(stick[0] - stick[1]), _unit(stick[-1] - stick[-2])] for stick in sticks])
     found = []
     for number, stick in enumerate(sticks):
@@ -134,7 +135,7 @@ def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: 
 
 
 def _shares(stick: np.ndarray) -> np.ndarray:
-    """Where each point lies on the way along a stick, from 0 to 1."""
+    """The position of each point along a stick, from 0 to 1."""
     way = np.concatenate([[0.0], norm(np.diff(stick, axis=0)).cumsum()])
     return way / way[-1]
 
@@ -164,7 +165,8 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
 
 
 def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of a plane: its strike, its dip (downward), and its normal, each of length 1 and at right angles."""
+    """The axes of a plane: its strike, its dip (downward), and its normal, of length 1 and at right
+    angles."""
     along = np.array([-normal[1], normal[0], 0.0])
     along = _unit(along) if norm(along) > _IN_LINE else np.array([1.0, 0.0, 0.0])
     down = np.cross(normal, along)

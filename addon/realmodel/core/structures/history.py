@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which rock masses a fault displaces and a body is in, and since when."""
+"""The rock masses that a fault displaces and that a body is in, and since when."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from .entries import Body, Fault
 
 
 def displaced_surfaces(project, fault: Fault) -> dict[int, int]:
-    """By the number of each rock mass that a fault may displace: its youngest surface that it displaces."""
+    """For each rock mass that a fault may displace, by its number: the youngest surface that it displaces."""
     return _numbers(project, fault.rocks, fault.youngest)
 
 
 def body_times(project, body: Body) -> dict[int, int]:
-    """By the number of each rock mass that a body may be in: the surface after which it came."""
+    """For each rock mass that a body may be in, by its number: the surface after which it came."""
     return _numbers(project, () if body.rock is None else (body.rock,), body.after)
 
 

@@ -44,7 +44,7 @@ class InterpolatedSurface:
         self.most = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
-        """Leaves out points that others at their place in plan contradict, and tells."""
+        """Leaves out points that others at their place in plan contradict, with a warning."""
         faults = self.entry.structure.faults
         rows = np.where(faults.active(self.number), self.sides, 0)
         beyond = beyond_faults(self.points, rows)
@@ -112,7 +112,7 @@ class InterpolatedSurface:
             for number in met
             for side in (-1, 1)
         }
-        seen, told = {}, {}
+        seen, attributes = {}, {}
         settled = _settled(self.surface, self.made[id(common)][0])
         for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             away = np.zeros(len(own), bool)
@@ -125,8 +125,8 @@ class InterpolatedSurface:
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
             sheet = self._interpolated(family, tuple(whole), visible, settled)
-            seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
-        found = self._with_equal_ends(family, met, seen, told, meshed)
+            seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
+        found = self._with_equal_ends(family, met, seen, attributes, meshed)
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
@@ -135,14 +135,16 @@ class InterpolatedSurface:
             return sheets
         _, triangles = self.entry.region
         heights = {sides: self._on_nodes(sheet) for sides, sheet in sheets.items()}
-        told = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
+        attributes = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
         known = np.isfinite(list(heights.values())).all(axis=0)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        return self._with_equal_ends(family, range(len(family.dying)), heights, told, meshed)
+        return self._with_equal_ends(family, range(len(family.dying)), heights, attributes, meshed)
 
-    def _with_equal_ends(self, family: Family, some, heights: dict, told: dict, meshed: np.ndarray) -> dict:
+    def _with_equal_ends(
+        self, family: Family, some, heights: dict, attributes: dict, meshed: np.ndarray
+    ) -> dict:
         """Sheets with some heights at the nodes, drawn together beyond the ends of some of the faults that
-        die out. told: what interpolating them gave, likewise by sides."""
+        die out. attributes: interpolation and vertex attributes of these sheets, likewise by sides."""
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
@@ -159,7 +161,7 @@ class InterpolatedSurface:
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
-            self.made[id(sheet)] = (*told[sides], sheet)
+            self.made[id(sheet)] = (*attributes[sides], sheet)
         return found
 
     def _interpolated(
@@ -186,22 +188,22 @@ class InterpolatedSurface:
             surfaces=shapes,
             interpolations=[None] * len(surfaces),
             warnings=[],
-            told={},
+            attributes={},
             structure=None,
         )
         give_heights(self.work, one, self.number, self.threads)
         sheet = one.surfaces[self.number]
         result = one.interpolations[self.number]
         # the sheet itself is kept, too: so no other gets its id
-        self.made[id(sheet)] = (result, one.told[self.number], sheet)
+        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
         if own.sum() > self.most[0]:
             self.most = (int(own.sum()), result)
         for warning in one.warnings:
-            entry.structure.tell(list(family.members), warning)
+            entry.structure.warn(list(family.members), warning)
         return sheet
 
     def _with_own_points(self, family: Family, surface):
-        """Another surface with its points in the family's compartments alone."""
+        """Another surface with only its points in the family's compartments."""
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
@@ -243,12 +245,12 @@ class InterpolatedSurface:
         return Within(self.work, self.entry, self.number, family, self.threads)
 
     def finish(self, sheets: list[Triangulation]) -> None:
-        """Puts what interpolating gave into the RockInput: of the compartment with most points, and of the
-        vertices of all sheets."""
-        told = [self.made[id(sheet)][1] for sheet in sheets]
+        """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex
+        attributes, to those of all sheets."""
+        found = [self.made[id(sheet)][1] for sheet in sheets]
         self.entry.interpolations[self.number] = self.most[1]
-        self.entry.told[self.number] = {
-            name: np.concatenate([each[name] for each in told]) for name in ("variance", "distance")
+        self.entry.attributes[self.number] = {
+            name: np.concatenate([each[name] for each in found]) for name in ("variance", "distance")
         }
 
 

@@ -205,7 +205,7 @@ def _part_model(
 
 def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
     """The arguments of build_rock_masses for voids, by name; {} where there are no voids. stacks: each with
-    whether what is below the oldest surface stays."""
+    whether the rock below the oldest surface stays."""
     if not any(stack.emptied for stack, _ in stacks):
         return {}
     tops = [
@@ -216,7 +216,7 @@ def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
 
 
 def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
-    """Some triangles of a sheet, with their vertices alone."""
+    """Some triangles of a sheet, with only their own vertices."""
     vertices, triangles = sheet
     if kept.all():
         return sheet

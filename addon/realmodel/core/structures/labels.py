@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The compartments of a finished model: which one each cell is in, and what there is to tell of them."""
+"""The compartments of a finished model: the one of each cell, and the warnings about them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _dying(structures: Structures) -> np.ndarray:
 
 
 def warnings_where_rock_is(inputs: list, built: dict, structures: Structures) -> list[BuildWarning]:
-    """What there is to tell of compartments that hold rock."""
+    """The warnings about compartments that hold rock."""
     found = []
     parts = np.unique(built["cell_part"]).tolist()
     for entry in inputs:

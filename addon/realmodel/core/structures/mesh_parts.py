@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The plan of a ready mesh that faults divide: what it covers, with the gaps that its parts leave along the
-faults, as triangles on which each part can be continued."""
+"""The plan of a ready mesh that faults divide: its area, with the gaps that its parts leave along the faults,
+as triangles on which each part can be continued."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) ->
 
 
 def touched_masks(count: int, triangles: np.ndarray, masks: np.ndarray) -> np.ndarray:
-    """(V, F) on which sides of each fault the triangles at each of so many vertices have a part."""
+    """(V, F) the sides of each fault on which the triangles at each vertex have a part."""
     touched = np.zeros((count, masks.shape[1]), np.uint8)
     for corner in range(3):
         np.bitwise_or.at(touched, triangles[:, corner], masks)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a rock mass is in one part of space: the stack of its sheets there, and what bodies make of it."""
+"""The models of rock masses in one part of space: the stack of sheets there, with the bodies in it."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _emptied(
 
 
 def distinct_plans(sheets: Sequence[Triangulation]) -> list[Triangulation]:
-    """Of sheets, one of each that cover the same triangles in plan."""
+    """One of each group of sheets that cover the same triangles in plan."""
     found: list[Triangulation] = []
     for sheet in sheets:
         if not any(_same_plan(sheet, other) for other in found):
@@ -178,6 +178,6 @@ def _same_plan(one: Triangulation, other: Triangulation) -> bool:
 
 
 def level(plan: Triangulation, height: float) -> Triangulation:
-    """A level surface over what a sheet or a region covers."""
+    """A level surface over the area of a sheet or a region."""
     vertices, triangles = plan
     return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles

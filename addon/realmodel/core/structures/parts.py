@@ -26,8 +26,8 @@ class Structures:
     sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
     branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided.
 
-    Of those around a tile alone (windows.py): continued, as the native continued_structures has them; ends:
-    heights below and above all rock. None: as the structures and sheets that are there tell."""
+    For the structures around one tile (windows.py): continued, as from the native continued_structures; ends:
+    heights below and above all rock. None: both are found from the structures and sheets themselves."""
 
     faults: list[Fault]
     bodies: list[Body]
@@ -61,11 +61,11 @@ class Structures:
 
     @property
     def kinds(self) -> list[int]:
-        """Of each its number in `surface_kind`."""
+        """The number of each structure in `surface_kind`."""
         return [1] * len(self.faults) + [2] * len(self.bodies)
 
     def native(self) -> list[tuple]:
-        """As the native part takes them."""
+        """The arguments of the native module."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
         given = [
             (fault.vertices, fault.triangles, False, [number[name] for name in fault.ends_at], fault.dies_out)
@@ -74,7 +74,7 @@ class Structures:
         return given + [(body.vertices, body.triangles, True, [], False) for body in self.bodies]
 
     def fault_shapes(self) -> list[FaultShape]:
-        """Of each fault."""
+        """The shape of each fault."""
         alone = {f.name: FaultShape(f.vertices, f.triangles, f.dies_out) for f in self.faults}
         return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
 
@@ -97,8 +97,8 @@ class Structures:
         )
 
     def _kept_sides(self, number: int) -> dict[str, int]:
-        """By the names of the faults at which a fault ends: the side on which it remains. With these it is in
-        those parts alone that have it."""
+        """For each fault at which a fault ends, by name: the side on which it remains. So it is only in parts
+        on these sides."""
         names = list(self.faults[number].ends_at)
         all_names = self.names
         others = self.sides[:, [all_names.index(name) for name in names]]
@@ -114,7 +114,7 @@ class Structures:
         return body >= 0 and not self.bodies[body].void and bool(self.times[body])
 
     def blocks_of_bodies(self) -> list[tuple[int, Body, int]]:
-        """Of each block of a body: the number of its structure, the body, its first rock mass."""
+        """For each block of a body: the number of its structure, the body, its first rock mass."""
         count = len(self.faults)
         return [
             (count + number, body, min(self.times[number]))
@@ -123,7 +123,7 @@ class Structures:
         ]
 
     def stage(self, m: int) -> Structures:
-        """The same with the bodies that were there just after surface m."""
+        """The structures at stage m: with the bodies that are there just after surface m."""
         times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
         return replace(self, times=times)
 
@@ -171,7 +171,7 @@ def divide(work: Work, structures: Structures, box: np.ndarray, threads: int) ->
 
 
 def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
-    """One cell, as the native part takes a model."""
+    """One cell, as an argument of the native module."""
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.float64)
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     return {
@@ -224,8 +224,8 @@ def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -
 
 
 def add_compartments(structures: Structures, inputs: list) -> None:
-    """Gives each rock mass (RockInput) its compartments: the parts by their sides of the faults that act in
-    it."""
+    """Sets the compartments of each rock mass (RockInput): the parts, by their sides of the faults that act
+    in it."""
     for number, entry in enumerate(inputs):
         faults = structures.of_rock(number)
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random points of a finished model with structures, compared with the closed form."""
+"""Compares random points of a finished model with structures with the closed form."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
 from .located import OUTSIDE, Locator
 from .triangles import crossing_pairs, distances_of_pairs
 
-_ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
-_LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
+_ROUNDING = 64  # units in the last place of the largest coordinate: nearer points are left undecided
+_LOOKED_AT = 200  # disagreeing points that are tested for rounding
 _SHOWN = 5  # offenders of each test
 _AT_ONCE = 2000  # points between two looks at cancel()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where each part of space may have rock: the cells of a part are made only there."""
+"""The boxes of each part of space that may contain rock: only there the cells of a part are made."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Reach:
         self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
 
     def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
-        """The same of some of the faults, by their numbers, and of parts that come into a box in plan: low x,
-        low y, high x, high y. structures: these, and some bodies."""
+        """The reach of the parts that meet a box in plan (low x, low y, high x, high y), for some of the
+        faults, by their numbers. structures: these faults, and some bodies."""
         few = copy.copy(self)
         few.structures, few.ranges, few.numbers = structures, {}, {}
         few.masks = [self.masks[fault] for fault in faults]
@@ -63,7 +63,8 @@ class Reach:
         return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:
-        """A region in plan: these columns and a little around them, and what is beyond the last ones."""
+        """A region in plan: these columns, a small margin around them, and everything beyond the last
+        ones."""
         lines = []
         for axis, (count, step) in enumerate(zip(columns.shape, self.step[:2], strict=True)):
             at = self.low[axis] + step * (np.arange(count + 1)[:, None] + _MARGIN * np.array([-1.0, 1.0]))
@@ -103,7 +104,7 @@ class Reach:
         return first, last
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The first and the last cells of boxes; what is only beside a cell counts as in it."""
+        """The first and the last cells of boxes; a box beside a cell counts as in it."""
         n = low.shape[1]
         near = 1e-6 * self.step[:n]
         first = np.floor((low - near - self.low[:n]) / self.step[:n])
@@ -152,7 +153,7 @@ class Reach:
 
 
 def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """(K, 3, 3) triangles that cover what others cover of a box, no edge longer than `longest`."""
+    """(K, 3, 3) triangles that cover the same part of a box as others, with no edge longer than `longest`."""
     done = [np.empty((0, 3, 3))]
     while len(pieces):
         away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)
@@ -169,7 +170,7 @@ def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarr
 
 
 def _corners(ring: np.ndarray) -> np.ndarray:
-    """Of a ring along two axes the places where it turns."""
+    """The corners of a ring along two axes."""
     straight = (np.roll(ring, 1, axis=0) == ring) & (ring == np.roll(ring, -1, axis=0))
     return ring[~straight.any(axis=1)]
 
@@ -179,7 +180,7 @@ def _part(axis: int, part: slice) -> tuple:
 
 
 def _wider(cells: np.ndarray) -> np.ndarray:
-    """Cells with all that touch them, over corners too."""
+    """Cells and all cells that touch them, also at corners."""
     for axis in range(cells.ndim):
         one, other = (_part(axis, part)[: cells.ndim] for part in (slice(None, -1), slice(1, None)))
         wider = cells.copy()
@@ -190,7 +191,8 @@ def _wider(cells: np.ndarray) -> np.ndarray:
 
 
 def _hanging_together(cells: np.ndarray) -> np.ndarray:
-    """For each of some cells the least number of a cell that can be reached over faces; -1 for the others."""
+    """For each of some cells the least number of a cell that is connected to it over faces; -1 for the
+    others."""
     nothing = cells.size
     number = np.where(cells, np.arange(cells.size).reshape(cells.shape), nothing)
     while True:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faults and bodies with arrays in the place of files and points."""
+"""Reads faults and bodies: arrays in the place of files and points."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from .triangles import NoTwoSides, open_edges, oriented, without_flat
 
 
 def read_structures(work: Work, project, threads: int = 0):
-    """The faults and bodies of a project, each with vertices (V, 3) float64 and triangles (T, 3) int32 and
-    nothing else that gives a shape, and what reading and fitting had to tell. Raises InputRefused."""
+    """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
+    only; and the warnings of reading and fitting. Raises InputRefused."""
     warnings: list[BuildWarning] = []
     total = len(project.faults) + len(project.bodies) or 1
     faults, bodies = [], []
@@ -39,10 +39,10 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
     shape_file = fault.input_file or fault.shape_file
     try:
         if fault.points is not None:
-            points, told = fault.points, []
+            points, texts = fault.points, []
             if fault.point_file is not None:
-                points, told = read_fault_points(fault.point_file, fault.stick, units)
-            warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in told]
+                points, texts = read_fault_points(fault.point_file, fault.stick, units)
+            warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in texts]
             vertices, triangles = _fitted(work, fault, points, threads)
         else:
             vertices, triangles = _mesh_of(fault, units, warnings, fault_item(fault))
@@ -102,8 +102,8 @@ def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Tria
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
         mesh = read_mesh(entry.input_file)
-        vertices, told = mesh.in_model(entry.mesh_file, units)
-        warnings += [BuildWarning(text, "mesh_file") for text in told]
+        vertices, texts = mesh.in_model(entry.mesh_file, units)
+        warnings += [BuildWarning(text, "mesh_file") for text in texts]
         triangles = mesh.triangles
     kept = without_flat(vertices, triangles)
     if len(kept) < len(triangles):

@@ -38,7 +38,7 @@ class ReadyMesh:
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
     def _divide(self, fault: int, shape: FaultShape) -> None:
-        """On which sides of a fault each triangle has a part."""
+        """The sides of a fault on which each triangle has a part."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
         side = np.where(on, 0, side)
@@ -109,7 +109,7 @@ class ReadyMesh:
                     continue
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
-            left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
+            left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
@@ -172,7 +172,7 @@ class ReadyMesh:
         return Within(self.work, self.entry, self.number, family, self.threads)
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-        """(N,) heights: those that are known, and where they are NaN what the method makes of them."""
+        """(N,) heights: the known ones, and where they are NaN those of the method."""
         if self.tiling.nodes is not plan:
             same = welded(plan)
         elif self.same_places is None:

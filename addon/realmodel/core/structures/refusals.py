@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the native part refuses of faults and bodies, said in the user's names."""
+"""Errors of the native module about faults and bodies, in the user's terms."""
 
 from __future__ import annotations
 

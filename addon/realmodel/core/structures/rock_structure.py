@@ -14,9 +14,10 @@ from .sides import RockFaults
 
 @dataclass
 class RockStructure:
-    """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there; names: of them.
-    sheets: of each compartment one triangulation for each surface, the same object where compartments share
-    it; None until it is made. warnings: what there is to tell of some compartments, if they hold rock."""
+    """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there; names: of the
+    compartments. sheets: for each compartment one triangulation of each surface, the same object where
+    compartments share it; None until it is made. warnings: (compartments, warning); reported if one of the
+    compartments holds rock."""
 
     faults: RockFaults
     compartments: np.ndarray
@@ -28,16 +29,16 @@ class RockStructure:
         """The different sheets of a surface, in the order of the compartments that they first serve."""
         return list({id(sheets[surface]): sheets[surface] for sheets in self.sheets}.values())
 
-    def tell(self, compartments: list[int], warning: BuildWarning) -> None:
-        """Keeps a warning about some compartments, once."""
+    def warn(self, compartments: list[int], warning: BuildWarning) -> None:
+        """Adds a warning about some compartments, unless it is there already."""
         name = self.names[compartments[0]]
         text = f"in compartment '{name}': {warning.text}" if name else warning.text
         warning = replace(warning, text=text)
-        if all(warning != told for _, told in self.warnings):
+        if all(warning != other for _, other in self.warnings):
             self.warnings.append((compartments, warning))
 
     def stage(self, m: int) -> RockStructure:
-        """The same with the surfaces up to m."""
+        """The structure with the surfaces up to m."""
         return replace(
             self,
             sheets=[sheets[: m + 1] for sheets in self.sheets],

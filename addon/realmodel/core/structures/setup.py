@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From rock masses that are read and meshed, and faults and bodies with arrays, to sheets in compartments."""
+"""Makes the sheets in compartments, from rock masses that are read and meshed, and faults and bodies with
+arrays."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ from .sheets import make_sheets
 from .sides import FaultShape, fault_sides
 
 _READ, _MESHED = 0.2, 0.3  # of the time
-_DIVIDED = 0.1  # of what is left: until the parts of space are known
+_DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
 
 
@@ -80,7 +81,7 @@ def structured_inputs(
     place of surfaces, its structures, and warnings. Raises InputRefused."""
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project)
-        faults, bodies, told = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads)
     steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
     for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
@@ -88,7 +89,7 @@ def structured_inputs(
     structures = make_structures(
         work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False
     )
-    return inputs, structures, told + [warning for entry in inputs for warning in entry.warnings]
+    return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sheets of a rock mass's surfaces: each surface once for each combination of sides of the faults that
-displace it, from what lies in these compartments."""
+displace it, from the data in these compartments."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
             entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads)
     for number in sorted(interpolated):
-        _tell_of_points_too_low(work, entry, number, threads)
+        _warn_of_points_too_low(work, entry, number, threads)
 
 
 def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
-    """_make, whose refusals name the surface."""
+    """_make; its errors name the surface."""
     rock = entry.rock
     try:
         return _make(entry, number, kind(work, entry, number, threads))
@@ -61,8 +61,8 @@ def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
 
 
-def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Warnings as without faults, compartment by compartment."""
+def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
+    """Adds the warnings of points_too_low, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = sides_of(work, points, structure.faults, threads)
@@ -79,7 +79,7 @@ def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             structure=None,
         )
         for warning in points_too_low(work, one, [number], threads):
-            structure.tell([compartment], warning)
+            structure.warn([compartment], warning)
 
 
 def _make(entry, number: int, surface) -> list:
@@ -119,13 +119,13 @@ def _make(entry, number: int, surface) -> list:
 
 
 def _neighbor(key, made, counts):
-    """Of the families with sheets across one fault that with the most data; None where there is none."""
+    """The family with the most data among those with sheets across one fault; None where there is none."""
     near = [other for other in made if sum(a != b for a, b in zip(key, other, strict=True)) == 1]
     return max(near, key=lambda other: (counts[other], other), default=None)
 
 
 def _taken_over(surface, family: Family, sheets: dict) -> dict:
-    """Sheets of another family by the sides of this one: the faults that die out may be others."""
+    """Sheets of another family by the sides of this one, whose faults that die out may differ."""
     first = next(iter(sheets.values()))
     taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
     return _drawn_together(surface, family, taken)

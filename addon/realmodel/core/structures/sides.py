@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""On which sides of the faults of a rock mass points lie, and which faults are there."""
+"""The sides of the faults of a rock mass on which points lie, and the faults that exist there."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class FaultShape(NamedTuple):
     ends: tuple[FaultShape, ...] = ()
 
     def native(self) -> list[tuple]:
-        """As the native part takes it, and those at which it ends."""
+        """The arguments of the native module: the faults, and those at which each ends."""
         own = (self.vertices, self.triangles, False, list(range(1, 1 + len(self.ends))), self.dies_out)
         return [own, *((other.vertices, other.triangles, False, [], other.dies_out) for other in self.ends)]
 

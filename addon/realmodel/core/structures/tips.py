@@ -37,8 +37,9 @@ _TOUCHES, _PASSES = 1, 2
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a sheet meets a fault. points: (M, 2) in plan, heights: (M,); is_end: (M,) bool, where it dies
-    out. beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
+    """The trace of a fault in a sheet. points: (M, 2) in plan, heights: (M,); is_end: (M,) bool, where it
+    dies out. beyond: (N,) bool, the nodes of triangles that the fault's continuation beyond its ends passes
+    through."""
 
     points: np.ndarray
     heights: np.ndarray
@@ -59,8 +60,8 @@ def trace_of(
     within: Callable[[np.ndarray], np.ndarray],
     threads: int = 0,
 ) -> Trace:
-    """Where a sheet meets a fault, edge by edge. within: which points (K, 3) lie in the compartment; a fault
-    that ends elsewhere does not die out."""
+    """The trace of a fault in a sheet, edge by edge. within: whether points (K, 3) lie in the compartment; a
+    fault that ends elsewhere does not die out."""
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault, threads)
     on = on_fault(vertices, fault)
@@ -370,7 +371,7 @@ def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.
 
 
 def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...], Triangulation]:
-    """The same with one object for all sheets that are equal to the bit."""
+    """The same, with one object for all sheets that are bitwise equal."""
     known: dict[bytes, Triangulation] = {}
     return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
 

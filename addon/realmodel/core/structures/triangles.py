@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Triangles in space: which edges are open, which lie on one another, where they are."""
+"""Triangles in space: open edges, orientation, crossings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..algebra import dot
 from .exact import orient2d
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
-_ROUNDING = 1e-9  # relative: what is so near to a plane may be on it
+_ROUNDING = 1e-9  # relative: points nearer to a plane may be on it
 _FEW = 16  # triangles: with so many, all others are compared with each
 
 
@@ -150,7 +150,7 @@ def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
-    """As crossing_pairs, without those of which the box of the first is farther than `near` from the plane of
+    """As crossing_pairs, without pairs in which the box of the first is farther than `near` from the plane of
     the second."""
     low, high = extents(first)
     middle, reach = (low + high) / 2, (high - low) / 2 + near

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a project with faults and bodies is around a tile: a project of its own, from the triangles that are
-near, whose cells in the tile are those of the whole."""
+"""The window of a project with faults and bodies around a tile: a project of its own, of the triangles that
+are near, whose cells in the tile are those of the whole."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Window:
     sheets: list[tuple[Triangulation, np.ndarray]]
 
     def number_sheets(self) -> None:
-        """To be called in the process that builds: there the sheets are other objects."""
+        """Sets the numbers of sheets in the process that builds: there the sheets are other objects."""
         self.reach.numbers = {id(sheet): numbers for sheet, numbers in self.sheets}
 
 
@@ -54,7 +54,7 @@ class _Plan:
         self._grid: TileGrid | None = None
 
     def sort(self, grid: TileGrid) -> None:
-        """Finds which triangles meet which tiles, so that those near one are found soon."""
+        """Finds the triangles that meet each tile, so that those near a tile are found quickly."""
         lists: dict[tuple[int, int], list[np.ndarray]] = {}
         for name, numbers in triangles_by_tile((self.vertices, self.triangles), grid):
             lists.setdefault(name, []).append(numbers)
@@ -70,9 +70,9 @@ class _Plan:
 
 
 class Windows:
-    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: with
-    plan coordinates that differ by rounding alone made one; snapped: what there is to tell of that, or
-    None."""
+    """The windows of a project that is read and interpolated, with its structures and sheets. inputs: the
+    rock masses, plan coordinates that differ by rounding alone made equal; snapped: the warning about that,
+    or None."""
 
     def __init__(self, work: Work, inputs: list[RockInput], structures: Structures, threads: int):
         self.inputs, self.snapped = _snapped(work, inputs, threads)
@@ -97,7 +97,7 @@ class Windows:
                 yield from entry.structure.distinct(number)
 
     def _known_plan(self, sheet: Triangulation) -> _Plan:
-        """That of a sheet; sheets of one surface differ in heights alone."""
+        """The plan of a sheet; sheets of one surface differ only in heights."""
         vertices, triangles = sheet
         known = self._plans.setdefault(id(triangles), [])
         for plan in known:
@@ -118,7 +118,7 @@ class Windows:
         return any(len(plan.meeting(box)) for plan in self._all)
 
     def arrays(self) -> Iterator[np.ndarray]:
-        """All that gives shapes."""
+        """All arrays of shapes."""
         for sheet in self._sheets():
             yield from sheet
         for plan in self._all:
@@ -139,8 +139,8 @@ class Windows:
         return *low.tolist(), *high.tolist()
 
     def window(self, work: Work, tile: tuple[int, int], farther: int | None = 0) -> Window:
-        """That of a tile, by its column and row. farther: by so many more rows of triangles; None: all of
-        them."""
+        """The window of a tile, by its column and row. farther: this many more rows of triangles; None:
+        all."""
         safe = self._around(self._around(self._grid.box(*tile)))
         if farther is None:
             safe = self._grid.whole
@@ -201,7 +201,7 @@ class Windows:
         return self._sides[fault]
 
     def _few(self, present: list[int], fixed: np.ndarray, around: Box) -> tuple[Structures, np.ndarray]:
-        """Some structures alone; and (P,) a part of the whole for each of theirs."""
+        """Some structures alone; and (P,) for each of their parts a part of the whole."""
         whole, count = self.structures, len(self.structures.faults)
         near = (whole.low[:, :2] <= around[2:]).all(axis=1) & (whole.high[:, :2] >= around[:2]).all(axis=1)
         rows = np.flatnonzero(_agree(whole.sides, present, fixed) & near)
@@ -285,7 +285,7 @@ class Windows:
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a plan the numbers of triangles in a box, of their vertices, and these triangles."""
+        """For a plan: the numbers of triangles in a box, of their vertices, and these triangles."""
         if id(plan) not in of_plan:
             own = plan.meeting(taken)
             used, corners = np.unique(plan.triangles[own], return_inverse=True)
@@ -294,8 +294,8 @@ class Windows:
 
 
 def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[RockInput], str | None]:
-    """Rock masses with plan coordinates that differ by rounding alone made one, in all windows alike; and
-    what there is to tell of it."""
+    """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
+    and the warning about that, or None."""
     distinct = [
         {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.structure.distinct(k)}
         for entry in inputs

@@ -13,13 +13,13 @@ from .families import DIES_OUT, Family, keys_of
 from .sides import sides_of
 from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
-_ON = 1e-9  # of the extent of a line: what is so near to a plane is in it
+_ON = 1e-9  # of the extent of a line: nearer points are in a plane
 _LEAST = 1e-12  # of a line: shorter parts are rounding
 
 
 @dataclass
 class Within:
-    """Which points lie in the compartments of a family of surface `number` of a RockInput."""
+    """Whether points lie in the compartments of a family of surface `number` of a RockInput."""
 
     work: Work
     entry: object
@@ -95,7 +95,7 @@ def parts_of_lines(
 
 
 def middles_of_parts(begin: np.ndarray, end: np.ndarray, walls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As parts_of_lines, with the middles (N, 3) themselves."""
+    """As parts_of_lines, with the midpoints (N, 3) themselves."""
     line, share = parts_of_lines(begin, end, walls)
     return line, begin[line] + share[:, None] * (end - begin)[line]
 
