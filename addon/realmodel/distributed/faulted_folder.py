@@ -201,7 +201,7 @@ def _catalog(
         faces += len(ours.key)
         same = ours.block[:, 0] == ours.block[:, 1]
         for column, (key, into) in enumerate(kinds):
-            which = same if key == "parts" else same & ours.is_wall
+            which = same if key == "parts" else same & ours.is_one
             both = np.column_stack([ours.part[which, column], theirs.part[which, column]])
             for a, b in np.unique(both, axis=0).tolist():
                 into.join((*one, a), (*other, b))

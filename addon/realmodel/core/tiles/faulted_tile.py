@@ -39,7 +39,7 @@ class Whole:
 class FaultedTile:
     """around: the model of all that the window holds. model: of the cells that belong to the tile, numbered
     as in the whole. seams: by the tile on the other side. reach: a box in plan around these cells and those
-    beside them; None where there is no cell. part: (C,) as cell_component, by walls between columns alone."""
+    beside them; None where there is no cell. part: (C,) the cell of a model of blocks that each is in."""
 
     around: Model
     model: Model
@@ -67,8 +67,12 @@ def build_faulted_tile(
     arrays = without_cells(whole_numbers, ~mine)
     labels = _labels(built, whole, window, mine)
     number = np.arange(int(mine.sum()))
+    is_mine = np.append(mine, False)[model.face_cells]
+    is_one = _within_one_cell(
+        whole_numbers, built["cell_own_block"], len(whole.surface_names) - len(whole.structures)
+    )
     if frame.cell_kind == "blocks":
-        arrays = one_cell_each(arrays, arrays["face_surface"] == _WALL)
+        arrays = one_cell_each(arrays, is_one[is_mine.any(axis=1)])
         number = arrays["cell"]
         first = np.full(len(arrays["cell_block"]), len(number), np.int64)
         np.minimum.at(first, number, np.arange(len(number)))
@@ -76,10 +80,8 @@ def build_faulted_tile(
     of_tile = np.full(len(mine), -1)
     of_tile[mine] = number
     found = _model(frame, whole, window, arrays, labels)
-    walls = np.where((found.face_surface == _WALL)[:, None], found.face_cells, np.int32(-1))
-    part = native_module().cell_components(np.ascontiguousarray(walls), found.cell_block)
+    part = np.arange(len(found.cell_block)) if frame.cell_kind == "blocks" else found.cell_component
     both = np.column_stack([found.cell_component, part])
-    is_mine = np.append(mine, False)[model.face_cells]
     between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
     own = np.where(is_mine[between, 0], 0, 1)
     others = owner[model.face_cells[between, 1 - own]]
@@ -87,9 +89,18 @@ def build_faulted_tile(
     seams, seen = {}, SimpleNamespace(**whole_numbers)
     for other in np.unique(others, axis=0).tolist():
         which = (others == other).all(axis=1)
-        seams[tuple(other)] = Seam.of(seen, between[which], own[which], parts[which])
+        seams[tuple(other)] = Seam.of(seen, between[which], own[which], parts[which], is_one[between[which]])
     reach = reach_of(model, mine) if mine.any() else None
     return FaultedTile(model, found, seams, reach, part)
+
+
+def _within_one_cell(model: dict, own_block: np.ndarray, layers: int) -> np.ndarray:
+    """(F,) bool: the faces that lie within one cell of a model of blocks. Between cells of one block in one
+    rock mass these are walls between columns, and in bodies also surfaces, the first `layers` of all: a body
+    has columns between older surfaces. own_block: (C,) of each rock mass by itself."""
+    surface, cells = model["face_surface"], model["face_cells"]
+    is_same = (cells >= 0).all(axis=1) & (own_block[cells[:, 0]] == own_block[cells[:, 1]])
+    return is_same & ((surface == _WALL) | ((surface >= 0) & (surface < layers)))
 
 
 def _numbered_as_whole(model: Model, whole: Whole, window: Window) -> dict[str, np.ndarray]:

@@ -14,7 +14,6 @@ import numpy as np
 
 from .grid import TileGrid
 
-_WALL = -1  # face_surface
 _KEY = "V16"
 
 
@@ -54,20 +53,21 @@ def reach_of(model, mine: np.ndarray) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True)
 class Seam:
-    """The faces between cells of a tile and those of another, in order of their keys: (F,) key, the same
-    for the same polygon on the same surface; part (F, 2), of the tile's cell: the connected part of its
-    block, and that by walls between columns alone; block (F, 2), the tile's first; is_wall, whether it is
-    such a wall; place (F, 3), a corner."""
+    """The faces between cells of a tile and those of another, in order of their keys.
+
+    key: (F,) the same for the same polygon on the same surface. part: (F, 2) of the tile's cell, the
+    connected part of its block, and the cell of a model of blocks. block: (F, 2) the tile's first. is_one:
+    (F,) bool, whether both cells are one of a model of blocks. place: (F, 3) a corner."""
 
     key: np.ndarray
     part: np.ndarray
     block: np.ndarray
-    is_wall: np.ndarray
+    is_one: np.ndarray
     place: np.ndarray
 
     @classmethod
-    def of(cls, model, faces: np.ndarray, own: np.ndarray, part: np.ndarray) -> Seam:
-        """faces: some of a model. own: (F,) which of each one's cells is the tile's; part: of these."""
+    def of(cls, model, faces: np.ndarray, own: np.ndarray, part: np.ndarray, is_one: np.ndarray) -> Seam:
+        """faces: some of a model. own: (F,) which of each one's cells is the tile's. part, is_one: theirs."""
         key = face_keys(model, faces)
         order = np.argsort(key.view("S16"), kind="stable")
         faces, own = faces[order], own[order]
@@ -79,13 +79,13 @@ class Seam:
             key[order],
             part[order].astype(np.int32),
             block.astype(np.int32).reshape(-1, 2),
-            model.face_surface[faces] == _WALL,
+            is_one[order],
             model.vertices[first].reshape(-1, 3),
         )
 
     def arrays(self, prefix: str) -> dict[str, np.ndarray]:
         """By name, as of_arrays takes them."""
-        found = {f"{prefix}_{name}": getattr(self, name) for name in ("part", "block", "is_wall", "place")}
+        found = {f"{prefix}_{name}": getattr(self, name) for name in ("part", "block", "is_one", "place")}
         return {**found, f"{prefix}_key": self.key.view(np.uint8)}
 
     @classmethod
@@ -94,7 +94,7 @@ class Seam:
             none = np.empty((0, 2), np.int32)
             return cls(np.empty(0, _KEY), none, none, np.empty(0, bool), np.empty((0, 3)))
         key = np.ascontiguousarray(arrays[f"{prefix}_key"]).view(_KEY)
-        return cls(key, *(arrays[f"{prefix}_{name}"] for name in ("part", "block", "is_wall", "place")))
+        return cls(key, *(arrays[f"{prefix}_{name}"] for name in ("part", "block", "is_one", "place")))
 
     def matches(self, other: Seam) -> bool:
         """Whether two tiles have the same faces between them, with the same blocks on both sides."""
