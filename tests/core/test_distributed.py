@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import sys
+from concurrent.futures import CancelledError, Future
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from dask_workers import PROJECT, batch, local_client, one_killed
 from realmodel.batch.terminal import TimeLeft
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
+from realmodel.distributed.workers import Workers
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -199,3 +201,33 @@ def test_clusters_of_one_machine_stand_beside_each_other(monkeypatch):
         environments = one.client.run(lambda: dict(os.environ)).values()
         assert [each["OMP_NUM_THREADS"] for each in environments] == ["1"]
         assert [each["MALLOC_TRIM_THRESHOLD_"] for each in environments] == [str(1 << 28)]
+
+
+def test_a_client_that_is_closed_meanwhile():
+    """What went wrong is raised, not that the other tasks cannot be canceled."""
+
+    class Lost:
+        status = "cancelled"
+
+        def add_done_callback(self, call):
+            call(self)
+
+        def done(self):
+            return True
+
+        def result(self):
+            raise CancelledError
+
+    class Closed:
+        def scatter(self, *_, **__): ...
+
+        def submit(self, *_, **__):
+            return Lost()
+
+        def cancel(self, _):
+            raise RuntimeError("closed")
+
+    starting = Future()
+    starting.set_result(Closed())
+    with pytest.raises(UsageError, match="the scheduler or its workers went away; start again"):
+        list(Workers(starting).in_any_order(print, None, [1, 2]))

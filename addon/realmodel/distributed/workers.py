@@ -93,7 +93,8 @@ class Workers:
                     yield task, _result(distributed, future)
                     waiting.update((submitted(next_one, 1), next_one) for next_one in following(task))
         finally:
-            client.cancel(list(waiting))
+            with contextlib.suppress(Exception):  # of a client that is closed: what went wrong is raised
+                client.cancel(list(waiting))
 
 
 def _check(cancel) -> None:
