@@ -67,12 +67,14 @@ def check_points(work: Work, model, places: int, seed: int) -> list[dict]:
         cells = locator.cells(some)
         is_block = np.where(cells == OUTSIDE, AIR, np.append(model.cell_block, AIR)[cells])
         said = _said(forms, some)
-        for n in np.flatnonzero(is_block != said):
-            looked_at += 1
-            if looked_at <= _LOOKED_AT and _is_near(model, forms, locator, some[n]):
-                undecided += 1
-            else:
-                wrong.append((some[n], int(cells[n]), int(is_block[n]), int(said[n])))
+        off = np.flatnonzero(is_block != said)
+        near = np.zeros(len(off), bool)
+        left = max(0, _LOOKED_AT - looked_at)
+        if len(off) and left:
+            near[:left] = _are_near(model, forms, locator, some[off[:left]])
+        looked_at += len(off)
+        undecided += int(near.sum())
+        wrong += [(some[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in off[~near]]
     offenders = [_offender(model, *each) for each in wrong[:_SHOWN]]
     found = [_entry("places", "points", len(points), len(wrong), undecided, began, offenders)]
     return [*found, _check_faces(model, places, random)]
@@ -114,11 +116,12 @@ def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
     return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
 
 
-def _is_near(model, forms: list[ClosedForm], locator: Locator, point: np.ndarray) -> bool:
-    """Whether something that divides rock is nearer to a point than rounding may move it."""
+def _are_near(model, forms: list[ClosedForm], locator: Locator, points: np.ndarray) -> np.ndarray:
+    """(N,) bool: whether a face or surface that divides rock is nearer to a point than rounding moves it."""
     moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
-    blocks, cells = _said(forms, point + moves), locator.cells(point + moves)
-    return bool((blocks != blocks[0]).any() or (cells != cells[0]).any())
+    moved = (points[:, None] + moves).reshape(-1, 3)
+    found = [each.reshape(-1, len(moves)) for each in (_said(forms, moved), locator.cells(moved))]
+    return np.any([(each != each[:, :1]).any(axis=1) for each in found], axis=0)
 
 
 def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
