@@ -77,11 +77,11 @@ step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed
     "$@" </dev/null > >(tee "$log") 2>&1 || status=$?
     wait "$!" # until tee has written all of it
     if [[ -n ${counted[$name]-} ]]; then
-        count "$name" "${counted[$name]}" || status=1
+        count "$name" "${counted[$name]}" || ((status != 0)) || status=1
     fi
     if ((status != 0 && failed == failed_before)); then
         ((failed += 1))
-        failures+=("$name: exit status $status; its output is in $log")
+        failures+=("$name: exit status $status; its output is in $log, and ends with"$'\n'"$(tail -n 5 "$log" | cut -c 1-200)")
     fi
     if ((status == 0)); then
         echo "---- $name: $((SECONDS - start)) s"
@@ -149,8 +149,8 @@ check_tidy() {
 # A shell that starts this script in the background has it ignore Ctrl-C, which some tests send.
 in_time() { timeout --kill-after=10 "$1" env --default-signal=INT "${@:2}"; } # LIMIT COMMAND...
 
-test_core() { # two files at a time
-    in_time 45m "$venv/bin/python" -m pytest tests/core -n 2 --dist loadfile --junitxml="$logs/core.xml"
+test_core() { # two files at a time; a test that hangs fails after ten minutes, and the others go on
+    in_time 45m "$venv/bin/python" -m pytest tests/core -n 2 --dist loadfile --timeout 600 --junitxml="$logs/core.xml"
 }
 
 test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }

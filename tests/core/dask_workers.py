@@ -6,8 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
-import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,26 +26,20 @@ def local_client(workers):
         yield client
 
 
-@contextlib.contextmanager
-def one_killed(client, folder, pattern):
-    """Kills a worker as soon as there is a file of this pattern in the folder; one has been killed in the
-    end."""
-    killed = []
+class KillsOne:
+    """A progress function that kills a worker when it is called with a text first, which says that a task is
+    done."""
 
-    def kill():
-        while not list(folder.glob(pattern)):
-            time.sleep(0.02)
-        pids = client.run(os.getpid)
-        killed.append(next(iter(pids.values())))
-        os.kill(killed[0], signal.SIGKILL)
+    def __init__(self, client, text):
+        self._client, self._text = client, text
+        self.killed = None
 
-    thread = threading.Thread(target=kill)
-    thread.start()
-    yield
-    thread.join()
-    assert killed
+    def __call__(self, _share, text):
+        if self.killed is None and self._text in text:
+            self.killed = next(iter(self._client.run(os.getpid).values()))
+            os.kill(self.killed, signal.SIGKILL)
 
 
-def batch(*arguments, cwd=None):
-    command = [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)]
+def batch(*arguments, cwd=None, project=PROJECT):
+    command = [sys.executable, ROOT / "build_model.py", project, *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, check=False)

@@ -9,7 +9,7 @@ from concurrent.futures import CancelledError, Future
 
 import numpy as np
 import pytest
-from dask_workers import PROJECT, batch, local_client, one_killed
+from dask_workers import PROJECT, KillsOne, batch, local_client
 from realmodel.batch.terminal import TimeLeft
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
@@ -100,8 +100,9 @@ def test_a_folder_that_cannot_be(client, tmp_path):
 
 
 def test_a_killed_worker_does_not_stop_it(client, alone, tmp_path):
-    with one_killed(client, tmp_path, "batches/*.npz"):
-        found = run(tmp_path, client, 20, places=alone.places)
+    kills = KillsOne(client, "of 20 realizations")
+    found = run(tmp_path, client, 20, places=alone.places, progress=kills)
+    assert kills.killed
     assert_same(found, alone)
 
 
@@ -215,12 +216,10 @@ def test_a_client_that_is_closed_meanwhile():
         def done(self):
             return True
 
-        def result(self):
+        def result(self, _timeout):
             raise CancelledError
 
     class Closed:
-        def scatter(self, *_, **__): ...
-
         def submit(self, *_, **__):
             return Lost()
 

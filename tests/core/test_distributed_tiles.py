@@ -2,12 +2,14 @@
 """Tiles on workers of Dask: killed workers, another scheduler, the command line."""
 
 import os
+import re
 import subprocess
 import sys
 
 import pytest
-from dask_workers import PROJECT, ROOT, batch, local_client, one_killed
-from realmodel.core import Cancelled, build, load_project, open_tiles
+from dask_workers import PROJECT, ROOT, KillsOne, batch, local_client
+from realmodel.core import Cancelled, UsageError, build, load_project, open_tiles
+from realmodel.distributed import workers
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -33,10 +35,26 @@ def assert_whole(tiled):
 
 
 def test_a_killed_worker_does_not_stop_it(client, tmp_path):
-    with one_killed(client, tmp_path, "t/run/built-*.json"):
-        tiled = run(tmp_path / "t", client)
+    kills = KillsOne(client, "of 6 tiles built")
+    tiled = run(tmp_path / "t", client, progress=kills)
+    assert kills.killed
     assert len(tiled.tiles) == 6
     assert_whole(tiled)
+
+
+def test_the_only_worker_is_killed(tmp_path):
+    """The one that replaces it has nothing of this run."""
+    with local_client(1) as client:
+        kills = KillsOne(client, "of 6 tiles built")
+        tiled = run(tmp_path / "t", client, progress=kills)
+    assert kills.killed
+    assert_whole(tiled)
+
+
+def test_no_workers_are_left(monkeypatch, tmp_path):
+    monkeypatch.setattr(workers, "_WITHOUT_RESULT", 0.5)
+    with local_client(0) as client, pytest.raises(UsageError, match="no workers left; start again"):
+        run(tmp_path / "t", client)
 
 
 FAULTED = ROOT / "blend_samples" / "rift_basin" / "project.toml"
@@ -56,8 +74,9 @@ def assert_whole_with_faults(tiled):
 
 
 def test_a_killed_worker_does_not_stop_a_model_with_faults(client, tmp_path):
-    with one_killed(client, tmp_path, "t/run/joined-*.json"):
-        tiled = faulted(tmp_path / "t", client)
+    kills = KillsOne(client, "tiles built")
+    tiled = faulted(tmp_path / "t", client, progress=kills)
+    assert kills.killed
     assert len(tiled.tiles) > 4
     assert_whole_with_faults(tiled)
 
@@ -123,6 +142,15 @@ def test_wrong_usage(arguments, said, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_what_a_worker_refuses_is_one_line(tmp_path):
+    for name in ("project.toml", "library.toml", "clay.csv", "ground.csv"):
+        text = (PROJECT.parent / name).read_text()
+        (tmp_path / name).write_text(text.replace("base_elevation = 0", "base_elevation = 25"))
+    done = batch("--tiles", "35,30", "--out", tmp_path / "t", project=tmp_path / "project.toml")
+    assert done.returncode == 1
+    assert re.fullmatch(r"build_model.py: rock 'field': base_elevation 25 is not below .*\n", done.stderr)
+
+
 GONE = """
 import sys, threading, time
 from pathlib import Path
@@ -140,7 +168,7 @@ if __name__ == "__main__":
             time.sleep(0.02)
         client.shutdown()
 
-    threading.Thread(target=close).start()
+    threading.Thread(target=close, daemon=True).start()
     try:
         build(load_project(project), folder, (35, 30), client)
     except UsageError as error:

@@ -648,6 +648,19 @@ def test_a_stopped_run_goes_on(monkeypatch, tmp_path):
     assert again.blocks == tiled.blocks
 
 
+def test_tasks_are_done_twice(monkeypatch, tmp_path):
+    """As Dask does those of a worker that is lost before their results are fetched."""
+    real = tile_folder._step
+
+    def twice(shared, task):
+        real(shared, task)
+        real(shared, task)
+
+    monkeypatch.setattr(tile_folder, "_step", twice)
+    project = sample("two_layers")
+    assert_same_blocks(build_tiles(project, tmp_path / "t", (40, 40)), build(project))
+
+
 def test_surfaces_are_let_go_of_once_they_are_divided(monkeypatch, tmp_path):
     """The lead has none of them while workers are at work."""
     real, arrays, left = tile_folder.prepared, [], []

@@ -122,8 +122,11 @@ def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, prog
 
 
 def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
-    """On a worker: builds a tile, proves it, and writes it, and what its neighbors have to have, too."""
+    """On a worker: builds a tile, proves it, and writes it, and what its neighbors have to have, too. Dask
+    repeats a task whose worker is lost, also if it was done."""
     store, frame, whole = shared
+    if store.has("joined", name):
+        return
     window = _window(store.parts(name) / _WINDOW)
     box = frame.grid.box(*name)
     built = run(lambda work: build_faulted_tile(work, frame, whole, window, name, threads=1))

@@ -150,8 +150,10 @@ def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, 
 
 
 def _step(shared: tuple[Store, Frame, frozenset], task: tuple[str, Name]) -> None:
+    """On a worker. Dask repeats a task whose worker is lost, also if it was done."""
     kind, name = task
-    (_build if kind == "built" else _join)(shared, name)
+    if not shared[0].has(kind, name):
+        (_build if kind == "built" else _join)(shared, name)
 
 
 @contextmanager

@@ -6,18 +6,26 @@ from __future__ import annotations
 import concurrent.futures
 import contextlib
 import importlib.util
+import logging
 import os
+import pickle
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ..core import Cancelled, UsageError
 
 _POLL_SECONDS = 0.2
+_FETCH_SECONDS = 120.0  # for a result, before it counts as lost: its task is done again
+_WITHOUT_RESULT = 600.0  # seconds, after which there must be workers
+_LOST_RESULT = object()
 _ANY_PORT = "127.0.0.1:0"  # None would be Dask's usual port, and a warning where this is taken
 _starts = threading.Lock()  # Dask imports what it needs when it starts, which two threads cannot do at once
 # What Dask measures of itself takes seven percent of a processor while workers are at work
 _QUIET = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s"}
+# 15 s after it has lost a worker, Dask no longer starts others in its place if there is none at that moment
+_PATIENT = {"distributed.deploy.lost-worker-timeout": "1 day"}
 # Dask has the C library give back memory bit by bit, and as it is it gives back each large array: a tenth of
 # a processor, as the next array asks for it again. So it stays in one heap, of which the end is given back
 _HEAP = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 1 << 32, "MALLOC_TRIM_THRESHOLD_": 1 << 28}
@@ -70,31 +78,45 @@ class Workers:
             task = tasks.popleft()
             yield task, function(shared, task)
             tasks.extendleft(reversed(following(task)))
-        if not tasks:
-            return
-        client = self.client
-        distributed = _distributed()
-        everywhere = client.scatter(shared, broadcast=True, hash=False)
-        one_is_done = threading.Event()
+        if tasks:
+            yield from _on_workers(self.client, function, shared, tasks, cancel, following)
 
-        def submitted(task, priority: int):
-            future = client.submit(function, everywhere, task, pure=False, priority=priority)
-            future.add_done_callback(lambda _: one_is_done.set())
-            return future
 
-        waiting = {submitted(task, 0): task for task in tasks}
-        try:
-            while waiting:
-                _check(cancel)
-                one_is_done.wait(_POLL_SECONDS)
-                one_is_done.clear()
-                for future in [future for future in waiting if future.done()]:
-                    task = waiting.pop(future)
-                    yield task, _result(distributed, future)
-                    waiting.update((submitted(next_one, 1), next_one) for next_one in following(task))
-        finally:
-            with contextlib.suppress(Exception):  # of a client that is closed: what went wrong is raised
-                client.cancel(list(waiting))
+def _on_workers(client, function, shared, tasks: Iterable, cancel, following) -> Iterator[tuple]:
+    """As Workers.in_any_order."""
+    distributed = _distributed()
+    with _any_size():
+        # and not client.scatter: what this gives to workers is lost with them
+        everywhere = client.submit(pickle.loads, pickle.dumps(shared), pure=False)
+    one_is_done = threading.Event()
+
+    def submitted(task, priority: int):
+        future = client.submit(function, everywhere, task, pure=False, priority=priority)
+        future.add_done_callback(lambda _: one_is_done.set())
+        return future
+
+    waiting = {submitted(task, 0): task for task in tasks}
+    latest = time.monotonic()
+    try:
+        while waiting:
+            _check(cancel)
+            if time.monotonic() - latest > _WITHOUT_RESULT:
+                latest = time.monotonic()
+                if not client.nthreads():
+                    raise UsageError("Dask has no workers left; start again: what is done stays")
+            one_is_done.wait(_POLL_SECONDS)
+            one_is_done.clear()
+            for future in [future for future in waiting if future.done()]:
+                result = _result(distributed, future)
+                if result is _LOST_RESULT:
+                    continue
+                task = waiting.pop(future)
+                yield task, result
+                waiting.update((submitted(next_one, 1), next_one) for next_one in following(task))
+                latest = time.monotonic()
+    finally:
+        with contextlib.suppress(Exception):  # of a client that is closed: what went wrong is raised
+            client.cancel(list(waiting))
 
 
 def _check(cancel) -> None:
@@ -131,6 +153,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=_ANY_PORT,
+                    silence_logs=logging.CRITICAL,  # what tasks raise comes here; the rest Dask mends
                 )
             ends.enter_context(cluster)
             client = distributed.Client(cluster)
@@ -148,7 +171,14 @@ def _settings() -> contextlib.AbstractContextManager:
     environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
     environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
     environment |= _HEAP
-    return dask.config.set({**_QUIET, "distributed.nanny.pre-spawn-environ": environment})
+    return dask.config.set({**_QUIET, **_PATIENT, "distributed.nanny.pre-spawn-environ": environment})
+
+
+def _any_size() -> contextlib.AbstractContextManager:
+    """Dask warns of more than 10 MB in a task."""
+    import dask
+
+    return dask.config.set({"distributed.admin.large-graph-warning-threshold": 1 << 62})
 
 
 def _ready() -> None:
@@ -156,14 +186,18 @@ def _ready() -> None:
 
 
 def _result(distributed, future):
+    """Of a task that is done. _LOST_RESULT: its worker was lost before the result was fetched, and Dask has
+    the task done again."""
     try:
-        return future.result()
+        return future.result(_FETCH_SECONDS)
     except distributed.KilledWorker as error:
         text = f"workers were lost {_LOST} times at the same task: they may lack memory"
         raise UsageError(text) from error
     except (concurrent.futures.CancelledError, distributed.client.FutureCancelledError, OSError) as error:
         if isinstance(error, OSError) and future.status == "error":
             raise
+        if isinstance(error, distributed.TimeoutError):
+            return _LOST_RESULT
         text = "the scheduler or its workers went away; start again: what is done stays"
         raise UsageError(text) from error
 
