@@ -88,6 +88,9 @@ def _on_workers(client, function, shared, tasks: Iterable, cancel, following) ->
     with _any_size():
         # and not client.scatter: what this gives to workers is lost with them
         everywhere = client.submit(pickle.loads, pickle.dumps(shared), pure=False)
+    with contextlib.suppress(Exception):  # workers that lack it ask others for it, but then they wait for it
+        distributed.wait(everywhere, _FETCH_SECONDS if client.nthreads() else 0)
+        client.replicate(everywhere)
     one_is_done = threading.Event()
 
     def submitted(task, priority: int):

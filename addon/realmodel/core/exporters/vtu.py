@@ -17,7 +17,7 @@ from ..work import native_module
 from .vtk_xml import END, ArrayTag, write_array, write_header, write_length
 
 _POLYHEDRON = 42
-_CELLS_AT_ONCE = 20_000
+_CELLS_AT_ONCE = 2_000  # the memory for more of them would be asked for anew each time
 _LARGEST_INT32 = 2**31 - 1
 
 
