@@ -36,7 +36,7 @@ SIZES = (
     "",
 )
 _SURFACES = 10
-_QUADS, _PARTS = 300, 2  # along the side of a stack that fits one machine, and tiles along it
+_QUADS, _PARTS = 300, 3  # along the side of a stack that fits one machine, and tiles along it
 _MORE_QUADS, _MORE_PARTS = 549, 3  # of a larger one
 _OVERHEAD, _TWO_WORKERS = 1.3, 0.55  # asked
 _UNIT = 316  # quads along one unit of length: a square of it has two million triangles
