@@ -181,6 +181,27 @@ def faulted(n=24, dies_out=False):
     )
 
 
+def test_surfaces_and_sheets_are_kept_in_files(monkeypatch, tmp_path):
+    """One surface is in memory at a time, and the files are gone at the end."""
+    real, are_mapped = Windows.__init__, []
+
+    def look(self, work, inputs, *more):
+        for entry in inputs:
+            meshes = [sheet for row in entry.structure.sheets for sheet in row]
+            meshes += [mesh for mesh in (*entry.surfaces, entry.region) if mesh is not None]
+            are_mapped.extend(isinstance(each, np.memmap) for mesh in meshes for each in mesh)
+            made = [values for of in entry.attributes.values() for values in of.values()]
+            are_mapped.extend(isinstance(each, np.memmap) for each in made)
+        real(self, work, inputs, *more)
+
+    monkeypatch.setattr(Windows, "__init__", look)
+    for name in ("fault_blocks", "rift_basin"):
+        before = len(are_mapped)
+        build_tiles(sample(name), tmp_path / name, (1e6, 1e6))
+        assert len(are_mapped) > before and all(are_mapped)
+        assert not (tmp_path / name / "run").exists()
+
+
 @pytest.mark.parametrize("dies_out", [False, True])
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path, monkeypatch):

@@ -15,6 +15,7 @@ from ..core import BuildFailed, BuildWarning
 from ..core.assembly import list_blocks
 from ..core.atomic import Outputs
 from ..core.errors import place_text
+from ..core.mapped_arrays import MappedArrays
 from ..core.structures.setup import structured_inputs
 from ..core.structures.windows import Window, Windows
 from ..core.tiles import TiledModel
@@ -24,7 +25,19 @@ from ..core.tiles.owned_cells import Seam
 from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
 from ..core.tiles.tiled_model import tiled_model
 from ..core.work import Work, native_module, run
-from .run_folder import Parts, Store, blocks_of, entry_of, finished, places_of, stem, write_index, write_tile
+from .run_folder import (
+    Parts,
+    Store,
+    blocks_of,
+    entry_of,
+    finished_catalog,
+    mapped_arrays,
+    places_of,
+    stem,
+    write_index,
+    write_tile,
+)
+from .tile_inputs import SurfaceReader
 from .workers import Workers
 
 _PREPARED, _BUILT = 0.4, 0.97  # of the time
@@ -36,10 +49,25 @@ def build_faulted(
     project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, progress, cancel
 ) -> TiledModel:
     """tile_folder.build for a project with faults or bodies. size: of tiles."""
+    with mapped_arrays(folder) as arrays:
+        catalog, store = _built(project, folder, size, cells, arrays, workers, progress, cancel)
+    if store is not None:
+        write_index(store, [f"{TILES}/{tile.name}.vtu" for tile in catalog.tiles])
+        write_catalog(catalog, folder)
+        store.remove()
+    return tiled_model(catalog, folder)
+
+
+def _built(
+    project, folder: Path, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+) -> tuple[Catalog, Store | None]:
+    """The table of the whole, and the files of the run; None where the folder is finished. arrays: where
+    surfaces and their sheets are kept."""
+    reader = SurfaceReader(arrays, workers)
 
     def prepared(work: Work):
-        inputs, structures, warnings = structured_inputs(work, project, 0)
-        return Windows(work, inputs, structures, 0), structures, warnings
+        inputs, structures, warnings = structured_inputs(work, project, 0, reader, arrays.keep)
+        return Windows(work, inputs, structures, 0, arrays.keep), structures, warnings
 
     windows, structures, warnings = run(
         prepared, lambda share, text: progress(_PREPARED * share, text), cancel
@@ -48,7 +76,7 @@ def build_faulted(
     frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
     digest = _digest(frame, windows)
     if (folder / CATALOG).exists():
-        return finished(folder, digest)
+        return finished_catalog(folder, digest), None
     store, none = Store(folder, digest), np.empty(0, np.int32)
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
     whole = Whole(
@@ -77,11 +105,7 @@ def build_faulted(
         waiting = list(asked)
     if windows.snapped is not None:
         warnings.append(BuildWarning(windows.snapped, "joined"))
-    catalog = _catalog(frame, store, listed, digest, warnings)
-    write_index(store, [f"{TILES}/{stem(name)}.vtu" for name in listed])
-    write_catalog(catalog, folder)
-    store.remove()
-    return tiled_model(catalog, folder)
+    return _catalog(frame, store, listed, digest, warnings), store
 
 
 def _digest(frame: Frame, windows: Windows) -> str:

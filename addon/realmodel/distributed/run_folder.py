@@ -5,8 +5,11 @@ from __future__ import annotations
 
 import json
 import math
+import secrets
 import shutil
-from collections.abc import Callable, Iterable
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -18,12 +21,13 @@ from ..core.blocks import Block
 from ..core.exporters.npz import write_arrays
 from ..core.exporters.vtk_xml import write_pieces
 from ..core.exporters.vtu import write_vtu
+from ..core.mapped_arrays import MappedArrays
 from ..core.model import Model
 from ..core.simulation import PolyhedralMesh
-from ..core.tiles.catalog import CATALOG, INDEX, TILES, TileEntry, read_catalog
+from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog
 from ..core.tiles.settling import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
-from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
+from ..core.tiles.tiled_model import file_digest
 from ..core.validation import PLACES_OF_REPORT
 
 RUN = "run"  # what only a run needs, in the folder
@@ -44,6 +48,23 @@ def require_own(folder: Path) -> None:
 
 def stem(name: Name) -> str:
     return f"{name[0]:04d}-{name[1]:04d}"
+
+
+@contextmanager
+def mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
+    """Where arrays are kept until the tiles have them: on the disk of the result, unless this is finished."""
+    if (folder / CATALOG).exists():
+        run_folder, made = Path(tempfile.gettempdir()), []
+    else:
+        run_folder = folder / RUN
+        made = [each for each in (run_folder, folder) if not each.exists()]
+    try:
+        with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
+            yield arrays
+    finally:
+        for each in made:
+            with suppress(OSError):
+                each.rmdir()  # where nothing else came
 
 
 class Store:
@@ -126,11 +147,11 @@ def another(folder: Path) -> UsageError:
     )
 
 
-def finished(folder: Path, digest: str) -> TiledModel:
+def finished_catalog(folder: Path, digest: str) -> Catalog:
     catalog = read_catalog(folder)
     if catalog.digest != digest:
         raise another(folder)
-    return tiled_model(catalog, folder)
+    return catalog
 
 
 def write_tile(store: Store, name: Name, model: Model, **more) -> None:

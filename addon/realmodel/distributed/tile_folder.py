@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import secrets
-import tempfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
@@ -17,7 +15,7 @@ from ..core.atomic import Outputs
 from ..core.build_options import check_cells
 from ..core.errors import place_text
 from ..core.local_heights import PartHeights
-from ..core.mapped_arrays import MappedArrays, read_mapped, write_mapped
+from ..core.mapped_arrays import read_mapped, write_mapped
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,
@@ -47,12 +45,12 @@ from ..core.work import run
 from ..core.wrong_sides import WrongPoints
 from .faulted_folder import build_faulted
 from .run_folder import (
-    RUN,
     Parts,
     Store,
     blocks_of,
     entry_of,
-    finished,
+    finished_catalog,
+    mapped_arrays,
     places_of,
     require_own,
     stem,
@@ -93,11 +91,10 @@ def build(
     progress = progress or (lambda _share, _text: None)
     require_own(folder)
     is_finished = (folder / CATALOG).exists()
-    if project.faults or project.bodies:
-        with no_workers() if is_finished else workers_of(client, workers) as done_by:
-            return build_faulted(project, folder, size, cells, done_by, progress, cancel)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
-        with _mapped_arrays(folder) as arrays:
+        if project.faults or project.bodies:
+            return build_faulted(project, folder, size, cells, done_by, progress, cancel)
+        with mapped_arrays(folder) as arrays:
             found = prepared(
                 project,
                 size,
@@ -108,7 +105,7 @@ def build(
                 cancel,
             )
             if is_finished:
-                return finished(folder, found.digest)
+                return tiled_model(finished_catalog(folder, found.digest), folder)
             store = Store(folder, found.digest)
             names = store.listed(
                 found.frame.grid, lambda: divided(found, arrays, done_by, store.parts, cancel)
@@ -154,23 +151,6 @@ def _step(shared: tuple[Store, Frame, frozenset], task: tuple[str, Name]) -> Non
     kind, name = task
     if not shared[0].has(kind, name):
         (_build if kind == "built" else _join)(shared, name)
-
-
-@contextmanager
-def _mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
-    """Where arrays are kept until the tiles have them: on the disk of the result, unless this is finished."""
-    if (folder / CATALOG).exists():
-        run_folder, made = Path(tempfile.gettempdir()), []
-    else:
-        run_folder = folder / RUN
-        made = [each for each in (run_folder, folder) if not each.exists()]
-    try:
-        with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
-            yield arrays
-    finally:
-        for each in made:
-            with suppress(OSError):
-                each.rmdir()  # where nothing else came
 
 
 def _neighbors(frame: Frame, name: Name, names: Iterable[Name]) -> list[tuple]:

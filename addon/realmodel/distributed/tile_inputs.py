@@ -62,7 +62,7 @@ class Prepared:
 
 def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""
-    reader = _Reader(arrays, workers)
+    reader = SurfaceReader(arrays, workers)
 
     def surfaces_with(flat: Callable[[Rock], set[int]]) -> SurfaceSet:
         return build_surfaces(
@@ -166,8 +166,9 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
         raise error.within(surface_item(Rock(rock, []), surface), file=file, line=line) from error
 
 
-class _Reader:
-    """Reads the surfaces of a project (surface_input.Reader). digests: of what each of them was read to."""
+class SurfaceReader:
+    """Reads the surfaces of a project on workers (surface_input.Reader). digests: of what each of them was
+    read to."""
 
     def __init__(self, arrays: MappedArrays, workers: Workers):
         self._arrays, self._workers = arrays, workers

@@ -10,8 +10,10 @@ import numpy as np
 
 from ..algebra import norm
 from ..build_warning import BuildWarning
+from ..mapped_arrays import Keep, as_it_is
 from ..project import Project
 from ..rock_input import RockInput, mesh_rock, read_rocks
+from ..surface_input import Reader, read_each
 from ..work import Work, native_module
 from .branches import require_meeting
 from .entries import Body, Fault
@@ -38,12 +40,13 @@ def make_structures(
     start: float,
     end: float,
     joins: bool = True,
+    keep: Keep = as_it_is,
 ) -> Structures:
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space. Progress goes from `start` to `end`.
 
     faults, bodies: those of the project, with arrays. joins: whether `entry.surfaces` gets the sheets of each
-    surface, one after another. Raises InputRefused.
+    surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused.
     """
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
@@ -56,7 +59,7 @@ def make_structures(
     for _ in range(_ROUNDS):
         add_compartments(structures, inputs)
         for entry, begin, finish in zip(inputs, steps[:-1], steps[1:], strict=True):
-            make_sheets(work, entry, begin, finish, threads, stage)
+            make_sheets(work, entry, begin, finish, threads, stage, keep)
         wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
             break
@@ -75,19 +78,22 @@ def make_structures(
 
 
 def structured_inputs(
-    work: Work, project: Project, threads: int
+    work: Work, project: Project, threads: int, reader: Reader = read_each, keep: Keep = as_it_is
 ) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
     """Reads, meshes and interpolates a project with faults or bodies: its rock masses with sheets in the
-    place of surfaces, its structures, and warnings. Raises InputRefused."""
+    place of surfaces, its structures, and warnings. reader: how surfaces are read. keep: where the arrays of
+    sheets and regions are kept. Raises InputRefused."""
     with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project)
+        inputs = read_rocks(work, project, reader)
         faults, bodies, warnings = read_structures(work, project, threads)
     steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
     for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
+        if entry.region is not None:
+            entry.region = tuple(map(keep, entry.region))
     structures = make_structures(
-        work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False
+        work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False, keep=keep
     )
     return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 

@@ -11,19 +11,28 @@ import numpy as np
 
 from ..build_warning import BuildWarning
 from ..errors import InputRefused
+from ..mapped_arrays import Keep, as_it_is
 from ..project import surface_item
 from ..surface_heights import interpolation_order
 from ..work import Work
-from ..wrong_sides import points_too_low
+from ..wrong_sides import Triangulation, points_too_low
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
 from .sides import sides_of
 
 
-def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage: int | None = None) -> None:
+def make_sheets(
+    work: Work,
+    entry,
+    start: float,
+    end: float,
+    threads: int,
+    stage: int | None = None,
+    keep: Keep = as_it_is,
+) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
-    Progress goes from `start` to `end`.
+    Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
 
     Raises InputRefused for a surface that has data in no compartment.
     """
@@ -35,7 +44,7 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
 
     def sheets_of(part: Work, number: int, own_threads: int) -> list:
         with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
-            return _make_named(ReadyMesh, part, entry, number, own_threads)
+            return _make_named(ReadyMesh, part, entry, number, own_threads, keep)
 
     # ready meshes need no others
     with work.phase(start, steps[0], "interpolating surfaces"):
@@ -43,22 +52,43 @@ def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage
             entry.structure.warnings += warnings
     for number, (begin, finish) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
-            entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads)
+            entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads, keep)
     for number in sorted(interpolated):
         _warn_of_points_too_low(work, entry, number, threads)
 
 
-def _make_named(kind, work: Work, entry, number: int, threads: int) -> list:
+def _make_named(kind, work: Work, entry, number: int, threads: int, keep: Keep) -> list:
     """_make; its errors name the surface."""
     rock = entry.rock
     try:
-        return _make(entry, number, kind(work, entry, number, threads))
+        warnings = _make(entry, number, kind(work, entry, number, threads))
     except InputRefused as error:
         if error.item is not None and error.item.startswith("rock '"):
             raise
         surface = rock.surfaces[number]
         file, line = surface.shape_source()
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    _keep(entry, number, keep)
+    return warnings
+
+
+def _keep(entry, number: int, keep: Keep) -> None:
+    """Keeps the arrays of a surface elsewhere. Sheets and arrays that are the same object stay so."""
+    arrays: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    made: dict[int, tuple[Triangulation, Triangulation]] = {}
+
+    def kept(array: np.ndarray) -> np.ndarray:
+        if id(array) not in arrays:
+            arrays[id(array)] = array, keep(array)
+        return arrays[id(array)][1]
+
+    for sheets in entry.structure.sheets:
+        sheet = sheets[number]
+        if id(sheet) not in made:
+            made[id(sheet)] = sheet, tuple(map(kept, sheet))
+        sheets[number] = made[id(sheet)][1]
+    attributes = entry.attributes.get(number, {})
+    entry.attributes[number] = {name: keep(values) for name, values in attributes.items()}
 
 
 def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..algebra import norm
+from ..mapped_arrays import Keep, as_it_is
 from ..rock_input import RockInput
 from ..tiles.grid import TileGrid, tile_grid, triangles_by_tile
 from ..work import Work, native_module
@@ -47,9 +48,8 @@ class Window:
 class _Plan:
     """The triangles (T, 3) of a sheet or a region, and its vertices in plan (V, 2)."""
 
-    def __init__(self, vertices: np.ndarray, triangles: np.ndarray):
-        self.triangles, self.vertices = triangles, np.ascontiguousarray(vertices[:, :2])
-        self.low, self.high = extents(self.vertices[triangles])
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, keep: Keep):
+        self.triangles, self.vertices = triangles, keep(np.ascontiguousarray(vertices[:, :2]))
         self._of_tile: dict[tuple[int, int], np.ndarray] = {}
         self._grid: TileGrid | None = None
 
@@ -66,23 +66,34 @@ class _Plan:
         if not tiles:
             return np.empty(0, np.int32)
         near = tiles[0] if len(tiles) == 1 else np.unique(np.concatenate(tiles))
-        return near[((self.low[near] <= box[2:]) & (self.high[near] >= box[:2])).all(axis=1)]
+        low, high = self.extents(near)
+        return near[((low <= box[2:]) & (high >= box[:2])).all(axis=1)]
+
+    def extents(self, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the greatest plan coordinates (N, 2) of triangles."""
+        return extents(self.vertices[self.triangles[numbers]])
 
 
 class Windows:
     """The windows of a project that is read and interpolated, with its structures and sheets. inputs: the
     rock masses, plan coordinates that differ by rounding alone made equal; snapped: the warning about that,
-    or None."""
+    or None. keep: where arrays of all triangles are kept."""
 
-    def __init__(self, work: Work, inputs: list[RockInput], structures: Structures, threads: int):
-        self.inputs, self.snapped = _snapped(work, inputs, threads)
-        self.structures, self._threads = structures, threads
+    def __init__(
+        self,
+        work: Work,
+        inputs: list[RockInput],
+        structures: Structures,
+        threads: int,
+        keep: Keep = as_it_is,
+    ):
+        self.inputs, self.snapped = inputs, None
+        self.structures, self._threads, self._keep = structures, threads, keep
         self._reach = Reach(work, structures, threads)
-        self._plans: dict[int, list[_Plan]] = {}
-        self._regions = [None if entry.region is None else _Plan(*entry.region) for entry in self.inputs]
-        self._plan_of = {id(sheet): self._known_plan(sheet) for sheet in self._sheets()}
-        self._all = [plans for of in self._plans.values() for plans in of]
-        self._all += [region for region in self._regions if region is not None]
+        self._find_plans()
+        if _are_any_close([plan.vertices for plan in self._all]):
+            self.inputs, self.snapped = _snapped(work, inputs, threads, keep)
+            self._find_plans()
         ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.structure.sheets]
         self._ends = min(low for low, _ in ends), max(high for _, high in ends)
         given = structures.native()
@@ -90,6 +101,14 @@ class Windows:
         corners = [triangles.reshape(-1, 3, 3) for triangles, _, _ in self._continued]
         self._extents = [extents(each) for each in corners]
         self._sides: dict[int, np.ndarray] = {}  # of faults, at the middles of all tiles
+
+    def _find_plans(self) -> None:
+        self._plans: dict[int, list[_Plan]] = {}
+        regions = [entry.region for entry in self.inputs]
+        self._regions = [None if region is None else _Plan(*region, self._keep) for region in regions]
+        self._plan_of = {id(sheet): self._known_plan(sheet) for sheet in self._sheets()}
+        self._all = [plans for of in self._plans.values() for plans in of]
+        self._all += [region for region in self._regions if region is not None]
 
     def _sheets(self) -> Iterator[Triangulation]:
         for entry in self.inputs:
@@ -103,7 +122,7 @@ class Windows:
         for plan in known:
             if np.array_equal(vertices[:, :2], plan.vertices):
                 return plan
-        known.append(_Plan(vertices, triangles))
+        known.append(_Plan(vertices, triangles, self._keep))
         return known[-1]
 
     def divide(self, tile_size: tuple[float, float]) -> TileGrid:
@@ -134,8 +153,8 @@ class Windows:
         for plan in self._all:
             met = plan.meeting(box)
             if len(met):
-                low = np.minimum(low, plan.low[met].min(axis=0))
-                high = np.maximum(high, plan.high[met].max(axis=0))
+                least, most = plan.extents(met)
+                low, high = np.minimum(low, least.min(axis=0)), np.maximum(high, most.max(axis=0))
         return *low.tolist(), *high.tolist()
 
     def window(self, work: Work, tile: tuple[int, int], farther: int | None = 0) -> Window:
@@ -293,7 +312,19 @@ class Windows:
         return of_plan[id(plan)]
 
 
-def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[RockInput], str | None]:
+def _are_any_close(plans: list[np.ndarray]) -> bool:
+    """Whether any x, or any y, of positions in plan differ by rounding alone: then snap_plan, which takes
+    much memory for many sheets, may make them equal."""
+    for axis in range(2):
+        values = np.unique(np.concatenate([np.unique(plan[:, axis]) for plan in plans]))
+        if (np.diff(values) <= np.abs(values).max() * 2.0**-51).any():  # as find_snapping
+            return True
+    return False
+
+
+def _snapped(
+    work: Work, inputs: list[RockInput], threads: int, keep: Keep
+) -> tuple[list[RockInput], str | None]:
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
     and the warning about that, or None."""
     distinct = [
@@ -309,7 +340,7 @@ def _snapped(work: Work, inputs: list[RockInput], threads: int) -> tuple[list[Ro
         return inputs, None
     snapped, (of_rocks, text) = [], found
     for entry, sheets, (meshes, region) in zip(inputs, distinct, of_rocks, strict=True):
-        new = {key: (mesh, sheet[1]) for (key, sheet), mesh in zip(sheets.items(), meshes, strict=True)}
+        new = {key: (keep(mesh), sheet[1]) for (key, sheet), mesh in zip(sheets.items(), meshes, strict=True)}
         of = [[new[id(sheet)] for sheet in own] for own in entry.structure.sheets]
         given = None if region is None else (region, entry.region[1])
         snapped.append(replace(entry, region=given, structure=replace(entry.structure, sheets=of)))
