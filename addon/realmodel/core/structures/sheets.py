@@ -87,8 +87,8 @@ def _keep(entry, number: int, keep: Keep) -> None:
         if id(sheet) not in made:
             made[id(sheet)] = sheet, tuple(map(kept, sheet))
         sheets[number] = made[id(sheet)][1]
-    attributes = entry.attributes.get(number, {})
-    entry.attributes[number] = {name: keep(values) for name, values in attributes.items()}
+    if number in entry.attributes:
+        entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
 def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
