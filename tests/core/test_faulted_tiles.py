@@ -182,7 +182,7 @@ def faulted(n=24, dies_out=False):
 
 
 def test_surfaces_and_sheets_are_kept_in_files(monkeypatch, tmp_path):
-    """One surface is in memory at a time, and the files are gone at the end."""
+    """Sheets go there as they are made, and the files are gone at the end."""
     real, are_mapped = Windows.__init__, []
 
     def look(self, work, inputs, *more):

@@ -19,22 +19,21 @@ from ..core.mapped_arrays import MappedArrays
 from ..core.structures.setup import structured_inputs
 from ..core.structures.windows import Window, Windows
 from ..core.tiles import TiledModel
-from ..core.tiles.catalog import CATALOG, TILES, Catalog, write_catalog
+from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.faulted_tile import Whole, build_faulted_tile
 from ..core.tiles.owned_cells import Seam
 from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
-from ..core.tiles.tiled_model import tiled_model
 from ..core.work import Work, native_module, run
 from .run_folder import (
     Parts,
     Store,
     blocks_of,
     entry_of,
-    finished_catalog,
+    finish,
+    finished,
     mapped_arrays,
     places_of,
     stem,
-    write_index,
     write_tile,
 )
 from .tile_inputs import SurfaceReader
@@ -50,19 +49,15 @@ def build_faulted(
 ) -> TiledModel:
     """tile_folder.build for a project with faults or bodies. size: of tiles."""
     with mapped_arrays(folder) as arrays:
-        catalog, store = _built(project, folder, size, cells, arrays, workers, progress, cancel)
-    if store is not None:
-        write_index(store, [f"{TILES}/{tile.name}.vtu" for tile in catalog.tiles])
-        write_catalog(catalog, folder)
-        store.remove()
-    return tiled_model(catalog, folder)
+        built = _built(project, folder, size, cells, arrays, workers, progress, cancel)
+    return built if isinstance(built, TiledModel) else finish(*built)
 
 
 def _built(
     project, folder: Path, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
-) -> tuple[Catalog, Store | None]:
-    """The table of the whole, and the files of the run; None where the folder is finished. arrays: where
-    surfaces and their sheets are kept."""
+) -> TiledModel | tuple[Store, Catalog]:
+    """The files of the run and the table of the whole; or the model, where the folder is finished. arrays:
+    where surfaces and their sheets are kept."""
     reader = SurfaceReader(arrays, workers)
 
     def prepared(work: Work):
@@ -76,7 +71,7 @@ def _built(
     frame = Frame(without_shapes(project, inputs), cells, windows.divide(size), ())
     digest = _digest(frame, windows)
     if (folder / CATALOG).exists():
-        return finished_catalog(folder, digest), None
+        return finished(folder, digest)
     store, none = Store(folder, digest), np.empty(0, np.int32)
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
     whole = Whole(
@@ -105,7 +100,7 @@ def _built(
         waiting = list(asked)
     if windows.snapped is not None:
         warnings.append(BuildWarning(windows.snapped, "joined"))
-    return _catalog(frame, store, listed, digest, warnings), store
+    return store, _catalog(frame, store, listed, digest, warnings)
 
 
 def _digest(frame: Frame, windows: Windows) -> str:

@@ -24,10 +24,10 @@ from ..core.exporters.vtu import write_vtu
 from ..core.mapped_arrays import MappedArrays
 from ..core.model import Model
 from ..core.simulation import PolyhedralMesh
-from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog
+from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.settling import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
-from ..core.tiles.tiled_model import file_digest
+from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
 from ..core.validation import PLACES_OF_REPORT
 
 RUN = "run"  # what only a run needs, in the folder
@@ -147,11 +147,11 @@ def another(folder: Path) -> UsageError:
     )
 
 
-def finished_catalog(folder: Path, digest: str) -> Catalog:
+def finished(folder: Path, digest: str) -> TiledModel:
     catalog = read_catalog(folder)
     if catalog.digest != digest:
         raise another(folder)
-    return catalog
+    return tiled_model(catalog, folder)
 
 
 def write_tile(store: Store, name: Name, model: Model, **more) -> None:
@@ -244,7 +244,11 @@ def entry_of(name: Name, record: dict) -> TileEntry:
     )
 
 
-def write_index(store: Store, pieces: list[str]) -> None:
-    """The file that opens all tiles in ParaView."""
+def finish(store: Store, catalog: Catalog) -> TiledModel:
+    """Writes the file that opens all tiles in ParaView, and the table of the whole, and removes what only the
+    run needed."""
     with Outputs() as outputs, outputs.file(store.folder / INDEX) as file:
-        write_pieces(file, pieces)
+        write_pieces(file, [f"{TILES}/{tile.name}.vtu" for tile in catalog.tiles])
+    write_catalog(catalog, store.folder)
+    store.remove()
+    return tiled_model(catalog, store.folder)

@@ -29,7 +29,7 @@ from ..core.tiles.borders import (
     sides_of,
     with_vertices_of,
 )
-from ..core.tiles.catalog import CATALOG, TILES, Catalog, write_catalog
+from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.grid import checked_size
 from ..core.tiles.settling import BorderVertices, settled
 from ..core.tiles.tile_model import (
@@ -40,7 +40,6 @@ from ..core.tiles.tile_model import (
     read_arrays,
     tile_arrays,
 )
-from ..core.tiles.tiled_model import tiled_model
 from ..core.work import run
 from ..core.wrong_sides import WrongPoints
 from .faulted_folder import build_faulted
@@ -49,12 +48,11 @@ from .run_folder import (
     Store,
     blocks_of,
     entry_of,
-    finished_catalog,
+    finish,
+    finished,
     mapped_arrays,
     places_of,
     require_own,
-    stem,
-    write_index,
     write_tile,
 )
 from .tile_inputs import Prepared, divided, prepared
@@ -105,18 +103,14 @@ def build(
                 cancel,
             )
             if is_finished:
-                return tiled_model(finished_catalog(folder, found.digest), folder)
+                return finished(folder, found.digest)
             store = Store(folder, found.digest)
             names = store.listed(
                 found.frame.grid, lambda: divided(found, arrays, done_by, store.parts, cancel)
             )
             found = found.let_go()
         _build_all(store, found.frame, names, done_by, progress, cancel)
-    catalog = _catalog(found, store, names)
-    write_index(store, [f"{TILES}/{stem(name)}.vtu" for name in names])
-    write_catalog(catalog, folder)
-    store.remove()
-    return tiled_model(catalog, folder)
+    return finish(store, _catalog(found, store, names))
 
 
 def _build_all(store: Store, frame: Frame, names: list[Name], workers: Workers, progress, cancel) -> None:

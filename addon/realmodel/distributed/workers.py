@@ -22,10 +22,13 @@ _WITHOUT_RESULT = 600.0  # seconds, after which there must be workers
 _LOST_RESULT = object()
 _ANY_PORT = "127.0.0.1:0"  # None would be Dask's usual port, and a warning where this is taken
 _starts = threading.Lock()  # Dask imports what it needs when it starts, which two threads cannot do at once
-# What Dask measures of itself takes seven percent of a processor while workers are at work
-_QUIET = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s"}
-# 15 s after it has lost a worker, Dask no longer starts others in its place if there is none at that moment
-_PATIENT = {"distributed.deploy.lost-worker-timeout": "1 day"}
+_SETTINGS = {
+    # what Dask measures of itself takes seven percent of a processor while workers are at work
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    # after this time Dask no longer replaces a worker that it has lost, if there is none at that moment
+    "distributed.deploy.lost-worker-timeout": "1 day",
+}
 # Dask has the C library give back memory bit by bit, and as it is it gives back each large array: a tenth of
 # a processor, as the next array asks for it again. So it stays in one heap, of which the end is given back
 _HEAP = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 1 << 32, "MALLOC_TRIM_THRESHOLD_": 1 << 28}
@@ -174,7 +177,7 @@ def _settings() -> contextlib.AbstractContextManager:
     environment = dask.config.get("distributed.nanny.pre-spawn-environ", {})
     environment = {name: each for name, each in environment.items() if not name.startswith("MALLOC_")}
     environment |= _HEAP
-    return dask.config.set({**_QUIET, **_PATIENT, "distributed.nanny.pre-spawn-environ": environment})
+    return dask.config.set({**_SETTINGS, "distributed.nanny.pre-spawn-environ": environment})
 
 
 def _any_size() -> contextlib.AbstractContextManager:
