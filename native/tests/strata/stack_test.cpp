@@ -406,6 +406,38 @@ TEST(Stack, TrianglesBesideABorderStayWholeInBlocks) {
     EXPECT_GT(faces(holed), 2 * 36 + 2 * 16 - 1);
 }
 
+TEST(Stack, WallsEndWhereACellTouchesItself) {
+    // A hole touches the west side of the square in one point: the cell is all around it.
+    OwnedSurface pierced;
+    const auto a = pierced.vertex(0, 0, 0), b = pierced.vertex(9, 0, 0),
+               c = pierced.vertex(9, 9, 0), d = pierced.vertex(0, 9, 0),
+               touching = pierced.vertex(0, 4, 0), low = pierced.vertex(3, 3, 0),
+               high = pierced.vertex(3, 5, 0);
+    pierced.triangle(a, b, low);
+    pierced.triangle(a, low, touching);
+    pierced.triangle(low, b, high);
+    pierced.triangle(b, c, high);
+    pierced.triangle(c, d, high);
+    pierced.triangle(d, touching, high);
+    StackInput input;
+    input.surfaces = {pierced.view()};
+    input.base_elevation = -1.0;
+    const auto blocks = build_stack(input, 1, nullptr, CellKind::kBlocks);
+    expect_valid(blocks, true);
+    EXPECT_EQ(blocks.cell_block.size(), 1u);
+    std::size_t along = 0;  // walls that have the vertical edge there
+    for (std::size_t f = 0; f < blocks.face_surface.size(); ++f) {
+        std::size_t there = 0;
+        for (auto i = blocks.face_offsets[f]; i < blocks.face_offsets[f + 1]; ++i) {
+            const std::int32_t v = blocks.face_vertices[static_cast<std::size_t>(i)];
+            const auto& p = blocks.vertices[static_cast<std::size_t>(v)];
+            there += p[0] == 0 && p[1] == 4;
+        }
+        along += there == 2;
+    }
+    EXPECT_EQ(along, 4u);
+}
+
 TEST(Stack, BlocksAreMergedColumns) {
     std::vector<OwnedSurface> surfaces;
     for (int k = 0; k < 4; ++k) {

@@ -21,11 +21,61 @@ bool is_high(const std::array<double, 3>& lower, const std::array<double, 3>& up
     return upper[2] - lower[2] > 0x1p-26 * std::max(std::abs(lower[0]), std::abs(lower[1]));
 }
 
+/// Where walls of several lines meet. A cell may touch itself there along a vertical edge that
+/// walls of one of the lines pass: another cell, or the outside, has an edge there. They end at it
+/// then, so that whoever divides the cell finds what the edge parts.
+class MeetingWalls {
+public:
+    MeetingWalls(std::span<const WallStretch> stretches, const ConformedFaces& conformed)
+        : first_(conformed.vertex_offsets), line_(first_.size(), kNone) {
+        const auto each_end = [&](const auto& visit) {
+            for (const WallStretch& s : stretches) {
+                for (std::size_t i = 0; i < 2; ++i) {
+                    if (s.lower[i] != s.upper[i]) visit(End{s.lower[i], s.upper[i], s.line});
+                }
+            }
+        };
+        each_end([&](const End& end) {
+            std::int32_t& line = line_[plan_vertex_of(end.lower)];
+            line = line == kNone || line == end.line ? end.line : kSeveral;
+        });
+        each_end([&](const End& end) {
+            if (line_[plan_vertex_of(end.lower)] == kSeveral) ends_.push_back(end);
+        });
+        std::ranges::sort(ends_, {}, &End::lower);
+    }
+    /// Whether a wall of another line has some of a vertical edge.
+    bool end_at(std::int32_t lower, std::int32_t upper, std::int32_t line) const {
+        const std::size_t plan_vertex = plan_vertex_of(lower);
+        if (line_[plan_vertex] != kSeveral) return false;
+        const std::span there(std::ranges::lower_bound(ends_, first_[plan_vertex], {}, &End::lower),
+                              std::ranges::lower_bound(ends_, upper, {}, &End::lower));
+        return std::ranges::any_of(
+            there, [&](const End& end) { return end.upper > lower && end.line != line; });
+    }
+
+private:
+    static constexpr std::int32_t kNone = -1, kSeveral = -2;
+    /// Vertices of one plan vertex have ascending numbers from below.
+    struct End {
+        std::int32_t lower, upper, line;
+    };
+
+    std::size_t plan_vertex_of(std::int32_t vertex) const {
+        return static_cast<std::size_t>(std::ranges::upper_bound(first_, vertex) - first_.begin()) -
+               1;
+    }
+
+    std::span<const std::int32_t> first_;  ///< vertices of plan vertices
+    std::vector<std::int32_t> line_;       ///< of plan vertices
+    std::vector<End> ends_;                ///< where several lines meet
+};
+
 /// Calls emit(wall) with the walls between cells.
 template <class Emit>
 void for_each_wall(std::span<const WallStretch> stretches,
                    const std::vector<std::int32_t>& cell_of_node, const ConformedFaces& conformed,
-                   const Emit& emit) {
+                   const MeetingWalls& meeting, const Emit& emit) {
     const auto position = [&](std::int32_t v) -> const std::array<double, 3>& {
         return conformed.positions[static_cast<std::size_t>(v)];
     };
@@ -37,7 +87,8 @@ void for_each_wall(std::span<const WallStretch> stretches,
         const WallStretch& s = stretches[i];
         assert(cell(s.left) != cell(s.right));
         joining.add(s.lower, s.upper, cell(s.left), cell(s.right),
-                    is_high(position(s.lower[0]), position(s.upper[0])));
+                    is_high(position(s.lower[0]), position(s.upper[0])) &&
+                        !meeting.end_at(s.lower[0], s.upper[0], s.line));
         const bool is_last = i + 1 == stretches.size();
         if (!is_last && stretches[i + 1].line == s.line && stretches[i + 1].interval == s.interval)
             continue;
@@ -134,8 +185,9 @@ JoinedWalls join_stretches(std::span<const WallStretch> stretches,
         for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})
             is_needed[static_cast<std::size_t>(v)] |= may_bend[static_cast<std::size_t>(v)];
     }
+    const MeetingWalls meeting(stretches, conformed);
     const auto for_all = [&](const auto& emit) {
-        for_each_wall(stretches, cell_of_node, conformed, emit);
+        for_each_wall(stretches, cell_of_node, conformed, meeting, emit);
     };
     for_all([&](const OpenWall& wall) {
         for (const std::int32_t v :
