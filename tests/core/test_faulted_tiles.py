@@ -267,11 +267,12 @@ def test_tiles_that_see_too_little_are_built_again(tmp_path, monkeypatch):
 
 
 # 62000015 leaves windows without rock, 62000085 cells as thin as rounding between those of two tiles. Bodies
-# of 64000401 have columns between older surfaces, that of 64000049 is in two rock masses
+# of 64000401 have columns between older surfaces, that of 64000049 is in two rock masses. A cell of 50000233
+# touches itself; a fault of 50000413 dies out beside a part of a cell that it cuts off
 @pytest.mark.parametrize(
     "seed",
     [
-        *(50_000_003, 50_000_021, 50_000_055, 50_000_144, 50_000_233),
+        *(50_000_003, 50_000_021, 50_000_055, 50_000_144, 50_000_233, 50_000_413),
         *(62_000_015, 62_000_085, 64_000_401, 64_000_049),
     ],
 )
@@ -290,9 +291,7 @@ def test_random_models(seed, tmp_path):
     tiled = build_tiles(project, tmp_path / "t", tile_size(whole, 4, 3), cells=cells)
     for one, other in zip(tiled.blocks, whole.blocks, strict=True):
         assert one.components == other.components
-        # two parts of a cell that touch along an edge are one cell of the undivided model
-        off = int(seed == 50_000_233)
-        assert cells == "columns" or one.cells - other.cells in (0, off)
+        assert cells == "columns" or one.cells == other.cells
         assert abs(one.volume - other.volume) <= 1e-12 * max(other.volume, 1e-3 * whole.volume)
 
 

@@ -155,6 +155,37 @@ def test_a_fault_that_dies_out(tmp_path):
     assert (model.face_surface == 3).any()
 
 
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+def test_a_fault_parts_what_is_not_connected_beyond_its_tip(cells, tmp_path):
+    """It passes one arm of a U and ends before the other one: the end of the first arm is apart. Arms meet
+    near the fault, so that each compartment is built as one cell."""
+    outline = [[0, 0], [10, 0], [10, 10], [6, 10], [6, 5.98], [4, 5.98], [4, 10], [0, 10]]
+    corners = np.array([[-5.0, 6, -20], [5, 6, -20], [5, 6, 20], [-5, 6, 20]])
+    fault = Fault("F", corners, np.array([[0, 1, 2], [0, 2, 3]]), dies_out=True)
+    given = Rock("r", surfaces(level(0), level(1)), region=outline, edge_length=1.5, base_elevation=-6.0)
+    model = assert_right(Project("p", [given], faults=[fault]), tmp_path, cells=cells)
+    assert (model.face_surface == 2).any()
+    if cells == "blocks":
+        assert [block.cells for block in model.blocks] == [2, 2]
+
+
+def pierced(z):
+    """A level square with a triangular hole that touches its west side."""
+    plan = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 5], [5, 3], [5, 7]]
+    triangles = np.array([[0, 1, 5], [0, 5, 4], [5, 1, 6], [1, 2, 6], [2, 3, 6], [3, 4, 6]], np.int32)
+    return np.column_stack([np.array(plan, float), np.full(7, float(z))]), triangles
+
+
+def test_a_cell_that_touches_itself_is_parted_there(tmp_path):
+    """West of the fault it touches itself along a vertical edge, which the west wall passes."""
+    given = [Surface(f"S{k}", *pierced(k)) for k in range(2)]
+    fault = Fault("F", *plane_fault(x=4.98))
+    project = Project("p", [Rock("r", given, base_elevation=-3.0)], faults=[fault])
+    model = assert_right(project, tmp_path, cells="blocks")
+    assert [block.cells for block in model.blocks] == [3, 3]
+    assert [block.components for block in model.blocks] == [1, 1]
+
+
 def test_a_branch_of_a_fault_that_dies_out(tmp_path):
     """Past the tip all three compartments are one rock, though the branch parts two of them."""
 

@@ -25,12 +25,9 @@ public:
     virtual std::int8_t of_face(std::size_t face) const = 0;
     /// The same of a cell at side 0 or 1 of a region of the surface.
     virtual std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const = 0;
-    /// Whether a region of the surface is a face between the parts of two cells; where it is not,
-    /// they are one.
-    virtual bool separates(std::size_t /*region*/, std::int32_t /*low*/,
-                           std::int32_t /*high*/) const {
-        return true;
-    }
+    /// Whether a region of the surface is a face between the parts of cells on its two sides; where
+    /// it is not, they are one.
+    virtual bool separates(std::size_t /*region*/) const { return true; }
     /// What stands for a model's face in pieces of a region of the surface, less than 0. Either
     /// cell may be -1.
     virtual std::int32_t cap_face(std::size_t /*region*/, std::int32_t /*low*/,

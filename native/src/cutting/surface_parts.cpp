@@ -282,13 +282,11 @@ void SurfaceParts::pair_caps(Caps& caps) {
 void SurfaceParts::join_across() {
     for (Caps& caps : caps_) {
         std::erase_if(caps.across, [&](const std::array<std::int32_t, 2>& pair) {
-            if (pair[1] < 0) return false;
-            const std::int32_t low = slots_[index(pair[0])].cell,
-                               high = slots_[index(pair[1])].cell;
-            if (sides_.separates(index(caps.region), low, high)) return false;
+            if (pair[1] < 0 || sides_.separates(index(caps.region))) return false;
             joined_->join(pair[0], pair[1]);
             has_joined_across_ = true;
-            loses_[index(low)] = loses_[index(high)] = 1;
+            for (const std::int32_t slot : pair)
+                loses_[index(slots_[index(slot)].cell)] = 1;
             return true;
         });
     }

@@ -38,6 +38,7 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                                      : static_cast<std::int32_t>(found - model_sides.begin()));
     }
     faces_on_.resize(overlay.size());
+    is_same_.assign(overlay.size(), 0);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!overlay.of_cutter(r) && winding.level(r) >= 0)
             faces_on_[index(winding.level(r))].push_back(
@@ -99,10 +100,6 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
             last = of.structure;
     }
     return found >= 0 ? found : last;
-}
-
-bool WantedParts::separates(std::size_t /*region*/, std::int32_t low, std::int32_t high) const {
-    return !same_.contains({low, high});
 }
 
 bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) const {
@@ -187,15 +184,16 @@ void WantedParts::refuse_unsaid_end(std::size_t region, std::int32_t cell) const
     }
 }
 
-/// Cells of one block that meet where nothing acts are one. Where nothing acts but the rock differs
-/// by more than slivers, a fault ends in it.
+/// Cells of one block that meet where nothing acts are one there: what a fault parts is connected
+/// beyond its tip, but not what lies elsewhere in the same cells. Where nothing acts but the rock
+/// differs by more than slivers, a fault ends in it.
 void WantedParts::find_same(std::size_t region) {
     const std::int32_t low = wanted_at(region, 0), high = wanted_at(region, 1);
     if ((low < 0 && high < 0) || acting(region, low, high) >= 0 || is_sliver(region)) return;
     const ComplexView& model = overlay_.model();
     if (model.block(low) == model.block(high)) {
         refuse_unsaid_end(region, low);
-        same_.insert({low, high});
+        is_same_[region] = 1;
         return;
     }
     const auto& structures = sides_.structures_at(region);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <set>
 #include <span>
 #include <vector>
 
@@ -23,7 +22,7 @@ public:
     std::int8_t of_region(std::size_t region) const override;
     std::int8_t of_face(std::size_t face) const override;
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const override;
-    bool separates(std::size_t region, std::int32_t low, std::int32_t high) const override;
+    bool separates(std::size_t region) const override { return is_same_[region] == 0; }
     bool ends_at_outer_face(std::size_t region, std::int32_t cell) const override;
     std::int32_t cap_face(std::size_t region, std::int32_t low, std::int32_t high) const override;
 
@@ -48,8 +47,7 @@ private:
     std::span<const std::uint8_t> acts_;
     std::vector<std::int32_t> model_of_part_;          ///< -1 none
     std::vector<std::vector<std::int32_t>> faces_on_;  ///< faces that lie on each region
-    /// Cells below and above that are parts of one.
-    std::set<std::array<std::int32_t, 2>> same_;
+    std::vector<std::uint8_t> is_same_;  ///< of regions: the cells below and above are one there
 };
 
 }  // namespace realmodel::structures
