@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// build_rock_masses, build_stack, cell_components, cell_sides.
+// build_rock_masses, build_tile, find_joins, build_stack, cell_components, cell_sides.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -16,6 +16,7 @@
 #include "realmodel/base/memory.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/strata/cell_components.hpp"
+#include "realmodel/strata/joins.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "rock_arrays.hpp"
 #include "rows.hpp"
@@ -137,52 +138,47 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
     return result;
 }
 
-py::object join_rock_masses(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
+std::optional<strata::Joins> find_joins(const std::vector<RockArrays>& rocks, bool borders,
+                                        int threads, Progress* control) {
     const auto input = views_of(rocks);
-    strata::JoinedInput joined;
-    {
-        const py::gil_scoped_release release;
-        joined = strata::join_rock_masses(input, threads, control);
-    }
-    if (!joined.warning) return py::none();
-    std::size_t next = 0;
-    const auto mesh = [&](std::size_t columns) {
-        auto& m = joined.meshes[next++];
-        return py::make_tuple(to_array(std::move(m.vertices), columns),
-                              to_array(std::move(m.triangles), 3));
-    };
-    py::list result;
-    for (const auto& [surfaces, region, base_elevation, rules] : rocks) {
-        py::list meshes;
-        for (std::size_t k = 0; k < surfaces.size(); ++k)
-            meshes.append(mesh(3));
-        py::object in_plan = py::none();
-        if (region) in_plan = mesh(2);
-        result.append(py::make_tuple(meshes, in_plan, base_elevation, rules));
-    }
-    return py::make_tuple(result, joined.warning->text);
+    const py::gil_scoped_release release;
+    const MemoryGivenBack at_the_end;
+    return strata::find_joins(input, borders, threads, control);
 }
 
-py::object snap_plan(const std::vector<RockArrays>& rocks, int threads, Progress* control) {
-    const auto input = views_of(rocks);
-    strata::SnappedPlan snapped;
+/// The columns of vertices of a surface or a region.
+std::size_t columns_of(const Array<double>& vertices) {
+    const std::size_t columns = vertices.ndim() == 2 && vertices.shape(1) == 2 ? 2 : 3;
+    require_columns(vertices, columns, "vertices");
+    return columns;
+}
+
+py::object joined_mesh(const strata::Joins& joins, const Array<double>& vertices,
+                       const Indices& triangles, int threads, Progress* control) {
+    const std::size_t columns = columns_of(vertices);
+    require_columns(triangles, 3, "triangles");
+    std::optional<strata::JoinedMesh> mesh;
     {
         const py::gil_scoped_release release;
-        snapped = strata::snap_plan(input, threads, control);
+        const MemoryGivenBack at_the_end;
+        mesh =
+            columns == 3
+                ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)}, threads, control)
+                : joins.mesh(strata::RegionView{view(vertices), view(triangles)}, threads, control);
     }
-    auto& meshes = snapped.meshes;
-    if (meshes.empty()) return py::none();
-    std::size_t next = 0;
-    py::list result;
-    for (const auto& [surfaces, region, base_elevation, rules] : rocks) {
-        py::list vertices;
-        for (std::size_t k = 0; k < surfaces.size(); ++k)
-            vertices.append(to_array(std::move(meshes[next++]), 3));
-        py::object in_plan = py::none();
-        if (region) in_plan = to_array(std::move(meshes[next++]), 2);
-        result.append(py::make_tuple(vertices, in_plan));
+    if (!mesh) return py::none();
+    return py::make_tuple(to_array(std::move(mesh->vertices), columns),
+                          to_array(std::move(mesh->triangles), 3));
+}
+
+Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices) {
+    const std::size_t columns = columns_of(vertices);
+    std::vector<double> found;
+    {
+        const py::gil_scoped_release release;
+        found = joins.snapped(view(vertices), columns);
     }
-    return py::make_tuple(result, snapped.warning.text);
+    return to_array(std::move(found), columns);
 }
 
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
@@ -246,24 +242,35 @@ surface, items, text); decisions, exact_decisions: int. Raises InputError and Ca
                py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
                R"(build_rock_masses of what lies in a window (low x, low y, high x, high y).
 
-Borders are taken as they are: join_rock_masses is to be called before, with all of the model. And
+Borders are taken as they are: those of all of the model are to be joined before (find_joins). And
 what lies on the lines that bound it: border_vertices (N,) int32, ascending, no other vertex has a
 coordinate of these; border_nearest (N, 3) float64, the doubles nearest to where they are exactly;
 border_exact: bytes, a line with x, y and z of each, reduced fractions in hexadecimal, which are
 equal where points are, in all tiles.)");
-    module.def("join_rock_masses", &join_rock_masses, py::arg("rocks"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
-               R"(What build_rock_masses does to its input before it builds.
+    py::class_<strata::Joins>(
+        module, "Joins",
+        "What differs in the plan coordinates and borders of rock masses by rounding alone.")
+        .def_property_readonly(
+            "text", [](const strata::Joins& joins) { return joins.warning().text; },
+            "The warning of build_rock_masses where it joins the same.")
+        .def("mesh", &joined_mesh, py::arg("vertices"), py::arg("triangles"),
+             py::arg("threads") = 0, py::arg("control") = nullptr,
+             R"(A mesh of these rock masses as build_rock_masses builds it.
 
-Returns None where that is nothing; else (rocks as they were given, with new arrays, and the text of
-the warning). Triangles that are not divided keep their numbers. Raises InputError and Cancelled.)");
+vertices: (V, 3) float64, of a region (V, 2); triangles: (T, 3) int32. Returns (vertices, triangles) as new
+arrays; triangles that are not divided keep their numbers. Or None, where the mesh would not be single-valued:
+then all meshes are built as they are given, also after an InputError. Raises InputError and Cancelled.)")
+        .def("snapped", &snapped, py::arg("vertices"),
+             R"(The vertices of a mesh with plan coordinates that differ by rounding alone made one.
+
+vertices: (V, 3) float64, of a region (V, 2). Returns a new array.)");
     module.def(
-        "snap_plan", &snap_plan, py::arg("rocks"), py::arg("threads") = 0,
-        py::arg("control") = nullptr,
-        R"(The vertices of rock masses with plan coordinates that differ by rounding alone made one.
+        "find_joins", &find_joins, py::arg("rocks"), py::arg("borders") = true,
+        py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(What build_rock_masses joins in its input before it builds, as Joins; None where that is nothing.
 
-Returns None where there are no such coordinates; else (for each rock mass, vertices of its surfaces and of
-its region or None; the text of the warning). Raises Cancelled.)");
+rocks: as build_rock_masses takes them. borders: whether borders are compared, too, or plan coordinates alone.
+Takes the memory of some millions of coordinates, and of one mesh. Raises InputError and Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
                py::arg("threads") = 0, py::arg("control") = nullptr,

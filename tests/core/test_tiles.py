@@ -580,7 +580,7 @@ def test_tiles_do_not_interpolate_where_borders_are_joined(tmp_path):
 def test_borders_of_one_mesh_are_not_compared(monkeypatch, tmp_path):
     """Nodes of a region's mesh may lie as near each other as they do: nothing is joined in the undivided
     model, either."""
-    monkeypatch.setattr(native_module(), "join_rock_masses", None)
+    monkeypatch.setattr(native_module(), "find_joins", None)
     project = from_points()
     near = np.nextafter(40.0, 50.0)
     project.rocks[0].constraints = [

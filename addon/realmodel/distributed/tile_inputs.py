@@ -76,11 +76,11 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
 
     flat = local_surfaces
     surfaces = surfaces_with(flat)
-    joined = _joined(surfaces, cancel)
+    joined = _joined(surfaces, arrays, cancel)
     if joined is not None and any(flat(entry.rock) for entry in surfaces.rock_inputs):
         flat = _no_surfaces  # borders that are joined change the meshes
         surfaces = surfaces_with(flat)
-        joined = _joined(surfaces, cancel)
+        joined = _joined(surfaces, arrays, cancel)
     inputs, warnings = surfaces.rock_inputs, list(surfaces.warnings)
     rocks = [entry.native() for entry in inputs]
     if joined is not None:
@@ -210,9 +210,9 @@ def _kept(rock: tuple, arrays: MappedArrays) -> tuple:
     return [tuple(map(arrays.keep, shape)) for shape in shapes], region, *rest
 
 
-def _joined(surfaces: SurfaceSet, cancel):
-    """The rock masses with their borders joined, and the text of a warning; None where nothing has to be.
-    Heights do not matter. Surfaces on one mesh that was made for them have nothing to join."""
+def _joined(surfaces: SurfaceSet, arrays: MappedArrays, cancel):
+    """The rock masses with their borders joined, in files, and the text of a warning; None where nothing has
+    to be. Heights do not matter. Surfaces on one mesh that was made for them have nothing to join."""
     if _have_one_mesh(surfaces.rock_inputs):
         return None
     native, rocks = native_module(), [entry.native() for entry in surfaces.rock_inputs]
@@ -220,11 +220,26 @@ def _joined(surfaces: SurfaceSet, cancel):
     def task(work: Work):
         with work.phase(0.0, 1.0, "comparing the borders"):
             try:
-                return work.native(native.join_rock_masses, rocks)
+                joins = work.native(native.find_joins, rocks)
+                return None if joins is None else _with_joins(work, rocks, joins, arrays)
             except native.InputError:
                 return None  # the tile there refuses it with the names of the project
 
     return run(task, cancel=cancel)
+
+
+def _with_joins(work: Work, rocks: list[tuple], joins, arrays: MappedArrays):
+    """What _joined gives, made one mesh at a time."""
+    found = []
+    for shapes, region, *rest in rocks:
+        meshes = []
+        for mesh in shapes if region is None else [*shapes, region]:
+            joined = work.native(joins.mesh, *mesh)
+            if joined is None:
+                return None
+            meshes.append(tuple(map(arrays.keep, joined)))
+        found.append((meshes[: len(shapes)], None if region is None else meshes[-1], *rest))
+    return found, joins.text
 
 
 def _have_one_mesh(inputs: list[RockInput]) -> bool:

@@ -26,6 +26,7 @@ struct Entered {
     std::unique_ptr<Site> site;
     std::vector<Warning> warnings;
     PlanSnapping snapping;
+    BorderChains chains;
     JoinedBorders joined;
     bool is_joined = false;
 };
@@ -39,25 +40,28 @@ std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
 }
 
 /// Finds which borders are to be joined, and whether any is.
-bool find_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
-                Progress* progress) {
+bool compare_borders(std::span<const StackInput> rocks, Entered& entered, int threads,
+                     Progress* progress) {
     begin_step(progress, 0.0, kBordersDone, "comparing the borders");
     entered.snapping = find_snapping(rocks, threads, progress);
-    entered.joined = join_borders(rocks, entered.snapping, threads, progress);
-    return !entered.snapping.empty() || entered.joined.divided > 0;
+    entered.chains = find_chains(rocks, entered.snapping, threads, progress);
+    return !entered.snapping.empty() || !entered.chains.empty();
 }
 
 /// The input with the joins found, unless they break something: whatever is wrong then, what the
 /// user hears is about the input as given.
 void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
                       Progress* progress) {
-    const bool is_divided = entered.joined.divided > 0;
-    entered.site =
-        is_divided ? enter_as_given(entered.joined.rocks, {}, entered.warnings, threads, progress)
-                   : enter_as_given(rocks, entered.snapping, entered.warnings, threads, progress);
+    if (entered.chains.empty()) {
+        entered.site = enter_as_given(rocks, entered.snapping, entered.warnings, threads, progress);
+    } else {
+        entered.joined = join_borders(rocks, entered.snapping, entered.chains, progress);
+        entered.site =
+            enter_as_given(entered.joined.rocks, {}, entered.warnings, threads, progress);
+    }
     entered.is_joined = entered.site->is_single_valued;
     if (entered.is_joined)
-        entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.joined));
+        entered.warnings.push_back(joined_by_rounding(entered.snapping, entered.chains));
 }
 
 /// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
@@ -66,7 +70,7 @@ void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int t
 Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
     Entered entered;
     const auto join = [&] {
-        if (find_joins(rocks, entered, threads, progress))
+        if (compare_borders(rocks, entered, threads, progress))
             enter_with_joins(rocks, entered, threads, progress);
     };
     const bool is_one_plan = share_one_plan(rocks);
@@ -120,25 +124,6 @@ Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells
     return {std::move(result), std::move(built.border)};
 }
 
-/// The vertices of all meshes, those of a region last in its rock mass.
-std::vector<std::vector<double>> snapped(std::span<const StackInput> rocks,
-                                         const PlanSnapping& snapping) {
-    std::vector<std::vector<double>> meshes;
-    const auto add = [&](std::span<const double> vertices, std::size_t columns) {
-        auto& mesh = meshes.emplace_back(vertices.begin(), vertices.end());
-        for (std::size_t row = 0; row + 1 < mesh.size(); row += columns) {
-            mesh[row] = snapping.x(mesh[row]);
-            mesh[row + 1] = snapping.y(mesh[row + 1]);
-        }
-    };
-    for (const StackInput& rock : rocks) {
-        for (const SurfaceView& surface : rock.surfaces)
-            add(surface.vertices, 3);
-        if (rock.region) add(rock.region->vertices, 2);
-    }
-    return meshes;
-}
-
 }  // namespace
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
@@ -168,40 +153,6 @@ Tile build_tile(std::span<const StackInput> rocks, const Window& window, int thr
     const auto site = enter_as_given(in_window, {}, warnings, threads, progress);
     site->window = window;
     return build_site(*site, warnings, cells, threads, progress);
-}
-
-JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress) {
-    Entered entered;
-    JoinedInput result;
-    if (!find_joins(rocks, entered, threads, progress)) return result;
-    enter_with_joins(rocks, entered, threads, progress);
-    if (!entered.is_joined) return result;
-    result.warning = entered.warnings.back();
-    const auto& joined = entered.joined;
-    if (joined.divided > 0) {
-        for (std::size_t m = 0; m < joined.vertices.size(); ++m)
-            result.meshes.push_back({joined.vertices[m], joined.triangles[m]});
-        return result;
-    }
-    auto vertices = snapped(rocks, entered.snapping);
-    std::size_t next = 0;
-    const auto add = [&](std::span<const std::int32_t> triangles) {
-        auto& mesh = result.meshes.emplace_back();
-        mesh.vertices = std::move(vertices[next++]);
-        mesh.triangles.assign(triangles.begin(), triangles.end());
-    };
-    for (const StackInput& rock : rocks) {
-        for (const SurfaceView& surface : rock.surfaces)
-            add(surface.triangles);
-        if (rock.region) add(rock.region->triangles);
-    }
-    return result;
-}
-
-SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads, Progress* progress) {
-    const PlanSnapping snapping = find_snapping(rocks, threads, progress);
-    if (snapping.empty()) return {};
-    return {snapped(rocks, snapping), joined_by_rounding(snapping, {})};
 }
 
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress, CellKind cells) {

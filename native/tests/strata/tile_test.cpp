@@ -127,24 +127,5 @@ TEST_P(TileOf, NeighborsHaveTheSameExactPlacesOnTheirLine) {
 
 INSTANTIATE_TEST_SUITE_P(Cells, TileOf, testing::Values(CellKind::kColumns, CellKind::kBlocks));
 
-TEST(JoinRockMasses, GivesWhatIsBuilt) {
-    const Input owned;
-    StackInput input = owned.view(true);
-    EXPECT_FALSE(join_rock_masses({&input, 1}, 1, nullptr).warning);
-
-    // a border written with other digits
-    OwnedSurface moved = owned.surfaces[1];
-    for (std::size_t i = 0; i < moved.vertices.size(); i += 3) {
-        if (moved.vertices[i] == 7.0) moved.vertices[i] = std::nextafter(7.0, 8.0);
-    }
-    input.surfaces[1] = moved.view();
-    const JoinedInput joined = join_rock_masses({&input, 1}, 1, nullptr);
-    ASSERT_TRUE(joined.warning);
-    ASSERT_EQ(joined.meshes.size(), 4U);  // three surfaces and the region
-    EXPECT_EQ(joined.meshes[1].vertices, owned.surfaces[1].vertices);
-    EXPECT_EQ(joined.meshes[1].triangles, moved.triangles);
-    EXPECT_EQ(joined.meshes[3].vertices, owned.corners);
-}
-
 }  // namespace
 }  // namespace realmodel::strata

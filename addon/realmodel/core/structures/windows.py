@@ -313,8 +313,8 @@ class Windows:
 
 
 def _are_any_close(plans: list[np.ndarray]) -> bool:
-    """Whether any x, or any y, of positions in plan differ by rounding alone: then snap_plan, which takes
-    much memory for many sheets, may make them equal."""
+    """Whether any x, or any y, of positions in plan differ by rounding alone: then those of all sheets are
+    compared, which takes much longer."""
     for axis in range(2):
         values = np.unique(np.concatenate([np.unique(plan[:, axis]) for plan in plans]))
         if (np.diff(values) <= np.abs(values).max() * 2.0**-51).any():  # as find_snapping
@@ -335,16 +335,20 @@ def _snapped(
         (list(sheets.values()), entry.region, None, [])
         for sheets, entry in zip(distinct, inputs, strict=True)
     ]
-    found = work.native(native_module().snap_plan, rocks, threads=threads)
-    if found is None:
+    joins = work.native(native_module().find_joins, rocks, borders=False, threads=threads)
+    if joins is None:
         return inputs, None
-    snapped, (of_rocks, text) = [], found
-    for entry, sheets, (meshes, region) in zip(inputs, distinct, of_rocks, strict=True):
-        new = {key: (keep(mesh), sheet[1]) for (key, sheet), mesh in zip(sheets.items(), meshes, strict=True)}
+
+    def snapped(mesh: Triangulation) -> Triangulation:
+        return keep(joins.snapped(mesh[0])), mesh[1]
+
+    found = []
+    for entry, sheets in zip(inputs, distinct, strict=True):
+        new = {key: snapped(sheet) for key, sheet in sheets.items()}
         of = [[new[id(sheet)] for sheet in own] for own in entry.structure.sheets]
-        given = None if region is None else (region, entry.region[1])
-        snapped.append(replace(entry, region=given, structure=replace(entry.structure, sheets=of)))
-    return snapped, text
+        region = None if entry.region is None else snapped(entry.region)
+        found.append(replace(entry, region=region, structure=replace(entry.structure, sheets=of)))
+    return found, joins.text
 
 
 def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:

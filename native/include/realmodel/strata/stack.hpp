@@ -127,37 +127,10 @@ struct Tile {
 
 /// What of rock masses lies in a window. No vertex but those in `border` has a coordinate of a
 /// line. Borders are taken as they are: whoever divides a model has joined them in all of it
-/// (join_rock_masses), so that all its tiles have the same.
+/// (find_joins), so that all its tiles have the same.
 /// @throws as build_rock_masses
 Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
                 Progress* progress, CellKind cells = CellKind::kColumns);
-
-/// Rock masses whose plan coordinates and borders differ nowhere by rounding alone.
-struct JoinedInput {
-    /// A mesh, three coordinates a vertex; of a region two.
-    struct Mesh {
-        std::vector<double> vertices;
-        std::vector<std::int32_t> triangles;
-    };
-    std::vector<Mesh>
-        meshes;  ///< for each rock mass its surfaces, then its region where it has one
-    std::optional<Warning> warning;  ///< nothing where nothing changed; then there are no meshes
-};
-
-/// What build_rock_masses does to its input before it builds.
-/// @throws InputError not_finite, bad_index, vertical_triangle
-JoinedInput join_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress);
-
-/// The meshes of rock masses with plan coordinates that differ by rounding alone made one.
-struct SnappedPlan {
-    /// Vertices of the surfaces of each rock mass, then of its region; none where nothing changed.
-    std::vector<std::vector<double>> meshes;
-    Warning warning;
-};
-
-/// The first thing that join_rock_masses does.
-SnappedPlan snap_plan(std::span<const StackInput> rocks, int threads = 1,
-                      Progress* progress = nullptr);
 
 /// build_rock_masses of one.
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,7 +21,7 @@ namespace realmodel::strata {
 
 namespace {
 
-using PlanPosition = std::array<double, 2>;
+using spatial::PlanPosition;
 using PlanEdge = std::pair<PlanPosition, PlanPosition>;  ///< the lesser end first
 
 PlanEdge edge_between(const PlanPosition& a, const PlanPosition& b) {
@@ -133,18 +132,17 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
     return chain;
 }
 
-using Chains = std::map<PlanEdge, std::vector<PlanPosition>>;
-
 /// A mesh with the divided triangles' parts.
 class Divided {
 public:
-    Divided(const Mesh& mesh, const Chains& chains, const Progress* progress) : mesh_(mesh) {
+    Divided(const Mesh& mesh, const BorderChains& chains, const Progress* progress) : mesh_(mesh) {
         vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
         for (std::size_t row = 0; row + mesh.columns <= vertices.size(); row += mesh.columns) {
             vertices[row] = mesh.snapping->x(vertices[row]);
             vertices[row + 1] = mesh.snapping->y(vertices[row + 1]);
         }
         triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+        if (chains.empty()) return;
         for (std::size_t t = 0; t < mesh.size(); ++t) {
             poll(progress, t);
             if (const auto v = mesh.corners(t)) divide(t, *v, chains);
@@ -159,7 +157,7 @@ private:
     /// Vertices still to be inserted into the edges 0-1, 1-2 and 2-0 of a part, in that direction.
     using Waiting = std::array<std::vector<std::int32_t>, 3>;
 
-    void divide(std::size_t t, const Corners& corners, const Chains& chains) {
+    void divide(std::size_t t, const Corners& corners, const BorderChains& chains) {
         Waiting waiting;
         bool any = false;
         const std::size_t vertices_before = vertices.size();
@@ -240,8 +238,8 @@ private:
 
 }  // namespace
 
-JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           int threads, const Progress* progress) {
+BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                         int threads, const Progress* progress) {
     std::vector<Mesh> meshes;
     for (const StackInput& rock : rocks) {
         for (const SurfaceView& s : rock.surfaces)
@@ -257,7 +255,8 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
         edges.insert(edges.end(), border.begin(), border.end());
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    if (edges.empty()) return {};
+    BorderChains chains;
+    if (edges.empty()) return chains;
     std::vector<PlanPosition> ends;
     double largest = 0;
     for (const auto& [a, b] : edges) {
@@ -271,46 +270,50 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
 
     const double reach = largest * 0x1p-50;  // four to eight units in the last place
     const spatial::PointBins vertices(ends);
-    Chains chains;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         poll(progress, i);
         auto chain = vertices_along(edges[i], vertices, reach);
         if (!chain.empty()) chains.emplace(edges[i], std::move(chain));
     }
+    return chains;
+}
+
+JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
+                       std::size_t columns, const PlanSnapping& snapping,
+                       const BorderChains& chains, const Progress* progress) {
+    const Mesh mesh{vertices, triangles, columns, &snapping};
+    Divided parts(mesh, chains, progress);
+    return {std::move(parts.vertices), std::move(parts.triangles)};
+}
+
+JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                           const BorderChains& chains, const Progress* progress) {
     JoinedBorders joined;
-    joined.divided = chains.size();
-    if (chains.empty()) return joined;
-    std::size_t next = 0;
-    const auto divided = [&] {
-        Divided parts(meshes[next++], chains, progress);
-        joined.vertices.push_back(std::move(parts.vertices));
-        joined.triangles.push_back(std::move(parts.triangles));
+    const auto replace = [&](auto& view, std::size_t columns) {
+        const JoinedMesh& mesh = joined.meshes.emplace_back(
+            joined_mesh(view.vertices, view.triangles, columns, snapping, chains, progress));
+        view = {mesh.vertices, mesh.triangles};
     };
     for (const StackInput& rock : rocks) {
         StackInput& copy = joined.rocks.emplace_back(rock);
-        for (SurfaceView& s : copy.surfaces) {
-            divided();
-            s = {joined.vertices.back(), joined.triangles.back()};
-        }
-        if (copy.region) {
-            divided();
-            copy.region = RegionView{joined.vertices.back(), joined.triangles.back()};
-        }
+        for (SurfaceView& s : copy.surfaces)
+            replace(s, 3);
+        if (copy.region) replace(*copy.region, 2);
     }
     return joined;
 }
 
-Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders) {
+Warning joined_by_rounding(const PlanSnapping& snapping, const BorderChains& chains) {
     const std::size_t coordinates = snapping.x.size() + snapping.y.size();
     std::string text;
     if (coordinates > 0) {
         text =
             "plan coordinates merged that differ only by rounding: " + std::to_string(coordinates);
     }
-    if (borders.divided > 0) {
+    if (!chains.empty()) {
         text += (text.empty() ? "" : "; ") +
                 ("border edges split at vertices that lie on them up to rounding: " +
-                 std::to_string(borders.divided));
+                 std::to_string(chains.size()));
     }
     return {"joined", -1, {}, text + "; no action is needed"};
 }

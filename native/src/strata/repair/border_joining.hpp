@@ -3,16 +3,25 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
+#include "realmodel/strata/joins.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "spatial/plan_tiles.hpp"
 #include "strata/repair/plan_snapping.hpp"
 
 namespace realmodel::strata {
 
-/// Input whose borders run through each other's vertices.
+/// Edges of borders that are to be divided, the lesser end first, with the vertices that divide
+/// them, from that end on.
+using BorderChains = std::map<std::pair<spatial::PlanPosition, spatial::PlanPosition>,
+                              std::vector<spatial::PlanPosition>>;
+
+/// The edges that have to be divided so that borders run through each other's vertices.
 ///
 /// Meshes of one outline with different edge lengths have their border vertices at different
 /// positions of its straight edges, each off the line by a unit in the last place: slivers of
@@ -20,12 +29,24 @@ namespace realmodel::strata {
 /// is divided at the border vertices that lie within rounding of it (in every mesh that has this
 /// edge), and the triangles at it with the edge; the borders then coincide exactly. Where all
 /// vertices lie exactly on the line nothing is divided, and no triangle is where one of its parts
-/// would turn over.
+/// would turn over. Passes over what the builder refuses later.
+/// @param threads  as many meshes are looked at at once
+/// @throws Cancelled
+BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                         int threads = 1, const Progress* progress = nullptr);
+
+/// A mesh of a surface (three columns) or a region (two) with snapped coordinates, its edges
+/// divided. The numbers of triangles that were not divided stay; the first part of a divided one
+/// has its number, the others come after all. Passes over what the builder refuses later.
+/// @throws Cancelled
+JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
+                       std::size_t columns, const PlanSnapping& snapping,
+                       const BorderChains& chains, const Progress* progress = nullptr);
+
+/// Input with its edges divided.
 struct JoinedBorders {
-    std::vector<StackInput> rocks;  ///< views of the meshes below; all coordinates snapped
-    std::deque<std::vector<double>> vertices;
-    std::deque<std::vector<std::int32_t>> triangles;
-    std::size_t divided = 0;  ///< edges; 0: nothing to join, all else is empty
+    std::vector<StackInput> rocks;  ///< views of the meshes below
+    std::deque<JoinedMesh> meshes;
 
     JoinedBorders() = default;
     JoinedBorders(JoinedBorders&&) = default;
@@ -34,13 +55,12 @@ struct JoinedBorders {
     JoinedBorders& operator=(const JoinedBorders&) = delete;
 };
 
-/// The numbers of triangles that were not divided stay; the first part of a divided one has its
-/// number, the others come after all. Passes over what the builder refuses later.
+/// joined_mesh of all meshes.
 /// @throws Cancelled
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           int threads = 1, const Progress* progress = nullptr);
+                           const BorderChains& chains, const Progress* progress = nullptr);
 
-/// What was done to the input before it was built.
-Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders);
+/// What is done to the input before it is built.
+Warning joined_by_rounding(const PlanSnapping& snapping, const BorderChains& chains);
 
 }  // namespace realmodel::strata

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
 #include <set>
 
 #include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
+#include "strata/repair/close_values.hpp"
 #include "strata/repair/surface_input.hpp"
 
 namespace realmodel::strata {
@@ -91,39 +91,52 @@ void for_each_triangle(std::span<const StackInput> rocks, const Progress* progre
     }
 }
 
-/// Runs of sorted values no further apart than `reach`: each of several values becomes the most
-/// frequent of them (of equally frequent ones the lowest), unless one of them is to be left alone.
-AxisSnapping join_close(const std::vector<double>& sorted, double reach,
-                        const std::set<double>& left_alone) {
+/// Each value of a run becomes the most frequent of them (of equally frequent ones the lowest),
+/// unless one of them is to be left alone.
+AxisSnapping join_close(const CloseValues& close, const std::set<double>& left_alone) {
     std::vector<std::pair<double, double>> changes;
-    for (std::size_t i = 0; i < sorted.size();) {
-        std::size_t end = i + 1;
-        while (end < sorted.size() && sorted[end] - sorted[end - 1] <= reach)
-            ++end;
-        if (sorted[i] != sorted[end - 1]) {
-            double common = sorted[i];
-            std::size_t most = 0;
-            bool alone = false;
-            std::vector<double> values;
-            for (std::size_t j = i; j < end;) {
-                std::size_t same = j;
-                while (same < end && sorted[same] == sorted[j])
-                    ++same;
-                values.push_back(sorted[j]);
-                alone |= left_alone.contains(sorted[j]);
-                if (same - j > most) {
-                    most = same - j;
-                    common = sorted[j];
-                }
-                j = same;
-            }
-            for (const double v : values) {
-                if (!alone && v != common) changes.emplace_back(v, common);
-            }
+    auto begin = close.values.begin();
+    for (const std::size_t run_end : close.ends) {
+        const auto end = close.values.begin() + static_cast<std::ptrdiff_t>(run_end);
+        const double common = std::max_element(begin, end, [](const auto& a, const auto& b) {
+                                  return a.count < b.count;
+                              })->value;
+        const bool alone =
+            std::any_of(begin, end, [&](const auto& v) { return left_alone.contains(v.value); });
+        for (; begin != end; ++begin) {
+            if (!alone && begin->value != common) changes.emplace_back(begin->value, common);
         }
-        i = end;
     }
     return AxisSnapping(std::move(changes));
+}
+
+/// Runs of x, and of y, no further apart than rounding.
+std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks, int threads,
+                                        const Progress* progress, std::size_t at_once) {
+    std::array<double, 2> least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
+    std::size_t count = 0;
+    for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            least[axis] = std::min(least[axis], p[axis]);
+            most[axis] = std::max(most[axis], p[axis]);
+        }
+        ++count;
+    });
+    if (count == 0) return {};
+    const auto search_along = [&](std::size_t axis) {
+        const double largest = std::max(std::abs(least[axis]), std::abs(most[axis]));
+        const double reach = largest * 0x1p-51;  // two to four units in the last place
+        return CloseValueSearch(least[axis], most[axis], count, reach, at_once);
+    };
+    std::array searches{search_along(0), search_along(1)};
+    while (!searches[0].is_done() || !searches[1].is_done()) {
+        for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                searches[axis].see(p[axis] + 0.0);  // -0 becomes 0
+        });
+        parallel_chunks(2, threads, progress, [&](std::size_t axis) { searches[axis].end_pass(); });
+    }
+    return {searches[0].take(), searches[1].take()};
 }
 
 }  // namespace
@@ -146,39 +159,16 @@ double AxisSnapping::changed(double value) const {
     return at != changes_.end() && at->first == value ? at->second : value;
 }
 
-PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
-                           const Progress* progress) {
-    std::array<std::vector<double>, 2> values;
-    std::array<double, 2> largest{0, 0};
-    std::size_t vertices = 0;
-    for (const PlanMesh& mesh : meshes_of(rocks))
-        vertices += mesh.size();
-    for (auto& of_axis : values)
-        of_axis.reserve(vertices);
-    for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            values[axis].push_back(p[axis]);
-            largest[axis] = std::max(largest[axis], std::abs(p[axis]));
-        }
-    });
-    std::array<double, 2> reach;
-    parallel_chunks(2, threads, progress, [&](std::size_t axis) {
-        for (double& value : values[axis])
-            value += 0.0;  // -0 becomes 0
-        // apart: Boost takes the difference of the bits of the least and of the greatest one
-        const auto begin = values[axis].begin(), end = values[axis].end();
-        const auto middle = std::partition(begin, end, [](double value) { return value < 0; });
-        boost::sort::spreadsort::float_sort(begin, middle);
-        boost::sort::spreadsort::float_sort(middle, end);
-        reach[axis] = largest[axis] * 0x1p-51;  // two to four units in the last place
-    });
+PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads, const Progress* progress,
+                           std::size_t at_once) {
+    const auto close = close_values(rocks, threads, progress, at_once);
     // Values whose joining would turn a triangle are left alone, until none is turned. Input so
     // fine that this does not settle soon is taken as it is.
     constexpr int kRounds = 8;
     std::array<std::set<double>, 2> left_alone;
     for (int round = 0; round < kRounds; ++round) {
-        PlanSnapping snapping{join_close(values[0], reach[0], left_alone[0]),
-                              join_close(values[1], reach[1], left_alone[1])};
+        PlanSnapping snapping{join_close(close[0], left_alone[0]),
+                              join_close(close[1], left_alone[1])};
         if (snapping.empty()) return snapping;
         bool turned = false;
         for_each_triangle(rocks, progress, [&](const std::array<SpacePosition, 3>& p) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,7 +41,9 @@ struct PlanSnapping {
 /// another, and there is nothing to join.
 bool share_one_plan(std::span<const StackInput> rocks);
 
+/// @param at_once  of the values of a coordinate that are in memory
 PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads = 1,
-                           const Progress* progress = nullptr);
+                           const Progress* progress = nullptr,
+                           std::size_t at_once = std::size_t{1} << 22);
 
 }  // namespace realmodel::strata

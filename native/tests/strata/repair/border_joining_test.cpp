@@ -34,7 +34,7 @@ StackInput stack_of(const std::vector<Outline>& outlines) {
 TEST(BorderJoining, DividesEdgesAtVerticesBesideThem) {
     const std::vector<Outline> outlines{Outline(0), Outline(1, 1.0 / 3), Outline(2, 0.7)};
     const StackInput input = stack_of(outlines);
-    const JoinedBorders joined = join_borders({&input, 1}, {});
+    const JoinedBorders joined = join_borders({&input, 1}, {}, find_chains({&input, 1}, {}));
     ASSERT_EQ(joined.rocks.size(), 1u);
     for (const SurfaceView& s : joined.rocks[0].surfaces)
         EXPECT_EQ(s.triangles.size(), 9u);  // all have both vertices now
@@ -69,9 +69,7 @@ TEST(BorderJoining, LeavesVerticesOnTheLineAndFarFromItAlone) {
     away.triangles = {0, 3, 2, 3, 1, 2};
     const std::vector<Outline> outlines{plain, on_line, away};
     const StackInput input = stack_of(outlines);
-    const JoinedBorders joined = join_borders({&input, 1}, {});
-    EXPECT_EQ(joined.divided, 0u);
-    EXPECT_TRUE(joined.rocks.empty());
+    EXPECT_TRUE(find_chains({&input, 1}, {}).empty());
 }
 
 }  // namespace

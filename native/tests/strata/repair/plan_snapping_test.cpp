@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/repair/plan_snapping.hpp"
 
+#include <random>
+
 #include "../complex_checks.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -40,20 +42,6 @@ TEST(PlanSnapping, TheValueOfMostVerticesStands) {
     EXPECT_EQ(snapping.x(0.0), 0.0);
     EXPECT_EQ(snapping.x(1.0), 1.0);
     EXPECT_TRUE(snapping.y.empty());
-}
-
-TEST(PlanSnapping, ItMayBeAskedForAlone) {
-    OwnedSurface s = box(0, 1, 0, 1);
-    s.vertices[0] = 0x1p-53;
-    const OwnedSurface other = box(0, 1, 1, 2);
-    const StackInput input{{s.view(), other.view()}, {}, {}, {}, {}, {}};
-    const SnappedPlan snapped = snap_plan({&input, 1});
-    ASSERT_EQ(snapped.meshes.size(), 2U);
-    EXPECT_EQ(snapped.meshes[0][0], 0.0);
-    EXPECT_EQ(snapped.meshes[1], other.vertices);
-    EXPECT_EQ(snapped.warning.kind, "joined");
-    const StackInput same{{other.view()}, {}, {}, {}, {}, {}};
-    EXPECT_TRUE(snap_plan({&same, 1}).meshes.empty());
 }
 
 TEST(PlanSnapping, ANeedleOfThatWidthStaysANeedle) {
@@ -102,6 +90,68 @@ TEST(PlanSnapping, ATriangleWithoutAreaDoesNotBecomeAnUprightOne) {
     const StackInput input{{flat.view(), other.view()}, {}, {}, {}, {}, {}};
     EXPECT_TRUE(find_snapping({&input, 1}).x.empty());
     EXPECT_NO_THROW(build({flat, other}));
+}
+
+/// Positions as a surface without triangles.
+StackInput of_positions(const std::vector<double>& vertices) {
+    return {{{vertices, {}}}, {}, {}, {}, {}, {}};
+}
+
+void expect_same(const AxisSnapping& one, const AxisSnapping& other,
+                 const std::vector<double>& values) {
+    EXPECT_EQ(one.size(), other.size());
+    for (const double value : values)
+        EXPECT_EQ(one(value), other(value));
+}
+
+TEST(PlanSnapping, InSlicesItIsTheSame) {
+    std::mt19937_64 random(7);
+    const auto below = [&](int count) { return static_cast<int>(random() % std::uint64_t(count)); };
+    for (const double extent : {1e-3, 10.0, 4e6, 1e200}) {
+        // most of them around a few values, and one far from all others
+        std::vector<double> centers{0.0, extent * 1e9};
+        for (int i = 0; i < 30; ++i)
+            centers.push_back(extent * (below(4000) - 2000) / 1000.0);
+        std::vector<double> vertices;
+        for (int i = 0; i < 3000; ++i) {
+            for (int axis = 0; axis < 2; ++axis) {
+                double value = centers[i == 0 ? 1 : static_cast<std::size_t>(below(31) + 1) % 31];
+                if (axis == 0 && value == centers[1] && i > 0) value = -0.0;
+                for (int steps = below(3) * below(4); steps > 0; --steps)
+                    value = above(value);
+                vertices.push_back(value);
+            }
+            vertices.push_back(i);
+        }
+        // x is not so large that all else were rounding; of y hardly anything is apart
+        vertices[0] = 3 * extent;
+        const StackInput input = of_positions(vertices);
+        const PlanSnapping whole = find_snapping({&input, 1});
+        EXPECT_GT(whole.x.size(), 30U);
+        for (const std::size_t at_once : {1, 2, 7, 100, 2999}) {
+            const PlanSnapping slices = find_snapping({&input, 1}, 1, nullptr, at_once);
+            expect_same(slices.x, whole.x, vertices);
+            expect_same(slices.y, whole.y, vertices);
+        }
+    }
+}
+
+TEST(PlanSnapping, ARunGoesOnInTheNextSlices) {
+    std::vector<double> vertices{0, 0, 0, 8, 0, 0};
+    double x = 1;
+    for (int i = 0; i < 50; ++i) {
+        vertices.insert(vertices.end(), {x, 0, 0});
+        if (i == 40) vertices.insert(vertices.end(), {x, 0, 0});
+        x = above(x);
+    }
+    const StackInput input = of_positions(vertices);
+    for (const std::size_t at_once : {2, 3, 10, 1000}) {
+        const PlanSnapping found = find_snapping({&input, 1}, 2, nullptr, at_once);
+        EXPECT_EQ(found.x.size(), 49U);
+        EXPECT_EQ(found.x(1), 1 + 40 * 0x1p-52);
+        EXPECT_EQ(found.x(x), x);
+        EXPECT_TRUE(found.y.empty());
+    }
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::strata {
+
+/// A mesh of a surface, three coordinates a vertex, or of a region, two.
+struct JoinedMesh {
+    std::vector<double> vertices;
+    std::vector<std::int32_t> triangles;
+};
+
+/// What differs in the plan coordinates and borders of rock masses by rounding alone. It is found
+/// in all of them, and then joined one mesh at a time: there need not be memory for all meshes.
+class Joins {
+public:
+    /// What build_rock_masses says where it joins the same.
+    const Warning& warning() const;
+    /// The vertices of a mesh of so many columns with plan coordinates joined; not the borders.
+    std::vector<double> snapped(std::span<const double> vertices, std::size_t columns) const;
+    /// A mesh as build_rock_masses builds it. Nothing where it covers a position twice, or the
+    /// border of a region crosses itself: then that takes all meshes as they are given. Triangles
+    /// that are not divided keep their numbers.
+    /// @throws InputError not_finite, bad_index, vertical_triangle; as above then
+    /// @throws Cancelled
+    std::optional<JoinedMesh> mesh(const SurfaceView& surface, int threads = 1,
+                                   Progress* progress = nullptr) const;
+    std::optional<JoinedMesh> mesh(const RegionView& region, int threads = 1,
+                                   Progress* progress = nullptr) const;
+
+private:
+    struct Found;
+    explicit Joins(std::shared_ptr<const Found> found) : found_(std::move(found)) {}
+    friend std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
+                                           int threads, Progress* progress);
+
+    std::shared_ptr<const Found> found_;
+};
+
+/// What build_rock_masses joins before it builds; nothing where that is nothing. Takes the memory
+/// of some millions of coordinates, and of one mesh.
+/// @param borders  whether borders are compared, too, or plan coordinates alone
+/// @throws InputError too_large
+/// @throws Cancelled
+std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders = true,
+                                int threads = 1, Progress* progress = nullptr);
+
+}  // namespace realmodel::strata

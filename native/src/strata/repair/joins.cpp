@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/strata/joins.hpp"
+
+#include <type_traits>
+#include <utility>
+
+#include "strata/repair/border_joining.hpp"
+#include "strata/repair/plan_snapping.hpp"
+#include "strata/repair/site.hpp"
+#include "strata/steps.hpp"
+
+namespace realmodel::strata {
+
+struct Joins::Found {
+    PlanSnapping snapping;
+    BorderChains chains;
+    Warning warning;
+
+    template <class View>
+    std::optional<JoinedMesh> mesh(const View& given, std::size_t columns, int threads,
+                                   Progress* progress) const {
+        begin_step(progress, 0.0, 1.0, "joining the borders");
+        JoinedMesh joined =
+            joined_mesh(given.vertices, given.triangles, columns, snapping, chains, progress);
+        if (!is_single_valued(View{joined.vertices, joined.triangles}, threads, progress))
+            return {};
+        return joined;
+    }
+
+private:
+    // All meshes together are single-valued where each is alone: what a mesh covers is found from
+    // its own border (enter_site), and that the frame around this one is another one does not
+    // count, as it only has to lie outside of the border (fill_frame).
+    template <class View>
+    static bool is_single_valued(const View& mesh, int threads, Progress* progress) {
+        StackInput input;
+        if constexpr (std::is_same_v<View, SurfaceView>) {
+            input.surfaces.push_back(mesh);
+        } else {
+            input.region = mesh;
+        }
+        std::vector<Warning> warnings;
+        return enter_site({&input, 1}, {}, warnings, threads, progress)->is_single_valued;
+    }
+};
+
+const Warning& Joins::warning() const {
+    return found_->warning;
+}
+
+std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t columns) const {
+    return joined_mesh(vertices, {}, columns, found_->snapping, {}).vertices;
+}
+
+std::optional<JoinedMesh> Joins::mesh(const SurfaceView& surface, int threads,
+                                      Progress* progress) const {
+    return found_->mesh(surface, 3, threads, progress);
+}
+
+std::optional<JoinedMesh> Joins::mesh(const RegionView& region, int threads,
+                                      Progress* progress) const {
+    return found_->mesh(region, 2, threads, progress);
+}
+
+std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders, int threads,
+                                Progress* progress) {
+    begin_step(progress, 0.0, 1.0, "comparing the borders");
+    const auto found = std::make_shared<Joins::Found>();
+    found->snapping = find_snapping(rocks, threads, progress);
+    if (borders) found->chains = find_chains(rocks, found->snapping, 1, progress);
+    if (found->snapping.empty() && found->chains.empty()) return {};
+    found->warning = joined_by_rounding(found->snapping, found->chains);
+    return Joins(found);
+}
+
+}  // namespace realmodel::strata
