@@ -91,7 +91,7 @@ class Windows:
         self.structures, self._threads, self._keep = structures, threads, keep
         self._reach = Reach(work, structures, threads)
         self._find_plans()
-        if _are_any_close([plan.vertices for plan in self._all]):
+        if _are_any_close(work, [plan.vertices for plan in self._all], threads):
             self.inputs, self.snapped = _snapped(work, inputs, threads, keep)
             self._find_plans()
         ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.structure.sheets]
@@ -312,14 +312,12 @@ class Windows:
         return of_plan[id(plan)]
 
 
-def _are_any_close(plans: list[np.ndarray]) -> bool:
-    """Whether any x, or any y, of positions in plan differ by rounding alone: then those of all sheets are
-    compared, which takes much longer."""
-    for axis in range(2):
-        values = np.unique(np.concatenate([np.unique(plan[:, axis]) for plan in plans]))
-        if (np.diff(values) <= np.abs(values).max() * 2.0**-51).any():  # as find_snapping
-            return True
-    return False
+def _are_any_close(work: Work, plans: list[np.ndarray], threads: int) -> bool:
+    """Whether any x, or any y, of positions in plan differ by rounding alone. Without triangles, which
+    might keep them apart: that is to be decided by those of all sheets."""
+    none = np.empty((0, 3), np.int32)
+    rocks = [([], (plan, none), None, []) for plan in plans]
+    return work.native(native_module().find_joins, rocks, borders=False, threads=threads) is not None
 
 
 def _snapped(
