@@ -3,6 +3,7 @@
 
 import contextlib
 import pickle
+import tracemalloc
 from concurrent.futures import Future
 from dataclasses import replace
 
@@ -10,10 +11,13 @@ import numpy as np
 import pytest
 from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
+from realmodel.core.mapped_arrays import MappedArrays
 from realmodel.core.structures import windows as windows_module
+from realmodel.core.structures.setup import structured_inputs
 from realmodel.core.structures.windows import Windows
 from realmodel.core.tiles.grid import TileGrid
 from realmodel.core.tiles.owned_cells import Seam, face_keys, owners
+from realmodel.core.work import run
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import faulted_folder, tile_folder
 from realmodel.distributed.workers import Workers
@@ -200,6 +204,39 @@ def test_surfaces_and_sheets_are_kept_in_files(monkeypatch, tmp_path):
         build_tiles(sample(name), tmp_path / name, (1e6, 1e6))
         assert len(are_mapped) > before and all(are_mapped)
         assert not (tmp_path / name / "run").exists()
+
+
+def test_plan_coordinates_are_made_equal_once():
+    """A surface whose eastern border was written with other digits."""
+    project = faulted()
+    x = project.rocks[0].surfaces[1].vertices[:, 0]
+    x[x == 1000] = np.nextafter(1000, 2000)
+    inputs, structures, _ = run(lambda work: structured_inputs(work, project, 2))
+    windows = run(lambda work: Windows(work, inputs, structures, 2))
+    assert windows.snapped.startswith("plan coordinates merged that differ only by rounding")
+    east = [
+        [max(vertices[:, 0].max() for vertices, _ in entry.structure.distinct(k)) for k in range(4)]
+        for entry in (inputs[0], windows.inputs[0])
+    ]
+    assert east == [[1000, x.max(), 1000, 1000], [1000] * 4]
+
+
+def test_memory_does_not_grow_with_the_triangles(tmp_path):
+    """That which is kept while tiles are built; all else is made of one surface, or for one window."""
+
+    def kept(n):
+        with MappedArrays(tmp_path / str(n)) as arrays:
+            inputs, structures, _ = run(lambda work: structured_inputs(work, faulted(n), 2, keep=arrays.keep))
+            tracemalloc.start()
+            windows = run(lambda work: Windows(work, inputs, structures, 2, arrays.keep))
+            windows.divide((251, 262))
+            found = tracemalloc.get_traced_memory()[0]
+            tracemalloc.stop()
+            return found, sum(len(triangles) for _, triangles in inputs[0].surfaces)
+
+    kept(3)
+    (small, few), (large, many) = kept(20), kept(120)
+    assert large - small < many - few  # bytes, triangles
 
 
 @pytest.mark.parametrize("dies_out", [False, True])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files read piece by piece: the same values wherever they are kept, in memory that does not grow."""
+"""Files read, and surfaces compared, piece by piece: the same values wherever they are kept, in memory that
+does not grow."""
 
 import errno
 import json
@@ -321,6 +322,43 @@ def test_points_are_divided_in_less_memory_than_they_take(tmp_path):
     assert not fits
     for (method, near, heights), expected in zip(done, whole, strict=True):
         assert 500 < near < 10_000 and heights == expected, method
+
+
+JOINED = """
+from realmodel.core import Project, Rock, build_surfaces
+from realmodel.distributed.tile_inputs import _joined
+import numpy as np
+
+def surfaces(count, arrays):
+    # every second one written with other digits
+    found = []
+    for number in range(count):
+        vertices, triangles = map(arrays.keep, lattice(300, 300))
+        if number % 2:
+            x, *others = vertices.T
+            vertices = arrays.keep(np.column_stack([np.nextafter(x, 1e9), *others]))
+        found.append(Surface(str(number), vertices, triangles))
+    return build_surfaces(Project("p", [Rock("r", found)]), keep=arrays.keep)
+
+with MappedArrays(folder / "arrays") as arrays:
+    _joined(surfaces(2, arrays), arrays, None)  # the libraries and threads are there then
+    given = surfaces(20, arrays)
+    status = Path("/proc/self/status").read_text()
+    now = int(status.split("VmData:")[1].split()[0]) * 1024
+    resource.setrlimit(resource.RLIMIT_DATA, (now + 150_000_000, -1))
+    [(shapes, _, _, _)], text = _joined(given, arrays, None)
+    expected = lattice(300, 300)
+    print(json.dumps([text, [all(map(np.array_equal, shape, expected)) for shape in shapes]]))
+"""
+
+
+@needs_a_limit
+def test_borders_are_joined_in_less_memory_than_the_surfaces_take(monkeypatch, tmp_path):
+    """All at once they take more than 400 MB when they are checked."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    text, are_joined = in_a_process(JOINED, tmp_path)
+    assert text.startswith("plan coordinates merged that differ only by rounding: 300;")
+    assert are_joined == [True] * 20
 
 
 @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="a system that cannot reserve room")

@@ -50,19 +50,24 @@ class _Plan:
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray, keep: Keep):
         self.triangles, self.vertices = triangles, keep(np.ascontiguousarray(vertices[:, :2]))
-        self._of_tile: dict[tuple[int, int], np.ndarray] = {}
+        self._keep = keep
         self._grid: TileGrid | None = None
 
     def sort(self, grid: TileGrid) -> None:
         """Finds the triangles that meet each tile, so that those near a tile are found quickly."""
-        lists: dict[tuple[int, int], list[np.ndarray]] = {}
-        for name, numbers in triangles_by_tile((self.vertices, self.triangles), grid):
-            lists.setdefault(name, []).append(numbers)
-        self._grid, self._of_tile = grid, {name: np.concatenate(each) for name, each in lists.items()}
+        pieces = sorted(triangles_by_tile((self.vertices, self.triangles), grid), key=lambda piece: piece[0])
+        count = np.zeros((grid.columns, grid.rows), np.int64)
+        for name, numbers in pieces:
+            count[name] += len(numbers)
+        self._grid, self._end = grid, count.cumsum().reshape(count.shape)
+        self._begin = self._end - count
+        numbers = np.concatenate([np.empty(0, np.int32), *(each for _, each in pieces)])
+        self._of_tiles = np.asarray(self._keep(numbers))  # a memmap would be slower
 
     def meeting(self, box: Box) -> np.ndarray:
         """The numbers, ascending, of the triangles whose boxes meet a box."""
-        tiles = [self._of_tile[name] for name in self._grid.tiles_meeting(box) if name in self._of_tile]
+        ends = ((self._begin[name], self._end[name]) for name in self._grid.tiles_meeting(box))
+        tiles = [self._of_tiles[begin:end] for begin, end in ends if begin < end]
         if not tiles:
             return np.empty(0, np.int32)
         near = tiles[0] if len(tiles) == 1 else np.unique(np.concatenate(tiles))
