@@ -27,8 +27,14 @@ def points(z, from_south=False):
     return found[np.lexsort((found[:, 0], found[:, 1]))] if from_south else found
 
 
+def _opened(path):
+    """For text, in the encoding and with the line ends that its name says."""
+    encoding = "utf-16" if path.name.startswith("utf-16") else "utf-8"
+    return path.open("w", encoding=encoding, newline="\r" if path.name.startswith("old") else "\n")
+
+
 def _text(head, z, path):
-    with path.open("w") as file:
+    with _opened(path) as file:
         file.write(head)
         np.savetxt(file, z, fmt="%.2f")
 
@@ -115,11 +121,13 @@ def _tiff(**options):
 
 
 def _table(z, path):
-    np.savetxt(path, points(z), fmt="%.2f", delimiter=";", header="X;Y;Z", comments="")
+    with _opened(path) as file:
+        np.savetxt(file, points(z), fmt="%.2f", delimiter=";", header="X;Y;Z", comments="")
 
 
 RASTERS = {
     "g.asc": _ascii_grid,
+    "old.asc": _ascii_grid,
     "g.zmap": _zmap,
     "g.cps3": _cps3,
     "text.irap": _irap_text,
@@ -133,7 +141,7 @@ TIFFS = {
     "strip.tif": _tiff(rowsperstrip=1 << 20),
     "tiles.tif": _tiff(tile=(64, 64), compression="zlib"),
 }
-TABLES = {"p.csv": _table, "p.npy": lambda z, path: np.save(path, points(z))}
+TABLES = {"p.csv": _table, "utf-16.csv": _table, "p.npy": lambda z, path: np.save(path, points(z))}
 FROM_SOUTH = ("text.irap", "binary.irap", "text.grd", "6.grd", "7.grd")
 FORMATS = {**RASTERS, **(TIFFS if tifffile is not None else {}), **TABLES}
 
@@ -231,11 +239,14 @@ def _landxml(vertices, triangles, file):
 TEXT_MESHES = {
     "m.off": _off,
     "m.obj": _obj,
+    "old.obj": _obj,
     "m.ts": _tsurf,
+    "utf-16.ts": _tsurf,
     "m.dxf": _dxf,
     "m.xml": _landxml,
     "text.stl": _stl_text,
     "text.ply": _ply_text,
+    "old.ply": _ply_text,
 }
 BY_PLACE = ("m.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
 BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary}
@@ -248,6 +259,6 @@ def write_mesh(name, rows, columns, folder):
     if name in BINARY_MESHES:
         BINARY_MESHES[name](*mesh, path)
     else:
-        with path.open("w") as file:
+        with _opened(path) as file:
             TEXT_MESHES[name](*mesh, file)
     return path, *mesh

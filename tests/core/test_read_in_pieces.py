@@ -16,7 +16,15 @@ from large_files import BY_PLACE, FORMATS, MESHES, write_mesh, write_points
 from realmodel.core import InputRefused, MeshFile, OutputFailed, PointFile
 from realmodel.core.mapped_arrays import MappedArrays
 from realmodel.core.readers import read_mesh, read_point_file
-from realmodel.core.readers.text import FileBytes, encoding_of, pieces_of, text_content
+from realmodel.core.readers.text import (
+    FileBytes,
+    content_of,
+    encoding_of,
+    pieces_of,
+    read_text,
+    text_content,
+    text_lines,
+)
 
 COMMON = f"""
 import json, resource, sys, tracemalloc
@@ -422,6 +430,33 @@ def test_lines_of_old_machines(tmp_path):
     assert text_content(file)[:] == b"1 2\n3 4\n"
     file.write_bytes("1 2\r\n".encode("utf-16"))
     assert text_content(file)[:] == b"1 2\r\n"
+    lines = [f"{n} \u00e4" for n in range(200_000)]
+    ends = ("\r", "\n", "\r\n")
+    for text in ("\r\n".join(lines), "".join(line + ends[n % 3] for n, line in enumerate(lines)), "a\r", ""):
+        for encoding in ("utf-8", "utf-16", "latin-1"):
+            file.write_bytes(text.encode(encoding))
+            assert [line for _, some, _ in text_lines(file) for line in some] == (
+                read_text(file).split("\n") if text else []
+            )
+            assert all(len(some) < 150_000 for _, some, _ in text_lines(file))
+
+
+@pytest.mark.parametrize("codec", ["utf-16-le", "utf-16-be"])
+def test_text_in_utf_16(tmp_path, codec):
+    """Any part of it; letters of four bytes across the ends of blocks."""
+    file = tmp_path / "f"
+    text = "\ufeff" + "a" * ((1 << 18) - 1) + "\U0001f30d" * (1 << 18) + "\u20acb\n" * 1000
+    file.write_bytes(text.encode(codec))
+    found, expected = content_of(file), text[1:].encode()
+    assert len(found) == len(expected) and found[:] == expected
+    places = sorted({k * len(expected) // 7 + odd for k in range(8) for odd in (-1, 0, 2)})
+    for begin in places:
+        for end in (begin + 3, begin + 600_000):
+            assert found[max(begin, 0) : end] == expected[max(begin, 0) : end]
+    for damaged in (text.encode(codec)[:-1], text.encode(codec) + "\ud83c".encode(codec, "surrogatepass")):
+        file.write_bytes(damaged)
+        with pytest.raises(InputRefused, match="damaged UTF-16 text"):
+            content_of(file)
 
 
 def test_decimal_commas_late_in_a_large_table(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from .damaged_mesh import UNREADABLE, Damaged, unreadable
-from .text import FileBytes, Step, line_of_word, no_step, pieces_of
+from .text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
 from .triangle_mesh import MeshRows, TriangleMesh
 
 _ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -104,7 +104,7 @@ class _Numbers(_Bytes):
     def __init__(self, raw: FileBytes, begin: int, rows: MakeRows):
         super().__init__(raw, begin)
         numbers = rows(np.empty(0, "<f8"))
-        for _, piece in pieces_of(raw, begin):
+        for _, piece in pieces_of(with_newlines(raw), begin):
             numbers.add(np.array(piece.split()).astype("<f8"))
         self._numbers = numbers.array().view(np.uint8)
 

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import codecs
+import io
 import re
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -90,21 +92,63 @@ def _read_of(file: Path) -> Iterator[None]:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
 
 
-def content_of(file: Path) -> Content:
-    """The content of a file, read piece by piece; text in UTF-16 as UTF-8, read at once. Raises
-    InputRefused."""
+@contextmanager
+def _utf_16_of(file: Path) -> Iterator[None]:
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
+
+
+class _Utf16Bytes(FileBytes):
+    """Text in UTF-16 as UTF-8. Raises InputRefused."""
+
+    def __init__(self, file: Path):
+        super().__init__(file)
+        self._codec = "utf-16-le" if super()._read(0, 2) == codecs.BOM_UTF16_LE else "utf-16-be"
+        decoder = codecs.getincrementaldecoder(self._codec)()
+        self._begins, self._places = [2], [0]  # of blocks of whole letters, in the file and as UTF-8
+        for at in range(2, self._size, BYTES_AT_ONCE):
+            end = min(at + BYTES_AT_ONCE, self._size)
+            with _utf_16_of(file):
+                text = decoder.decode(super()._read(at, end), final=end == self._size)
+            self._begins.append(end - len(decoder.getstate()[0]))
+            self._places.append(self._places[-1] + len(text.encode()))
+        self._size = self._places[-1]
+
+    def _read(self, begin: int, end: int) -> bytes:
+        first, last = bisect_right(self._places, begin) - 1, bisect_left(self._places, end)
+        found = super()._read(self._begins[first], self._begins[last]).decode(self._codec).encode()
+        return found[begin - self._places[first] : end - self._places[first]]
+
+
+class _OldLines(FileBytes):
+    """Text whose lines end in \\r, as old Macs have it, with \\n."""
+
+    def __init__(self, content: FileBytes):
+        self._content, self._size = content, len(content)
+        self._block, self._begin = b"", 0
+
+    def _read(self, begin: int, end: int) -> bytes:
+        return self._content[begin:end].replace(b"\r", b"\n")
+
+
+def content_of(file: Path) -> FileBytes:
+    """The content of a file, read piece by piece; text in UTF-16 as UTF-8. Raises InputRefused."""
     content = FileBytes(Path(file))
-    return read_bytes(file) if content[:2] in _UTF_16 else content
+    return _Utf16Bytes(Path(file)) if content[:2] in _UTF_16 else content
 
 
-def text_content(file: Path) -> Content:
-    """content_of a text file with lines that end in \\n; read at once where they do not. Raises
-    InputRefused."""
+def text_content(file: Path) -> FileBytes:
+    """content_of a text file, with lines that end in \\n. Raises InputRefused."""
     content = content_of(file)
     require_text(file, content[:4096])
-    if content.find(b"\n") >= 0 or content.find(b"\r") < 0:
-        return content
-    return content[:].replace(b"\r", b"\n")
+    return with_newlines(content)
+
+
+def with_newlines(content: FileBytes) -> FileBytes:
+    """Text with lines that end in \\n, where all end in \\r; else itself."""
+    return content if content.find(b"\n") >= 0 or content.find(b"\r") < 0 else _OldLines(content)
 
 
 def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
@@ -124,12 +168,18 @@ def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
     require_text(file, content[:4096])
     encoding, number = encoding_of(content), 1
     begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
-    for at, piece in pieces_of(content, begin):
-        lines = _with_plain_ends(piece.decode(encoding)).split("\n")
-        if piece.endswith((b"\n", b"\r")) and at + len(piece) < len(content):
-            lines.pop()
-        yield number, lines, (at + len(piece)) / len(content)
-        number += len(lines)
+    decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder(encoding)(), translate=True)
+    rest: list[str] = []  # of a line that goes on
+    for at in range(begin, len(content), BYTES_AT_ONCE):
+        end = min(at + BYTES_AT_ONCE, len(content))
+        whole, newline, more = decoder.decode(content[at:end], final=end == len(content)).rpartition("\n")
+        rest.append(whole if newline else more)
+        if newline:
+            lines, rest = "".join(rest).split("\n"), [more]
+            yield number, lines, end / len(content)
+            number += len(lines)
+    if rest:
+        yield number, ["".join(rest)], 1.0
 
 
 def _with_plain_ends(text: str) -> str:
@@ -155,10 +205,8 @@ def read_bytes(file: Path) -> bytes:
     with _read_of(file):
         raw = Path(file).read_bytes()
     if raw[:2] in _UTF_16:
-        try:
+        with _utf_16_of(file):
             return raw.decode("utf-16").encode()
-        except UnicodeDecodeError as error:
-            raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
     return raw
 
 
