@@ -236,6 +236,26 @@ def _landxml(vertices, triangles, file):
     file.write("</Faces></Surface></Surfaces></LandXML>\n")
 
 
+def _gmsh_2(vertices, triangles, file):
+    file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(vertices)}\n")
+    np.savetxt(file, np.column_stack([np.arange(1, len(vertices) + 1), vertices]), fmt="%d %.2f %.2f %.2f")
+    file.write(f"$EndNodes\n$Elements\n{len(triangles)}\n")
+    numbered = np.column_stack([np.arange(1, len(triangles) + 1), triangles + 1])
+    np.savetxt(file, numbered, fmt="%d 2 2 1 1 %d %d %d")
+    file.write("$EndElements\n")
+
+
+def _gmsh_4(vertices, triangles, path):
+    tags, faces = np.arange(1, len(vertices) + 1), np.arange(1, len(triangles) + 1)
+    with path.open("wb") as file:
+        file.write(b"$MeshFormat\n4.1 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n")
+        file.write(struct.pack("<4Q3iQ", 1, len(tags), 1, len(tags), 2, 1, 0, len(tags)))
+        file.write(tags.astype("<u8").tobytes() + vertices.astype("<f8").tobytes())
+        file.write(b"\n$EndNodes\n$Elements\n")
+        file.write(struct.pack("<4Q3iQ", 1, len(faces), 1, len(faces), 2, 1, 2, len(faces)))
+        file.write(np.column_stack([faces, triangles + 1]).astype("<u8").tobytes() + b"\n$EndElements\n")
+
+
 TEXT_MESHES = {
     "m.off": _off,
     "m.obj": _obj,
@@ -244,12 +264,13 @@ TEXT_MESHES = {
     "utf-16.ts": _tsurf,
     "m.dxf": _dxf,
     "m.xml": _landxml,
+    "2.msh": _gmsh_2,
     "text.stl": _stl_text,
     "text.ply": _ply_text,
     "old.ply": _ply_text,
 }
 BY_PLACE = ("m.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
-BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary}
+BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary, "4.msh": _gmsh_4}
 MESHES = {**TEXT_MESHES, **BINARY_MESHES}
 
 

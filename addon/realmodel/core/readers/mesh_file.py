@@ -50,7 +50,7 @@ MESH_FORMATS = (
     MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply),
     MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
     MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), _at_once(read_vtk_xml)),
-    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), _at_once(read_msh)),
+    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
     MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), read_landxml),
     MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), read_dxf),
     MeshFormat("STL", (".stl",), begins_as_stl, read_stl),

@@ -66,7 +66,7 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
     except _Cut as error:
         place = {"byte": begins + error.at}
         if kind == "ascii":
-            place = {"line": _line_of_number(raw, begins, error.at // 8)}
+            place = {"line": line_of_word(raw, error.at // 8, begins)}
         damage = Damaged("it is cut off, or a count is wrong", **place)
         raise unreadable(file, "PLY", damage) from error
     except UNREADABLE as error:
@@ -113,19 +113,6 @@ class _Numbers(_Bytes):
 
     def some(self, begin: int, size: int) -> bytes:
         return self._numbers[begin : begin + size].tobytes()
-
-
-def _line_of_number(raw: FileBytes, begin: int, number: int) -> int:
-    """The line, from 1, of a number of the text behind the header, from 0; the last one where there are
-    fewer."""
-    line = raw.count(b"\n", 0, begin) + 1
-    for at, piece in pieces_of(raw, begin):
-        words = len(piece.split())
-        if number < words or at + len(piece) >= len(raw):
-            return line - 1 + line_of_word(piece, number)
-        number -= words
-        line += piece.count(b"\n")
-    return line
 
 
 def _header(lines: list[str]):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces given by the coordinates of their corners: equal corners become one vertex, piece by piece."""
+"""Faces given by the places of their corners, or numbers of places: equal corners become one vertex, piece
+by piece."""
 
 from __future__ import annotations
 
@@ -12,32 +13,39 @@ from .triangle_mesh import MeshRows
 
 _CORNERS_AT_ONCE = 3 << 16
 _OF_PART = 1 << 8  # sampled corners of a slice, by which the limits of slices are chosen
-_PLACED = np.dtype([("place", np.float64, 3), ("corner", np.int64)])
 _NAMED = np.dtype([("corner", np.int64), ("vertex", np.int64)])
 
 
-def share_vertices(corners: np.ndarray, sizes: np.ndarray | None, mesh: MeshRows, rows: MakeRows) -> None:
+def share_vertices(
+    corners: np.ndarray,
+    sizes: np.ndarray | None,
+    mesh: MeshRows,
+    rows: MakeRows,
+    places: np.ndarray | None = None,
+) -> None:
     """Adds corners (C, 3) of faces to a mesh, each place once, in the order of its coordinates: slice by
-    slice of x, and then the faces some at a time. sizes: how many corners each face has, None: three."""
+    slice of x, and then the faces some at a time. sizes: how many corners each face has, None: three. places
+    (P, 3): corners (C,) are numbers of these, and the order is that of the numbers."""
     if not len(corners):
         return
     parts = -(-len(corners) // _CORNERS_AT_ONCE)
-    some = np.sort(corners[:: -(-len(corners) // (parts * _OF_PART)), 0])
+    some = np.sort(_first(corners[:: -(-len(corners) // (parts * _OF_PART))]))
     ends = np.unique(some[[len(some) * part // parts for part in range(1, parts)]])
-    slices = [rows(np.empty(0, _PLACED)) for _ in range(len(ends) + 1)]
+    kind = np.dtype([("place", corners.dtype, corners.shape[1:]), ("corner", np.int64)])
+    slices = [rows(np.empty(0, kind)) for _ in range(len(ends) + 1)]
     begin = 0
     for piece in in_pieces(corners):
-        placed = np.empty(len(piece), _PLACED)
+        placed = np.empty(len(piece), kind)
         placed["place"], placed["corner"] = piece, np.arange(begin, begin + len(piece))
         begin += len(piece)
-        _distribute(placed, np.searchsorted(ends, piece[:, 0], "right"), slices)
+        _distribute(placed, np.searchsorted(ends, _first(piece), "right"), slices)
     of_corners = [rows(np.empty(0, _NAMED)) for _ in range(parts)]
     for each in slices:
         placed = each.taken()
-        vertices, index = np.unique(placed["place"], axis=0, return_inverse=True)
+        found, index = np.unique(placed["place"], axis=0, return_inverse=True)
         named = np.empty(len(placed), _NAMED)
         named["corner"], named["vertex"] = placed["corner"], index.ravel() + mesh.vertices
-        mesh.add_vertices(vertices)
+        mesh.add_vertices(found if places is None else places[found])
         _distribute(named, named["corner"] // _CORNERS_AT_ONCE, of_corners)
     rest, face = np.empty(0, np.int64), 0  # corners of a face that goes on in the next part
     for part, each in enumerate(of_corners):
@@ -50,11 +58,17 @@ def share_vertices(corners: np.ndarray, sizes: np.ndarray | None, mesh: MeshRows
         rest, face = index[taken:], face + len(faces)
 
 
+def _first(corners: np.ndarray) -> np.ndarray:
+    """x of places; numbers as they are."""
+    return corners.reshape(len(corners), -1)[:, 0]
+
+
 def _faces(index: np.ndarray, sizes: np.ndarray | None) -> tuple[Sequence, int]:
     """The faces that corners begin with, and how many corners these have."""
-    if sizes is None or (sizes == 3).all():
-        whole = len(index) // 3 * 3
-        return index[:whole].reshape(-1, 3), whole
+    size = 3 if sizes is None or not len(sizes) else int(sizes[0])
+    if sizes is None or (sizes == size).all():
+        whole = len(index) // size * size
+        return index[:whole].reshape(-1, size), whole
     ends = np.cumsum(sizes)
     whole = int(np.searchsorted(ends, len(index), "right"))
     if not whole:

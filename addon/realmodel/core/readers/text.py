@@ -64,14 +64,23 @@ class FileBytes:
         return bytes(found)
 
     def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
-        """The next position of a text of one byte; -1 where there is none."""
+        """The next position of a short text; -1 where there is none."""
         end = self._size if end is None else min(end, self._size)
         size = _BYTES_TO_FIND
         while begin < end:
-            found = self[begin : min(begin + size, end)].find(text)
+            found = self[begin : min(begin + size + len(text) - 1, end)].find(text)
             if found >= 0:
                 return begin + found
             begin, size = begin + size, BYTES_AT_ONCE
+        return -1
+
+    def rfind(self, text: bytes) -> int:
+        """The last position of a short text; -1 where there is none."""
+        for end in range(self._size, 0, -BYTES_AT_ONCE):
+            begin = max(end - BYTES_AT_ONCE, 0)
+            found = self[begin : end + len(text) - 1].rfind(text)
+            if found >= 0:
+                return begin + found
         return -1
 
     def count(self, text: bytes, begin: int, end: int) -> int:
@@ -151,12 +160,12 @@ def with_newlines(content: FileBytes) -> FileBytes:
     return content if content.find(b"\n") >= 0 or content.find(b"\r") < 0 else _OldLines(content)
 
 
-def pieces_of(content: Content, begin: int = 0) -> Iterator[tuple[int, bytes]]:
-    """Whole lines in pieces: the position of each piece, and its bytes."""
-    while begin < len(content):
-        last = min(begin + BYTES_AT_ONCE, len(content))
-        end = content.find(b"\n", last - 1)
-        end = len(content) if end < 0 else end + 1
+def pieces_of(content: Content, begin: int = 0, stop: int | None = None) -> Iterator[tuple[int, bytes]]:
+    """Whole lines in pieces, to a position or the end: the position of each piece, and its bytes."""
+    stop = len(content) if stop is None else stop
+    while begin < stop:
+        end = content.find(b"\n", min(begin + BYTES_AT_ONCE, stop) - 1, stop)
+        end = stop if end < 0 else end + 1
         yield begin, content[begin:end]
         begin = end
 
@@ -210,13 +219,20 @@ def read_bytes(file: Path) -> bytes:
     return raw
 
 
-def line_of_word(raw: bytes, number: int) -> int:
-    """The line, from 1, of a word, from 0; the last line where there are fewer words."""
-    for line, text in enumerate(raw.split(b"\n"), 1):
-        number -= len(text.split())
-        if number < 0:
-            return line
-    return raw.rstrip().count(b"\n") + 1
+def line_of_word(content: Content, number: int, begin: int = 0, stop: int | None = None) -> int:
+    """The line, from 1, of a word of the text between two positions, from 0; that of the last one where there
+    are fewer."""
+    last = line = content.count(b"\n", 0, begin) + 1
+    for _, piece in pieces_of(content, begin, stop):
+        words = len(piece.split())
+        if number < words:
+            counts = np.cumsum([len(text.split()) for text in piece.split(b"\n")])
+            return line + int(np.searchsorted(counts, number, "right"))
+        number -= words
+        if words:
+            last = line + piece.rstrip().count(b"\n")
+        line += piece.count(b"\n")
+    return last
 
 
 def require_text(file: Path, raw: bytes) -> None:
