@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files of heights of any size in each format that is read piece by piece, and what is in them."""
 
+import base64
 import struct
+import zlib
 
 import numpy as np
 from test_rasters import tifffile
@@ -256,6 +258,49 @@ def _gmsh_4(vertices, triangles, path):
         file.write(np.column_stack([faces, triangles + 1]).astype("<u8").tobytes() + b"\n$EndElements\n")
 
 
+def _vtk(write):
+    """A file of VTK; write: adds an array, and returns what stands in its element, and its attributes."""
+
+    def written(vertices, triangles, path):
+        appended = bytearray()
+
+        def array(name, kind, values, more=""):
+            attributes, text = write(values, appended)
+            return f'<DataArray Name="{name}" type="{kind}" {more} {attributes}>{text}</DataArray>\n'
+
+        ends = np.arange(3, 3 * len(triangles) + 1, 3)
+        points = array("Points", "Float64", vertices.astype("<f8"), 'NumberOfComponents="3"')
+        cells = array("connectivity", "Int32", triangles.astype("<i4")) + array("offsets", "Int64", ends)
+        kinds = array("types", "UInt8", np.full(len(triangles), 5, np.uint8))
+        compressor = 'compressor="vtkZLibDataCompressor"' if write is _vtk_packed else ""
+        text = f'<VTKFile type="UnstructuredGrid" header_type="UInt64" {compressor}><UnstructuredGrid>\n'
+        text += f"<Piece><Points>{points}</Points><Cells>{cells}{kinds}</Cells></Piece></UnstructuredGrid>\n"
+        with path.open("wb") as file:
+            file.write(text.encode())
+            if appended:
+                file.write(b'<AppendedData encoding="raw">_' + appended + b"</AppendedData>")
+            file.write(b"</VTKFile>\n")
+
+    return written
+
+
+def _vtk_text(values, _appended):
+    return 'format="ascii"', " ".join(map(str, values.ravel().tolist()))
+
+
+def _vtk_base64(values, _appended):
+    content = struct.pack("<Q", values.nbytes) + values.tobytes()
+    return 'format="binary"', base64.b64encode(content).decode()
+
+
+def _vtk_packed(values, appended):
+    at, content = len(appended), values.tobytes()
+    blocks = [zlib.compress(content[k : k + 32768]) for k in range(0, len(content), 32768)]
+    appended += struct.pack(f"<{3 + len(blocks)}Q", len(blocks), 32768, 0, *map(len, blocks))
+    appended += b"".join(blocks)
+    return f'format="appended" offset="{at}"', ""
+
+
 TEXT_MESHES = {
     "m.off": _off,
     "m.obj": _obj,
@@ -270,7 +315,14 @@ TEXT_MESHES = {
     "old.ply": _ply_text,
 }
 BY_PLACE = ("m.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
-BINARY_MESHES = {"binary.ply": _ply_binary, "binary.stl": _stl_binary, "4.msh": _gmsh_4}
+BINARY_MESHES = {
+    "binary.ply": _ply_binary,
+    "binary.stl": _stl_binary,
+    "4.msh": _gmsh_4,
+    "text.vtu": _vtk(_vtk_text),
+    "base64.vtu": _vtk(_vtk_base64),
+    "packed.vtu": _vtk(_vtk_packed),
+}
 MESHES = {**TEXT_MESHES, **BINARY_MESHES}
 
 

@@ -40,16 +40,11 @@ def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
     return lambda head, _size: begins(head)
 
 
-def _at_once(read: Callable[[Path, Step], TriangleMesh]) -> Callable[[Path, Step, MakeRows], TriangleMesh]:
-    """Adapts the reader of a format that is read as a whole."""
-    return lambda file, step, _rows: read(file, step)
-
-
 MESH_FORMATS = (
     MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off),
     MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply),
     MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
-    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), _at_once(read_vtk_xml)),
+    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), read_vtk_xml),
     MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
     MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), read_landxml),
     MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), read_dxf),
@@ -66,8 +61,8 @@ def is_mesh_file(file: str | Path) -> bool:
 
 
 def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
-    """Reads a mesh in any format that is known. rows: where it is kept, by the formats that are read piece by
-    piece. Raises InputRefused naming file and line."""
+    """Reads a mesh in any format that is known. rows: where it is kept. Raises InputRefused naming file and
+    line."""
     file = Path(file)
     found = _formats_of(file)
     if not found:

@@ -53,7 +53,7 @@ def share_vertices(
         index = np.empty(len(named), np.int64)
         index[named["corner"] - part * _CORNERS_AT_ONCE] = named["vertex"]
         index = np.concatenate([rest, index])
-        faces, taken = _faces(index, None if sizes is None else sizes[face : face + len(index) // 3])
+        faces, taken = faces_of(index, None if sizes is None else sizes[face : face + len(index) // 3])
         mesh.add_faces(faces)
         rest, face = index[taken:], face + len(faces)
 
@@ -63,10 +63,10 @@ def _first(corners: np.ndarray) -> np.ndarray:
     return corners.reshape(len(corners), -1)[:, 0]
 
 
-def _faces(index: np.ndarray, sizes: np.ndarray | None) -> tuple[Sequence, int]:
+def faces_of(index: np.ndarray, sizes: np.ndarray | None) -> tuple[Sequence, int]:
     """The faces that corners begin with, and how many corners these have."""
     size = 3 if sizes is None or not len(sizes) else int(sizes[0])
-    if sizes is None or (sizes == size).all():
+    if size and (sizes is None or (sizes == size).all()):
         whole = len(index) // size * size
         return index[:whole].reshape(-1, size), whole
     ends = np.cumsum(sizes)

@@ -3,24 +3,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Protocol
 from xml.etree import ElementTree
 
 from ..errors import InputRefused
-from .text import BYTES_AT_ONCE, Step, content_of
-
-_WITH_ENTITIES = "XML with a document type is not read"
+from .text import BYTES_AT_ONCE, FileBytes, Step, content_of
 
 
-def parse_xml(file: Path, raw: bytes) -> ElementTree.Element:
-    """The root. Raises InputRefused naming the line."""
-    if b"<!ENTITY" in raw or b"<!DOCTYPE" in raw:
-        raise InputRefused(_WITH_ENTITIES, file=file, advice="export it again")
+def parse_xml(file: Path, pieces: Iterable[bytes], target):
+    """Parses text that comes in pieces; what the target of the parser returns in the end. Raises InputRefused
+    naming the line."""
+    parser = ElementTree.XMLParser(target=target)
     try:
-        return ElementTree.fromstring(raw)
+        for piece in pieces:
+            parser.feed(piece)
+        return parser.close()
     except (ElementTree.ParseError, ValueError, LookupError) as error:
         raise _damaged(file, error) from error
+
+
+def no_document_type(file: Path) -> InputRefused:
+    """The error of a document type, which entities are defined in."""
+    return InputRefused("XML with a document type is not read", file=file, advice="export it again")
 
 
 def _damaged(file: Path, error: Exception) -> InputRefused:
@@ -40,15 +46,13 @@ class ElementHandler(Protocol):
 
 def feed_xml(file: Path, handler: ElementHandler, step: Step) -> None:
     """Parses a file piece by piece and calls the handler. Raises InputRefused naming the line."""
-    content = content_of(file)
-    parser = ElementTree.XMLParser(target=_Target(file, handler))
-    try:
-        for at in range(0, len(content), BYTES_AT_ONCE):
-            parser.feed(content[at : at + BYTES_AT_ONCE])
-            step(at / len(content))
-        parser.close()
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise _damaged(file, error) from error
+    parse_xml(file, _pieces(content_of(file), step), _Target(file, handler))
+
+
+def _pieces(content: FileBytes, step: Step) -> Iterator[bytes]:
+    for at in range(0, len(content), BYTES_AT_ONCE):
+        yield content[at : at + BYTES_AT_ONCE]
+        step(at / len(content))
 
 
 class _Target:
@@ -58,7 +62,7 @@ class _Target:
         self._file, self._handler, self.data = file, handler, handler.text
 
     def doctype(self, *_) -> None:
-        raise InputRefused(_WITH_ENTITIES, file=self._file, advice="export it again")
+        raise no_document_type(self._file)
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         self._handler.begin(tag.rpartition("}")[2], attributes)
