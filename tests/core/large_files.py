@@ -2,10 +2,13 @@
 """Files of heights of any size in each format that is read piece by piece, and what is in them."""
 
 import base64
+import sqlite3
 import struct
 import zlib
+from contextlib import closing
 
 import numpy as np
+from test_map_points import shapefile
 from test_rasters import tifffile
 
 STEP = 10.0  # from one height to the next
@@ -127,6 +130,34 @@ def _table(z, path):
         np.savetxt(file, points(z), fmt="%.2f", delimiter=";", header="X;Y;Z", comments="")
 
 
+def _lines(z):
+    """The points as those of lines."""
+    found = points(z)
+    return np.split(found, range(300, len(found), 300))
+
+
+def _shapefile(z, path):
+    body = bytearray()
+    for line in _lines(z):
+        record = struct.pack("<i4d3i", 13, 0, 0, 0, 0, 1, len(line), 0) + line[:, :2].tobytes()
+        record += struct.pack("<2d", 0, 0) + line[:, 2].tobytes()
+        body += struct.pack(">2i", 1, len(record) // 2) + record
+    head = struct.pack(">7i", 9994, 0, 0, 0, 0, 0, (100 + len(body)) // 2)
+    path.write_bytes(head + struct.pack("<2i8d", 1000, 13, *8 * [0]) + body)
+
+
+def _geopackage(z, path):
+    head = b"GP" + bytes([0, 1]) + struct.pack("<i", 0)
+    with closing(sqlite3.connect(path)) as base:
+        base.execute("CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT)")
+        base.execute("INSERT INTO gpkg_geometry_columns VALUES ('contours', 'shape')")
+        base.execute("CREATE TABLE contours (shape BLOB)")
+        for line in _lines(z):
+            shape = head + struct.pack("<b2i", 1, 1002, len(line)) + line.tobytes()
+            base.execute("INSERT INTO contours VALUES (?)", [shape])
+        base.commit()
+
+
 RASTERS = {
     "g.asc": _ascii_grid,
     "old.asc": _ascii_grid,
@@ -145,13 +176,15 @@ TIFFS = {
 }
 TABLES = {"p.csv": _table, "utf-16.csv": _table, "p.npy": lambda z, path: np.save(path, points(z))}
 FROM_SOUTH = ("text.irap", "binary.irap", "text.grd", "6.grd", "7.grd")
-FORMATS = {**RASTERS, **(TIFFS if tifffile is not None else {}), **TABLES}
+SHAPES = {"c.gpkg": _geopackage, **({"c.shp": _shapefile} if shapefile is not None else {})}
+FORMATS = {**RASTERS, **(TIFFS if tifffile is not None else {}), **TABLES, **SHAPES}
 
 
 def write_points(name, rows, columns, folder):
     """A file of heights in the format of FORMATS; the file, and the points in it."""
     z = heights(rows, columns)
     path = folder / name
+    path.unlink(missing_ok=True)
     FORMATS[name](z, path)
     return path, points(z, name in FROM_SOUTH)
 

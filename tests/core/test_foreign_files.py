@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import build, load_project
-from realmodel.core.readers import read_mesh
-from realmodel.core.readers.geojson import read_geojson
-from realmodel.core.readers.geopackage import read_geopackage
+from realmodel.core.map_layer import MapLayer
+from realmodel.core.readers import read_mesh, read_shapes
 from realmodel.core.regular_cells import plan_grids
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -110,10 +109,8 @@ def test_maps_of_gdal(ending, tmp_path):
     pyogrio.raw.write(
         path, shapes, [names], ["name"], geometry_type="MultiPolygon", crs="EPSG:25832", layer="m"
     )
-    read = read_geopackage if ending == ".gpkg" else read_geojson
-    where = {"where": {"name": "two"}}
-    found = read(path, **where).polygons
+    found = read_shapes(MapLayer(path, where={"name": "two"})).polygons
     assert [len(polygon.rings) for polygon in found] == [2, 1]
-    assert len(read(path).polygons) == 3
+    assert len(read_shapes(MapLayer(path)).polygons) == 3
     areas = [shapely.Polygon(p.rings[0], p.rings[1:]).area for p in found]
     assert areas == pytest.approx([80.0, 1.0])

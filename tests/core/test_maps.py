@@ -12,8 +12,9 @@ import pytest
 from realmodel.core import Model, Project, Rock, Surface, UsageError, build, load_project
 from realmodel.core.contours import checked_interval, contours
 from realmodel.core.geological_map import geological_map
+from realmodel.core.map_layer import MapLayer
+from realmodel.core.readers import read_shapes
 from realmodel.core.readers.geojson import read_geojson
-from realmodel.core.readers.geopackage import read_geopackage
 from realmodel.core.work import native_module
 from stacks.generate import random_stack
 from stacks.model_view import built
@@ -250,7 +251,7 @@ def test_our_own_readers_take_them(two_layers, tmp_path):
     for ending in (".gpkg", ".geojson"):
         two_layers.save(tmp_path / f"m{ending}")
     areas = geological_map(two_layers)
-    first = read_geopackage(tmp_path / "m.gpkg", "geology", {"block": "Sand"}).polygons
+    first = read_shapes(MapLayer(tmp_path / "m.gpkg", "geology", {"block": "Sand"})).polygons
     second = read_geojson(tmp_path / "m.geojson", {"block": "Sand"}).polygons
     assert len(first) == len(second) == len(areas[1].polygons)
     for one, two, rings in zip(first, second, areas[1].polygons, strict=True):

@@ -5,6 +5,8 @@ does not grow."""
 import errno
 import json
 import os
+import sqlite3
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -86,6 +88,47 @@ def test_a_mesh_is_the_same_in_a_file(tmp_path, name):
             assert isinstance(one, np.memmap) and one.dtype == other.dtype
             assert one.tobytes() == other.tobytes()
         assert kept.in_model(given, "m", arrays.gather)[0].tobytes() == in_model.tobytes()
+
+
+def test_shapes_of_several_kinds(tmp_path):
+    """Too many to wait for each other: points come first, whatever their order in the file."""
+    _, z = write_points("c.gpkg", 150, 200, tmp_path)
+    with sqlite3.connect(tmp_path / "c.gpkg") as base:
+        for k in range(25_000):
+            shape = b"GP" + bytes([0, 1]) + struct.pack("<ibi3d", 0, 1, 1001, k, -k, k / 4)
+            base.execute("INSERT INTO contours VALUES (?)", [shape])
+    base.close()
+    k = np.arange(25_000.0)
+    expected = np.concatenate([np.column_stack([k, -k, k / 4]), z])
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        given = PointFile(tmp_path / "c.gpkg", nodata=0.25)
+        for points, warnings in (read_point_file(given), read_point_file(given, gather=arrays.gather)):
+            assert np.array_equal(points, expected[expected[:, 2] != 0.25])
+            said = f"{(expected[:, 2] == 0.25).sum()} points have no value and are left out"
+            assert warnings == [f"{tmp_path / 'c.gpkg'}: {said}"]
+
+
+def test_nodes_whose_numbers_do_not_ascend(tmp_path):
+    """Triangles, and quadrangles between them, which come last."""
+    _, vertices, triangles = write_mesh("m.off", 200, 210, tmp_path)
+    tags = np.random.default_rng(1).permutation(len(vertices)) * 3 + 1
+    nodes = [f"{tag} {x} {y} {z}" for tag, (x, y, z) in zip(tags, vertices.tolist(), strict=True)]
+    faces = [[*face, face[0] + 2] if n % 9 == 0 else face for n, face in enumerate(triangles.tolist())]
+    elements = [f"{n} {len(f) - 1} 0 {' '.join(map(str, tags[f]))}" for n, f in enumerate(faces, 1)]
+    file = tmp_path / "m.msh"
+    text = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes), *nodes, "$EndNodes"]
+    text += ["$Elements", len(elements), *elements, "$EndElements"]
+    file.write_text("\n".join(map(str, text)))
+    expected = [
+        [f[0], f[k], f[k + 1]] for size in (3, 4) for f in faces if len(f) == size for k in range(1, size - 1)
+    ]
+    used = np.unique(expected)
+    with MappedArrays(tmp_path / "arrays") as arrays:
+        mesh, kept = read_mesh(file), read_mesh(file, rows=arrays.rows)
+        assert np.array_equal(mesh.vertices, vertices[used])
+        assert np.array_equal(used[mesh.triangles], expected)
+        for name in ("vertices", "triangles", "face_of_triangle"):
+            assert getattr(kept, name).tobytes() == getattr(mesh, name).tobytes()
 
 
 def test_larger_faces_among_those_of_a_drawing(tmp_path):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,8 @@ from ..errors import InputRefused
 from ..map_layer import MapLayer, begins_as_wkt
 from ..units import MODEL_UNIT, factor
 from .geojson import read_geojson
-from .geopackage import is_geopackage, open_changes, read_geopackage
-from .shapefile_reader import beside, is_shapefile, read_shapefile
+from .geopackage import is_geopackage, open_changes, shapes_of_geopackage
+from .shapefile_reader import beside, is_shapefile, shapes_of_shapefile
 from .shapes import Heights, Shapes
 from .text import Step, no_step, read_text
 from .wkt import parse_wkt
@@ -43,6 +44,16 @@ def read_shapes(
 ) -> Shapes:
     """The shapes of a file, in the model's unit; with heights where requested. Raises InputRefused naming the
     file."""
+    shapes = Shapes()
+    for found in shapes_in_turn(given, step, heights):
+        shapes = found
+    return shapes.scaled(factor(given.units, model_unit))
+
+
+def shapes_in_turn(given: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Iterator[Shapes]:
+    """The shapes of a file, in its unit, while it is read: the same object again and again, which the caller
+    may take them out of. GeoJSON and well-known text are read as a whole. Raises InputRefused naming the
+    file."""
     file = Path(given.file)
     try:
         with file.open("rb") as opened:
@@ -50,16 +61,16 @@ def read_shapes(
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     if is_geopackage(head):
-        shapes = read_geopackage(file, given.layer, given.where, step, heights)
+        yield from shapes_of_geopackage(file, given.layer, given.where, step, heights)
     elif given.layer is not None:
         what = f"it is not a GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     elif file.suffix.lower() in _BESIDE_SHAPEFILE:
         raise InputRefused("this is only a part of a shapefile", file=file, advice="name the .shp beside it")
     elif is_shapefile(head):
-        shapes = read_shapefile(file, given.where, step, heights)
+        yield from shapes_of_shapefile(file, given.where, step, heights)
     elif _is_json(file, head):
-        shapes = read_geojson(file, given.where, heights)
+        yield read_geojson(file, given.where, heights)
     else:
         text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
         if not begins_as_wkt(text):
@@ -70,8 +81,7 @@ def read_shapes(
         if heights and heights.attribute is not None:
             what = "well-known text has no attributes, so 'height' has no effect"
             raise InputRefused(what, file=file, advice="write the heights as z")
-        shapes = parse_wkt(text, file, heights is not None)
-    return shapes.scaled(factor(given.units, model_unit))
+        yield parse_wkt(text, file, heights is not None)
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:

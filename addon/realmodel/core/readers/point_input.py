@@ -75,8 +75,7 @@ _OFTEN_NO_VALUE = (
 def read_point_file(
     given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step, gather: Gather = in_memory
 ) -> tuple[np.ndarray, list[str]]:
-    """(P, 3) float64 points in the model's unit, and warnings, sentences. gather: where the points are kept;
-    all files but those of shapes are read piece by piece.
+    """(P, 3) float64 points in the model's unit, and warnings, sentences. gather: where the points are kept.
 
     Raises InputRefused naming the file, and the line where it has lines.
     """
@@ -92,8 +91,7 @@ def read_point_file(
         points, warnings = _array_points(file, kept), []
     elif is_map_layer(file, head):
         _refuse_keys(file, "has shapes", given.only_for_tables)
-        found, warnings = read_map_points(given, step)
-        points = kept(in_pieces(found), np.empty((0, 3)))
+        points, warnings = read_map_points(given, step, kept)
     else:
         _refuse_keys(file, "is a table", given.only_for_shapes)
         reading = given.columns, given.where, given.separator, given.decimal, given.nodata_values

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,6 +21,7 @@ _MAGIC = b"\0\0\x27\x0a"
 _POINTS, _LINES, _POLYGONS, _MULTIPOINTS = (1, 11, 21), (3, 13, 23), (5, 15, 25), (8, 18, 28)
 _WITH_Z = (11, 13, 15, 18)
 _STEP = 1000  # features
+_FIRST = 100  # the byte where the shapes begin
 
 
 def is_shapefile(head: bytes) -> bool:
@@ -33,14 +35,15 @@ def beside(file: Path) -> list[Path]:
     return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
 
 
-def read_shapefile(
+def shapes_of_shapefile(
     file: str | Path,
     where: Mapping | None = None,
     step: Step = no_step,
     heights: Heights | None = None,
-) -> Shapes:
-    """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
-    write outlines and holes in the wrong directions. Raises InputRefused, and BuildFailed without pyshp."""
+) -> Iterator[Shapes]:
+    """The shapes of a shapefile, after each feature; the caller may take them out. Its rings follow the
+    even-odd rule, whatever their direction: many programs write outlines and holes in the wrong directions.
+    Raises InputRefused, and BuildFailed without pyshp."""
     file, where = Path(file), where or {}
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
     files = {path.suffix.lower(): path for path in beside(file)}
@@ -57,7 +60,7 @@ def read_shapefile(
                 warnings.simplefilter("ignore")  # of sizes in headers that many writers get wrong
                 reader = shapefile.Reader(shp=shp, dbf=dbf, encoding="utf-8", encodingErrors="replace")
             records = reader.iterRecords() if has_table else None
-            for number, shape in enumerate(reader.iterShapes(), 1):
+            for number, shape in enumerate(_shapes(reader.shp_reader), 1):
                 if number % _STEP == 0:
                     step(1 - _STEP / (number + _STEP))
                 attributes = next(records).as_dict() if records is not None else {}
@@ -66,6 +69,7 @@ def read_shapefile(
                     _add(shape, item, shapes)
                     if attribute is not None:
                         shapes.set_height(before, selection.height(attributes, attribute, item))
+                    yield shapes
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise InputRefused(what, file=file, advice="check the path") from error
@@ -76,7 +80,17 @@ def read_shapefile(
     except (StopIteration, AssertionError, AttributeError, MemoryError, OverflowError) as error:
         raise InputRefused("a damaged shapefile", file=file) from error
     selection.require_some()
-    return shapes
+    yield shapes
+
+
+def _shapes(shp) -> Iterator:
+    """The shapes one after another. The iterator of pyshp remembers where each one was."""
+    at, number, size = _FIRST, 0, shp.file.seek(0, os.SEEK_END)
+    while at < size:
+        shp.file.seek(at)
+        _, words = struct.unpack(">2i", shp.file.read(8))
+        yield shp.shape(number, at, 2 * words)
+        at, number = at + 8 + 2 * words, number + 1
 
 
 class _opened:
