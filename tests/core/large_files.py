@@ -262,6 +262,13 @@ def _dxf(vertices, triangles, file):
     file.write("0\nENDSEC\n0\nEOF\n")
 
 
+def _polyface(vertices, triangles, file):
+    file.write("0\nSECTION\n2\nENTITIES\n0\nPOLYLINE\n70\n64\n")
+    np.savetxt(file, vertices, fmt="0\nVERTEX\n10\n%.2f\n20\n%.2f\n30\n%.2f\n70\n192")
+    np.savetxt(file, triangles + 1, fmt="0\nVERTEX\n70\n128\n71\n%d\n72\n%d\n73\n%d")
+    file.write("0\nSEQEND\n0\nENDSEC\n0\nEOF\n")
+
+
 def _landxml(vertices, triangles, file):
     file.write('<?xml version="1.0"?>\n<LandXML xmlns="a"><Surfaces><Surface name="top"><Pnts>\n')
     numbered = np.column_stack([np.arange(1, len(vertices) + 1), vertices[:, [1, 0, 2]]])
@@ -341,13 +348,14 @@ TEXT_MESHES = {
     "m.ts": _tsurf,
     "utf-16.ts": _tsurf,
     "m.dxf": _dxf,
+    "polyface.dxf": _polyface,
     "m.xml": _landxml,
     "2.msh": _gmsh_2,
     "text.stl": _stl_text,
     "text.ply": _ply_text,
     "old.ply": _ply_text,
 }
-BY_PLACE = ("m.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
+BY_PLACE = ("m.dxf", "polyface.dxf", "text.stl", "binary.stl")  # vertices in the order of their coordinates
 BINARY_MESHES = {
     "binary.ply": _ply_binary,
     "binary.stl": _stl_binary,

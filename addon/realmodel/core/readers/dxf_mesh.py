@@ -21,6 +21,7 @@ _HEADER = 200_000  # characters in which the header's variables are looked for
 _BINARY = b"AutoCAD Binary DXF"
 _UNITS = re.compile(r"\n\s*9\s*\n\s*\$INSUNITS\s*\n\s*70\s*\n\s*(\d{1,2})\s*\n")
 _UNIT_NAMES = {1: "in", 2: "ft", 3: "mi", 4: "mm", 5: "cm", 6: "m", 7: "km", 10: "yd", 21: "us-ft"}
+_LARGEST = 1 << 62  # more vertices than any file has
 _CLOSED_M, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 16, 32, 64
 
 
@@ -33,14 +34,14 @@ def begins_as_dxf(head: bytes) -> bool:
 
 def read_dxf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
     """The faces of all entities of the drawing as one mesh; corners at the same place become one vertex.
-    Faces in blocks that are inserted are not read. rows: where they are kept; a polyface mesh is in memory
-    before. Raises InputRefused naming file and line."""
+    Faces in blocks that are inserted are not read. rows: where they are kept. Raises InputRefused naming file
+    and line."""
     file = Path(file)
     with file.open("rb") as opened:
         if opened.read(len(_BINARY)) == _BINARY:
             raise InputRefused("binary DXF is not read", file=file, advice="save it as text (ASCII)")
     corners, sizes, lines = rows(np.empty((0, 3))), rows(np.empty(0, np.int64)), _Lines(file, step)
-    count = sum(_keep(some, corners, sizes) for some in _faces(file, lines))
+    count = sum(_keep(some, corners, sizes) for some in _faces(file, lines, rows))
     if not count:
         advice = "export the surface as 3D faces (3DFACE) or as a polyface mesh"
         raise InputRefused("it has no 3D faces", file=file, advice=advice)
@@ -52,16 +53,20 @@ def read_dxf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
     return replace(mesh.mesh(), said_unit=unit)
 
 
-def _faces(file: Path, lines: _Lines) -> Iterator[list[list[tuple[float, ...]]]]:
+def _faces(file: Path, lines: _Lines, rows: MakeRows) -> Iterator[list[list[tuple[float, ...]]]]:
     """The places of the corners of faces, some faces at a time."""
     faces = []
-    for entity, number, codes in _entities(file, lines):
+    for entity, number, codes in _entities(file, lines, rows):
         try:
             if entity == "3DFACE":
                 given = [_place(codes, corner) for corner in range(4 if 13 in codes else 3)]
                 faces.append(_without_repeats(given))
             elif entity == "POLYLINE":
-                faces += _polyline_faces(codes)
+                for some in codes["mesh"].faces():
+                    faces += some
+                    if len(faces) >= LINES_AT_ONCE:
+                        yield faces
+                        faces = []
         except (ValueError, KeyError, IndexError) as error:
             raise InputRefused(f"a {entity} that cannot be read", file=file, line=number) from error
         if len(faces) >= LINES_AT_ONCE:
@@ -102,9 +107,9 @@ class _Lines:
             self._step(0.5 * share)
 
 
-def _entities(file: Path, lines: _Lines) -> Iterator[tuple[str, int, dict]]:
-    """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has those of
-    its VERTEX entities under "vertices"."""
+def _entities(file: Path, lines: _Lines, rows: MakeRows) -> Iterator[tuple[str, int, dict]]:
+    """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has its
+    VERTEX entities under "mesh"."""
     within, section, polyline = False, False, None
     name, begin, codes = "", 0, {}
     for at, code, value in lines.pairs():
@@ -118,9 +123,9 @@ def _entities(file: Path, lines: _Lines) -> Iterator[tuple[str, int, dict]]:
             continue
         if within and name:
             if name == "VERTEX" and polyline is not None:
-                polyline[2]["vertices"].append(codes)
+                polyline[2]["mesh"].add(codes)
             elif name == "POLYLINE":
-                polyline = (name, begin, {**codes, "vertices": []})
+                polyline = (name, begin, {"mesh": _Polyline(codes, rows)})
             elif name == "SEQEND" and polyline is not None:
                 yield polyline
                 polyline = None
@@ -142,25 +147,68 @@ def _without_repeats(corners: list) -> list:
     return [corner for k, corner in enumerate(corners) if corner != corners[k - 1]]
 
 
-def _polyline_faces(codes: dict) -> list[list[tuple[float, ...]]]:
-    flags, vertices = int(codes.get(70, "0")), codes["vertices"]
-    if flags & _POLYFACE:
-        places = [_place(v, 0) for v in vertices if int(v.get(70, "0")) & 64]
-        numbers = [
-            [abs(int(v[code])) for code in (71, 72, 73, 74) if int(v.get(code, "0"))]
-            for v in vertices
-            if int(v.get(70, "0")) & 192 == 128
-        ]
-        return [_without_repeats([places[n - 1] for n in face]) for face in numbers]
-    if not flags & _POLYGON_MESH:
-        return []
-    rows, columns = int(codes[71]), int(codes[72])
-    places = [_place(v, 0) for v in vertices if not int(v.get(70, "0")) & 16]
-    if rows * columns != len(places):
-        raise ValueError
-    faces = []
-    for m in range(rows if flags & _CLOSED_M else rows - 1):
-        for n in range(columns if flags & _CLOSED_N else columns - 1):
-            around = [(m, n), (m + 1, n), (m + 1, n + 1), (m, n + 1)]
-            faces.append(_without_repeats([places[r % rows * columns + c % columns] for r, c in around]))
-    return faces
+class _Polyline:
+    """A POLYLINE, whose vertices come one by one. What is wrong in them is an error once the faces are
+    wanted: without an end there are none."""
+
+    def __init__(self, codes: dict, rows: MakeRows):
+        self._codes, self._rows = codes, rows
+        self._waiting: list[dict] = []
+        self._kept: tuple[Rows, Rows] | None = None  # where there are many
+        self._error: ValueError | None = None
+
+    def add(self, vertex: dict) -> None:
+        self._waiting.append(vertex)
+        if len(self._waiting) >= LINES_AT_ONCE:
+            self._kept = self._kept or _no_rows(self._rows)
+            self._move(*self._kept)
+
+    def _move(self, places: Rows, numbers: Rows) -> None:
+        """Moves the vertices that wait: places, and numbers of those of a face, from 1, 0 for none."""
+        vertices, self._waiting = self._waiting, []
+        try:
+            flags = int(self._codes.get(70, "0"))
+            if flags & _POLYFACE:
+                found = [_place(v, 0) for v in vertices if int(v.get(70, "0")) & 64]
+                faces = [v for v in vertices if int(v.get(70, "0")) & 192 == 128]
+                numbers.add(np.array([[_number(v, code) for code in (71, 72, 73, 74)] for v in faces]))
+            elif flags & _POLYGON_MESH:
+                found = [_place(v, 0) for v in vertices if not int(v.get(70, "0")) & 16]
+            else:
+                found = []
+            places.add(np.array(found))
+        except ValueError as error:
+            self._error = self._error or error
+
+    def faces(self) -> Iterator[list[list[list[float]]]]:
+        """The places of the corners of faces, some faces at a time. Raises ValueError, KeyError and
+        IndexError."""
+        kept = self._kept or _no_rows(Rows)
+        self._move(*kept)
+        if self._error:
+            raise self._error
+        places, numbers = (rows.array() for rows in kept)
+        flags = int(self._codes.get(70, "0"))
+        if flags & _POLYFACE:
+            for begin in range(0, len(numbers), LINES_AT_ONCE):
+                some = numbers[begin : begin + LINES_AT_ONCE]
+                used = np.unique(some[some > 0])
+                place = dict(zip(used.tolist(), places[used - 1].tolist(), strict=True))
+                yield [_without_repeats([place[n] for n in face if n]) for face in some.tolist()]
+        elif flags & _POLYGON_MESH:
+            rows, columns = int(self._codes[71]), int(self._codes[72])
+            if rows * columns != len(places):
+                raise ValueError
+            for m in range(rows if flags & _CLOSED_M else rows - 1):
+                two = [places[r * columns : (r + 1) * columns].tolist() for r in (m, (m + 1) % rows)]
+                ends = [(n, (n + 1) % columns) for n in range(columns if flags & _CLOSED_N else columns - 1)]
+                around = [[two[0][n], two[1][n], two[1][k], two[0][k]] for n, k in ends]
+                yield [_without_repeats(face) for face in around]
+
+
+def _no_rows(rows: MakeRows) -> tuple[Rows, Rows]:
+    return rows(np.empty((0, 3))), rows(np.empty((0, 4), np.int64))
+
+
+def _number(vertex: dict, code: int) -> int:
+    return min(abs(int(vertex.get(code, "0"))), _LARGEST)
