@@ -60,7 +60,9 @@ def shapes_of_shapefile(
                 warnings.simplefilter("ignore")  # of sizes in headers that many writers get wrong
                 reader = shapefile.Reader(shp=shp, dbf=dbf, encoding="utf-8", encodingErrors="replace")
             records = reader.iterRecords() if has_table else None
-            for number, shape in enumerate(_shapes(reader.shp_reader), 1):
+            is_new = hasattr(reader, "shp_reader")  # pyshp 3; the vendored one is
+            shapes_there = _shapes(reader.shp_reader) if is_new else reader.iterShapes()
+            for number, shape in enumerate(shapes_there, 1):
                 if number % _STEP == 0:
                     step(1 - _STEP / (number + _STEP))
                 attributes = next(records).as_dict() if records is not None else {}
