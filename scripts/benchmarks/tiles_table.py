@@ -36,7 +36,7 @@ SIZES = (
     "",
 )
 _SURFACES = 10
-_QUADS, _PARTS = 549, 3  # along the side of a stack that fits one machine, and tiles along it
+_QUADS, _PARTS = 549, 4  # along the side of a stack that fits one machine, and tiles along it: 8 a worker
 _TIMES = 2  # each is measured, in turn; the quicker one counts, as others use the machine, too
 _OVERHEAD, _TWO_WORKERS = 1.3, 0.55  # asked
 _UNIT = 316  # quads along one unit of length: a square of it has two million triangles
