@@ -128,28 +128,10 @@ class _Corners:
         return self._rows.array()
 
 
-class _Numbers:
-    """The numbers of a section, one after another. kinds: i int32, s size_t, d float64, of each row."""
+class _Words:
+    """The numbers of a section of text, one after another. kinds: those of _Bytes."""
 
-    at = 0  # the word or byte that comes next
-
-    def take(self, kinds: str, count: int = 1) -> np.ndarray:
-        """(count, len(kinds)) float64. Raises ValueError."""
-        raise NotImplementedError
-
-    def require(self, kinds: str, count: int) -> None:
-        """Raises ValueError where there are not as many rows."""
-        raise NotImplementedError
-
-    def pieces(self, kinds: str, count: int) -> Iterator[np.ndarray]:
-        """The same as take has, some rows at a time."""
-        self.require(kinds, count)
-        for begin in range(0, count, ROWS_AT_ONCE):
-            yield self.take(kinds, min(ROWS_AT_ONCE, count - begin))
-
-
-class _Words(_Numbers):
-    """Those of a section of text."""
+    at = 0  # the word that comes next
 
     def __init__(self, raw: FileBytes, begin: int, end: int, rows: MakeRows):
         values = rows(np.empty(0))
@@ -158,19 +140,23 @@ class _Words(_Numbers):
         self._values = np.asarray(values.array())
 
     def require(self, kinds: str, count: int) -> None:
+        """Raises ValueError where there are not as many rows."""
         if not 0 <= count <= len(self._values):
             raise ValueError(f"{count} entries are announced, the file is cut off")
         if self.at + count * len(kinds) > len(self._values):
             raise ValueError("the file is cut off")
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
+        """(count, len(kinds)) float64. Raises ValueError."""
         self.require(kinds, count)
         begin, self.at = self.at, self.at + count * len(kinds)
         return self._values[begin : self.at].reshape(count, len(kinds))
 
 
-class _Bytes(_Numbers):
-    """Those of a binary section."""
+class _Bytes:
+    """The numbers of a binary section, one after another. kinds: in a row: i int32, s size_t, d float64."""
+
+    at = 0  # the byte that comes next
 
     def __init__(self, raw: FileBytes, begin: int, end: int, order: str):
         self._raw, self._begin, self._size = raw, begin, max(end - begin, 0)
@@ -204,6 +190,16 @@ def _row(order: str, kinds: str) -> np.dtype:
     return np.dtype([(str(k), types[kind]) for k, kind in enumerate(kinds)])
 
 
+_Numbers = _Words | _Bytes
+
+
+def _pieces(read: _Numbers, kinds: str, count: int) -> Iterator[np.ndarray]:
+    """The same as take has, some rows at a time."""
+    read.require(kinds, count)
+    for begin in range(0, count, ROWS_AT_ONCE):
+        yield read.take(kinds, min(ROWS_AT_ONCE, count - begin))
+
+
 def _count(read: _Numbers) -> int:
     return read.line() if isinstance(read, _Bytes) else _whole(read.take("i")[0, 0])
 
@@ -222,7 +218,7 @@ def _few(value: float) -> int:
 
 
 def _nodes_2(read: _Numbers, tags: Rows, places: Rows) -> None:
-    for found in read.pieces("iddd", _count(read)):
+    for found in _pieces(read, "iddd", _count(read)):
         tags.add(found[:, 0])
         places.add(found[:, 1:])
 
@@ -232,9 +228,9 @@ def _nodes_4(read: _Numbers, tags: Rows, places: Rows) -> None:
     for _ in range(_whole(blocks)):
         dimension, _, parametric, count = read.take("iiis")[0]
         more = _few(dimension) if parametric else 0
-        for found in read.pieces("s", _whole(count)):
+        for found in _pieces(read, "s", _whole(count)):
             tags.add(found[:, 0])
-        for found in read.pieces("ddd" + "d" * more, _whole(count)):
+        for found in _pieces(read, "ddd" + "d" * more, _whole(count)):
             places.add(found[:, :3])
 
 
@@ -250,7 +246,7 @@ def _elements_2(read: _Numbers, faces: dict[int, _Corners]) -> None:
         else:
             _, kind, tags = (int(v) for v in read.take("iii")[0])
             rows, first = 1, _few(tags)
-        for found in read.pieces("i" * (first + _NODES[kind]), rows):
+        for found in _pieces(read, "i" * (first + _NODES[kind]), rows):
             if kind in _CORNERS:
                 faces[_CORNERS[kind]].add(found[:, first : first + _CORNERS[kind]])
         done += rows
@@ -260,6 +256,6 @@ def _elements_4(read: _Numbers, faces: dict[int, _Corners]) -> None:
     blocks, *_ = read.take("ssss")[0]
     for _ in range(_whole(blocks)):
         _, _, kind, count = read.take("iiis")[0]
-        for found in read.pieces("s" * (1 + _NODES[int(kind)]), _whole(count)):
+        for found in _pieces(read, "s" * (1 + _NODES[int(kind)]), _whole(count)):
             if kind in _CORNERS:
                 faces[_CORNERS[int(kind)]].add(found[:, 1 : 1 + _CORNERS[int(kind)]])

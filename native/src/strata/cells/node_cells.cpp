@@ -27,7 +27,7 @@ bool is_high(const std::array<double, 3>& lower, const std::array<double, 3>& up
 class MeetingWalls {
 public:
     MeetingWalls(std::span<const WallStretch> stretches, const ConformedFaces& conformed)
-        : first_(conformed.vertex_offsets), line_(first_.size(), kNone) {
+        : conformed_(conformed), line_(conformed.vertex_offsets.size(), kNone) {
         const auto each_end = [&](const auto& visit) {
             for (const WallStretch& s : stretches) {
                 for (std::size_t i = 0; i < 2; ++i) {
@@ -36,19 +36,20 @@ public:
             }
         };
         each_end([&](const End& end) {
-            std::int32_t& line = line_[plan_vertex_of(end.lower)];
+            std::int32_t& line = line_[conformed.plan_vertex_of(end.lower)];
             line = line == kNone || line == end.line ? end.line : kSeveral;
         });
         each_end([&](const End& end) {
-            if (line_[plan_vertex_of(end.lower)] == kSeveral) ends_.push_back(end);
+            if (line_[conformed.plan_vertex_of(end.lower)] == kSeveral) ends_.push_back(end);
         });
         std::ranges::sort(ends_, {}, &End::lower);
     }
     /// Whether a wall of another line has some of a vertical edge.
     bool end_at(std::int32_t lower, std::int32_t upper, std::int32_t line) const {
-        const std::size_t plan_vertex = plan_vertex_of(lower);
+        const std::size_t plan_vertex = conformed_.plan_vertex_of(lower);
         if (line_[plan_vertex] != kSeveral) return false;
-        const std::span there(std::ranges::lower_bound(ends_, first_[plan_vertex], {}, &End::lower),
+        const std::int32_t first = conformed_.vertex_offsets[plan_vertex];
+        const std::span there(std::ranges::lower_bound(ends_, first, {}, &End::lower),
                               std::ranges::lower_bound(ends_, upper, {}, &End::lower));
         return std::ranges::any_of(
             there, [&](const End& end) { return end.upper > lower && end.line != line; });
@@ -61,14 +62,9 @@ private:
         std::int32_t lower, upper, line;
     };
 
-    std::size_t plan_vertex_of(std::int32_t vertex) const {
-        return static_cast<std::size_t>(std::ranges::upper_bound(first_, vertex) - first_.begin()) -
-               1;
-    }
-
-    std::span<const std::int32_t> first_;  ///< vertices of plan vertices
-    std::vector<std::int32_t> line_;       ///< of plan vertices
-    std::vector<End> ends_;                ///< where several lines meet
+    const ConformedFaces& conformed_;
+    std::vector<std::int32_t> line_;  ///< of plan vertices
+    std::vector<End> ends_;           ///< where several lines meet
 };
 
 /// Calls emit(wall) with the walls between cells.

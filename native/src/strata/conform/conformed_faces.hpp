@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,11 @@ struct ConformedFaces {
     std::vector<std::vector<double>> heights;
     static constexpr std::size_t kVerticesTogether = 1 << 11;
     Array<std::array<double, 3>> positions;  ///< empty until set_vertex_positions
+
+    std::size_t plan_vertex_of(std::int32_t vertex) const {
+        const auto next = std::upper_bound(vertex_offsets.begin(), vertex_offsets.end(), vertex);
+        return static_cast<std::size_t>(next - vertex_offsets.begin()) - 1;
+    }
 };
 /// Takes what it needs of the lines: what they have `passed` is given back, and their edges name
 /// the first of their entries from here on.

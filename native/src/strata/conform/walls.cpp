@@ -103,7 +103,8 @@ private:
 
     bool may_have_walls(const Curve& curve) {
         const PlanVertices& plan_vertices = blocks_->plan_vertices;
-        const std::size_t from = plan_vertex_of(curve.start), to = plan_vertex_of(curve.end);
+        const std::size_t from = conformed_.plan_vertex_of(curve.start),
+                          to = conformed_.plan_vertex_of(curve.end);
         const PlanPosition &p = plan_vertices.position[from], &q = plan_vertices.position[to];
         const TileSpan span =
             blocks_->borders.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
@@ -111,12 +112,6 @@ private:
         return blocks_->borders.near(span) &&
                blocks_->borders.run_between(batch_.scope, plan_vertices.representative[from],
                                             plan_vertices.representative[to], span);
-    }
-    std::size_t plan_vertex_of(std::int32_t vertex) const {
-        const auto& first = conformed_.vertex_offsets;
-        return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), vertex) -
-                                        first.begin()) -
-               1;
     }
 
     /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
