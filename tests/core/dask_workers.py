@@ -26,6 +26,32 @@ def local_client(workers):
         yield client
 
 
+@contextlib.contextmanager
+def processes_of_cluster(folder, **paths):
+    """The address of a scheduler with one worker, as a user starts them. paths: where each of `scheduler` and
+    `worker` looks for modules, the project's own by default."""
+    import distributed
+
+    file = folder / "scheduler.json"
+    with contextlib.ExitStack() as ends:
+        for part, *options in (
+            ["scheduler", "--port", "0", "--dashboard-address", ":0"],
+            ["worker", "--nthreads", "1", "--no-dashboard"],
+        ):
+            process = subprocess.Popen(
+                [sys.executable, "-m", "dask", part, *options, "--scheduler-file", file],
+                env=os.environ | {"PYTHONPATH": str(paths.get(part, ROOT / "addon"))},
+                stderr=subprocess.DEVNULL,
+                cwd=folder,
+            )
+            ends.callback(process.wait)
+            ends.callback(process.terminate)
+        with distributed.Client(scheduler_file=file, timeout=30) as client:
+            client.wait_for_workers(1, timeout=30)
+            address = client.scheduler.address
+        yield address
+
+
 class KillsOne:
     """A progress function that kills a worker when it is called with a text first, which says that a task is
     done."""

@@ -4,16 +4,17 @@
 import csv
 import json
 import os
+import re
 import sys
 from concurrent.futures import CancelledError, Future
 
 import numpy as np
 import pytest
-from dask_workers import PROJECT, KillsOne, batch, local_client
+from dask_workers import PROJECT, KillsOne, batch, local_client, processes_of_cluster
 from realmodel.batch.terminal import TimeLeft
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
-from realmodel.distributed.workers import Workers
+from realmodel.distributed.workers import Workers, workers_of
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -191,8 +192,6 @@ def test_without_dask(monkeypatch, tmp_path):
 
 def test_clusters_of_one_machine_stand_beside_each_other(monkeypatch):
     """No port is asked for: a second one would warn of the first one's."""
-    from realmodel.distributed.workers import workers_of
-
     # Dask leaves it in this process, too, after any cluster, and what is there counts
     monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
     with workers_of(None, 1) as one, workers_of(None, 1) as other:
@@ -204,29 +203,75 @@ def test_clusters_of_one_machine_stand_beside_each_other(monkeypatch):
         assert [each["MALLOC_TRIM_THRESHOLD_"] for each in environments] == [str(1 << 28)]
 
 
-def test_a_client_that_is_closed_meanwhile():
-    """What went wrong is raised, not that the other tasks cannot be canceled."""
+class Fake:
+    """A client, or the future of a task."""
 
-    class Lost:
-        status = "cancelled"
+    def __init__(self, **has):
+        self.__dict__.update({"status": "running", "release": lambda: None, **has})
 
-        def add_done_callback(self, call):
-            call(self)
 
-        def done(self):
-            return True
+def raising(error):
+    def call(*_, **__):
+        raise error
 
-        def result(self, _timeout):
-            raise CancelledError
+    return call
 
-    class Closed:
-        def submit(self, *_, **__):
-            return Lost()
 
-        def cancel(self, _):
-            raise RuntimeError("closed")
+def lost():
+    """The future of a task that was given up."""
+    return Fake(done=lambda: True, add_done_callback=lambda call: None, result=raising(CancelledError()))
 
+
+def never_done():
+    return Fake(done=lambda: False, add_done_callback=lambda call: None)
+
+
+@pytest.mark.parametrize(
+    "client",
+    [
+        Fake(submit=lambda *_, **__: lost()),
+        Fake(submit=lambda *_, **__: never_done(), status="closed"),
+        Fake(submit=raising(Exception("Client is closed")), status="closed"),
+        Fake(submit=raising(OSError("no connection"))),
+    ],
+)
+def test_a_client_that_is_closed_meanwhile(client):
     starting = Future()
-    starting.set_result(Closed())
+    starting.set_result(client)
     with pytest.raises(UsageError, match="the scheduler or its workers went away; start again"):
         list(Workers(starting).in_any_order(print, None, [1, 2]))
+
+
+def test_an_error_of_dask_stays_what_it_is():
+    starting = Future()
+    starting.set_result(Fake(submit=raising(TypeError("of Dask"))))
+    with pytest.raises(TypeError, match="of Dask"):
+        list(Workers(starting).in_any_order(print, None, [1, 2]))
+
+
+@pytest.mark.parametrize("part", ["scheduler", "worker"])
+def test_realmodel_is_missing_on_a_cluster(part, tmp_path):
+    """Dask would say so in pages, or in the logs of its workers only, which it loses one after another."""
+    with processes_of_cluster(tmp_path, **{part: tmp_path}) as address:
+        done = batch("--ensemble", 2, "--out", "e", "--scheduler", address, cwd=tmp_path)
+    assert done.returncode == 2
+    said = (
+        rf"build_model.py: the {part} .*lacks RealModel .*No module named 'realmodel'.*: install it there\n"
+    )
+    assert re.fullmatch(said, done.stderr)
+    assert not (tmp_path / "e").exists()
+
+
+def test_a_cluster_as_a_user_starts_it(tmp_path):
+    with processes_of_cluster(tmp_path) as address:
+        done = batch("--ensemble", 2, "--out", "e", "--scheduler", address, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "e" / "ensemble.json").exists()
+
+
+def test_a_worker_with_another_version():
+    answers = {"tcp://one": OSError("lost meanwhile"), "tcp://two": "0.0.1"}
+    client = Fake(run_on_scheduler=lambda _: None, run=lambda *_, **__: answers)
+    said = r"worker tcp://two has RealModel 0\.0\.1: install .* there"
+    with pytest.raises(UsageError, match=said), workers_of(client):
+        pass

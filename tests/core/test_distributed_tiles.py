@@ -5,6 +5,8 @@ import os
 import re
 import subprocess
 import sys
+import threading
+import time
 
 import pytest
 from dask_workers import PROJECT, ROOT, KillsOne, batch, local_client
@@ -152,8 +154,7 @@ def test_what_a_worker_refuses_is_one_line(tmp_path):
 
 
 GONE = """
-import sys, threading, time
-from pathlib import Path
+import sys
 import distributed
 from realmodel.core import UsageError, load_project
 from realmodel.distributed import build
@@ -163,28 +164,44 @@ if __name__ == "__main__":
     cluster = distributed.LocalCluster(n_workers=1, processes=True, dashboard_address=":0")
     client = distributed.Client(cluster)
 
-    def close():
-        while not list(Path(folder).glob("run/built-*.json")):
-            time.sleep(0.02)
-        client.shutdown()
+    def close(_share, text):
+        if "1 of 6 tiles built" in text:
+            client.shutdown()
 
-    threading.Thread(target=close, daemon=True).start()
-    try:
-        build(load_project(project), folder, (35, 30), client)
-    except UsageError as error:
-        print("REFUSED", error, flush=True)
+    for _ in range(2):
+        try:
+            build(load_project(project), folder, (35, 30), client, progress=close)
+        except UsageError as error:
+            print(error, flush=True)
 """
 
 
 def test_a_scheduler_that_goes_away(tmp_path):
-    """In a process of its own: a cluster that ends like this leaves sockets."""
+    """During a run, and before the next. In a process of its own: a cluster that ends like this leaves
+    sockets."""
     (tmp_path / "gone.py").write_text(GONE)
     command = [sys.executable, tmp_path / "gone.py", PROJECT, tmp_path / "t"]
     paths = {"PYTHONPATH": str(ROOT / "addon")}
     done = subprocess.run(
         command, capture_output=True, text=True, check=False, timeout=60, env=os.environ | paths
     )
-    assert "REFUSED" in done.stdout and "start again" in done.stdout, done.stderr
+    said = "the scheduler or its workers went away; start again: what is done stays"
+    assert done.stdout.splitlines() == [said, said], done.stderr
+
+
+def test_a_cancelled_run_has_ended(client, monkeypatch, tmp_path):
+    """Nothing uses the client or the folder any more, though what reads is between two looks at `cancel`."""
+    reading = threading.Event()
+
+    def slow(*_):
+        reading.set()
+        time.sleep(0.5)
+
+    monkeypatch.setattr(client, "replicate", slow)
+    with pytest.raises(Cancelled):
+        run(tmp_path / "t", client, cancel=reading.is_set)
+    assert "realmodel work" not in [thread.name for thread in threading.enumerate()]
+    assert not (tmp_path / "t").exists()
 
 
 def test_files_are_read_by_workers(client, tmp_path):

@@ -274,6 +274,13 @@ def run(
     return result
 
 
+def wait_for_stopped() -> None:
+    """Waits until tasks that were asked to stop have ended: they use what their caller gave them."""
+    for thread in _leaving:
+        if thread is not threading.current_thread():
+            thread.join()
+
+
 _current = threading.local()  # work: of the job that this thread does
 _leaving: list[threading.Thread] = []  # asked to stop, but perhaps still running
 

@@ -29,6 +29,7 @@ from ..core.tiles.settling import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
 from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
 from ..core.validation import PLACES_OF_REPORT
+from ..core.work import wait_for_stopped
 
 RUN = "run"  # what only a run needs, in the folder
 _DIGEST = "digest"  # in there: of all that the result depends on
@@ -60,7 +61,10 @@ def mapped_arrays(folder: Path) -> Iterator[MappedArrays]:
         made = [each for each in (run_folder, folder) if not each.exists()]
     try:
         with MappedArrays(run_folder / f"inputs-{secrets.token_hex(8)}") as arrays:
-            yield arrays
+            try:
+                yield arrays
+            finally:
+                wait_for_stopped()  # what reads surfaces writes here, and uses the workers
     finally:
         for each in made:
             with suppress(OSError):

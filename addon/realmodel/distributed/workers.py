@@ -15,6 +15,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ..core import Cancelled, UsageError
+from ..core.work import native_module
 
 _POLL_SECONDS = 0.2
 _FETCH_SECONDS = 120.0  # for a result, before it counts as lost: its task is done again
@@ -32,16 +33,26 @@ _SETTINGS = {
 # Dask has the C library give back memory bit by bit, and as it is it gives back each large array: a tenth of
 # a processor, as the next array asks for it again. So it stays in one heap, of which the end is given back
 _HEAP = {"MALLOC_ARENA_MAX": 1, "MALLOC_MMAP_THRESHOLD_": 1 << 32, "MALLOC_TRIM_THRESHOLD_": 1 << 28}
+_LOGGERS = "distributed", "distributed.client"  # which Dask gives levels of their own
 _LOST = 4  # workers at the same task, before Dask gives it up (distributed.scheduler.allowed-failures)
 
 
 def connected(address: str):
-    """The client of a running scheduler. Raises UsageError."""
+    """The client of a running scheduler, for a program that says in one line that it went away: from now on
+    Dask logs nothing in this process. Raises UsageError."""
     distributed = _distributed()
+    for name in _LOGGERS:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        return distributed.Client(address, timeout=10)
+        client = distributed.Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise UsageError(f"no scheduler of Dask answers at {address}") from error
+    try:
+        _require_this_version(client)
+    except BaseException:
+        client.close()
+        raise
+    return client
 
 
 class Workers:
@@ -88,41 +99,52 @@ class Workers:
 def _on_workers(client, function, shared, tasks: Iterable, cancel, following) -> Iterator[tuple]:
     """As Workers.in_any_order."""
     distributed = _distributed()
-    with _any_size():
-        # and not client.scatter: what this gives to workers is lost with them
-        everywhere = client.submit(pickle.loads, pickle.dumps(shared), pure=False)
-    with contextlib.suppress(Exception):  # workers that lack it ask others for it, but then they wait for it
-        distributed.wait(everywhere, _FETCH_SECONDS if client.nthreads() else 0)
-        client.replicate(everywhere)
     one_is_done = threading.Event()
+    latest = time.monotonic()
 
-    def submitted(task, priority: int):
-        future = client.submit(function, everywhere, task, pure=False, priority=priority)
+    def submitted(function: Callable, *arguments, priority: int = 0):
+        with _connection(client):
+            future = client.submit(function, *arguments, pure=False, priority=priority)
         future.add_done_callback(lambda _: one_is_done.set())
         return future
 
-    waiting = {submitted(task, 0): task for task in tasks}
-    latest = time.monotonic()
-    try:
-        while waiting:
-            _check(cancel)
-            if time.monotonic() - latest > _WITHOUT_RESULT:
-                latest = time.monotonic()
+    def done_of(waiting: Iterable) -> list:
+        """Those of some futures that are done, after a short while at most."""
+        nonlocal latest
+        _check(cancel)
+        if client.status == "closed":  # some futures of a client that closes are never done
+            raise _gone()
+        if time.monotonic() - latest > _WITHOUT_RESULT:
+            latest = time.monotonic()
+            with _connection(client):
                 if not client.nthreads():
                     raise UsageError("Dask has no workers left; start again: what is done stays")
-            one_is_done.wait(_POLL_SECONDS)
-            one_is_done.clear()
-            for future in [future for future in waiting if future.done()]:
+        one_is_done.wait(_POLL_SECONDS)
+        one_is_done.clear()
+        return [future for future in waiting if future.done()]
+
+    with _any_size():
+        # and not client.scatter: what this gives to workers is lost with them
+        everywhere = submitted(pickle.loads, pickle.dumps(shared))
+    while not done_of([everywhere]):
+        pass
+    with contextlib.suppress(Exception):  # workers that lack it ask others for it, but then they wait for it
+        client.replicate(everywhere)
+    waiting = {submitted(function, everywhere, task): task for task in tasks}
+    try:
+        while waiting:
+            for future in done_of(waiting):
                 result = _result(distributed, future)
                 if result is _LOST_RESULT:
                     continue
                 task = waiting.pop(future)
                 yield task, result
-                waiting.update((submitted(next_one, 1), next_one) for next_one in following(task))
+                for next_one in following(task):
+                    waiting[submitted(function, everywhere, next_one, priority=1)] = next_one
                 latest = time.monotonic()
     finally:
-        with contextlib.suppress(Exception):  # of a client that is closed: what went wrong is raised
-            client.cancel(list(waiting))
+        for future in waiting:
+            future.release()  # and not client.cancel, which waits for an answer
 
 
 def _check(cancel) -> None:
@@ -143,6 +165,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
     They listen on free ports of this machine alone, so that several of them run beside each other."""
     starting = concurrent.futures.Future()
     if client is not None:
+        _require_this_version(client)
         starting.set_result(client)
         yield Workers(starting)
         return
@@ -191,6 +214,43 @@ def _ready() -> None:
     """On a worker: what all tasks import is there when this is."""
 
 
+def _require_this_version(client) -> None:
+    """Dask has its scheduler and its workers import what a task calls. Raises UsageError where they cannot,
+    or would call another version's."""
+    version = _version()
+    with _connection(client):
+        try:
+            client.run_on_scheduler(_ready)
+        except ImportError as error:
+            text = f"the scheduler lacks RealModel {version} ({error}): install it there"
+            raise UsageError(text) from error
+        of_workers = client.run(_version, on_error="return")
+    for address, there in of_workers.items():
+        if isinstance(there, OSError):
+            continue  # a worker that is lost
+        if isinstance(there, Exception):
+            text = f"the worker {address} lacks RealModel {version} ({there}): install it there"
+            raise UsageError(text) from there
+        if there != version:
+            text = f"the worker {address} has RealModel {there}: install {version} there, which this is"
+            raise UsageError(text)
+
+
+def _version() -> str:
+    return native_module().VERSION
+
+
+@contextlib.contextmanager
+def _connection(client) -> Iterator[None]:
+    """Raises UsageError where a client has lost its scheduler or is closed, for what it raises then."""
+    try:
+        yield
+    except Exception as error:  # its type is another one in each version of Dask
+        if client.status == "running" and not isinstance(error, OSError):
+            raise
+        raise _gone() from error
+
+
 def _result(distributed, future):
     """Of a task that is done. _LOST_RESULT: its worker was lost before the result was fetched, and Dask has
     the task done again."""
@@ -204,8 +264,11 @@ def _result(distributed, future):
             raise
         if isinstance(error, distributed.TimeoutError):
             return _LOST_RESULT
-        text = "the scheduler or its workers went away; start again: what is done stays"
-        raise UsageError(text) from error
+        raise _gone() from error
+
+
+def _gone() -> UsageError:
+    return UsageError("the scheduler or its workers went away; start again: what is done stays")
 
 
 def _distributed():
