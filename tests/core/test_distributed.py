@@ -177,11 +177,11 @@ def test_wrong_usage(arguments, said, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_scheduler_that_does_not_answer(monkeypatch):
-    from realmodel.distributed import workers
-
-    with pytest.raises(UsageError, match="no scheduler"):
-        workers.connected("nowhere")
+def test_a_scheduler_that_does_not_answer(tmp_path):
+    """In a process of its own: what Dask leaves of a client that was not there stops the next one's start."""
+    done = batch("--ensemble", 2, "--out", "e", "--scheduler", "nowhere", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == "build_model.py: no scheduler of Dask answers at nowhere\n"
 
 
 def test_without_dask(monkeypatch, tmp_path):
