@@ -14,7 +14,7 @@ from dask_workers import PROJECT, KillsOne, batch, local_client, processes_of_cl
 from realmodel.batch.terminal import TimeLeft
 from realmodel.core import Cancelled, OutputFailed, UsageError, load_project
 from realmodel.core import ensembles as core_ensembles
-from realmodel.distributed.workers import Workers, workers_of
+from realmodel.distributed.workers import Workers, require_this_version, workers_of
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -272,6 +272,5 @@ def test_a_cluster_as_a_user_starts_it(tmp_path):
 def test_a_worker_with_another_version():
     answers = {"tcp://one": OSError("lost meanwhile"), "tcp://two": "0.0.1"}
     client = Fake(run_on_scheduler=lambda _: None, run=lambda *_, **__: answers)
-    said = r"worker tcp://two has RealModel 0\.0\.1: install .* there"
-    with pytest.raises(UsageError, match=said), workers_of(client):
-        pass
+    with pytest.raises(UsageError, match=r"worker tcp://two has RealModel 0\.0\.1: install .* there"):
+        require_this_version(client)

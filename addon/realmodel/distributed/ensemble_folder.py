@@ -17,7 +17,7 @@ from ..core.atomic import Outputs
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
-from .workers import workers_of
+from .workers import require_this_version, workers_of
 
 _BATCHES = "batches"
 _BUILT = 0.05  # of the time: the model that all realizations start from
@@ -48,6 +48,7 @@ def ensemble(
     OutputFailed.
     """
     check_request(realizations, seed, correlation)
+    require_this_version(client)
     progress = progress or (lambda _share, _text: None)
     model = build(
         project,

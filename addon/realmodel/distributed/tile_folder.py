@@ -56,7 +56,7 @@ from .run_folder import (
     write_tile,
 )
 from .tile_inputs import Prepared, divided, prepared
-from .workers import Workers, no_workers, workers_of
+from .workers import Workers, no_workers, require_this_version, workers_of
 
 _PREPARED, _JOINED = 0.25, 0.97  # of the time
 _BUILT = 0.6  # of the time of a tile
@@ -89,6 +89,8 @@ def build(
     progress = progress or (lambda _share, _text: None)
     require_own(folder)
     is_finished = (folder / CATALOG).exists()
+    if not is_finished:
+        require_this_version(client)
     with no_workers() if is_finished else workers_of(client, workers) as done_by:
         if project.faults or project.bodies:
             return build_faulted(project, folder, size, cells, done_by, progress, cancel)

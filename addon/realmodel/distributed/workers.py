@@ -44,15 +44,33 @@ def connected(address: str):
     for name in _LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client = distributed.Client(address, timeout=10)
+        return distributed.Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise UsageError(f"no scheduler of Dask answers at {address}") from error
-    try:
-        _require_this_version(client)
-    except BaseException:
-        client.close()
-        raise
-    return client
+
+
+def require_this_version(client) -> None:
+    """Dask has its scheduler and its workers import what a task calls. Raises UsageError where those of a
+    client cannot, or would call another version's. None: there is no client."""
+    if client is None:
+        return
+    version = _version()
+    with _connection(client):
+        try:
+            client.run_on_scheduler(_ready)
+        except ImportError as error:
+            text = f"the scheduler lacks RealModel {version} ({error}): install it there"
+            raise UsageError(text) from error
+        of_workers = client.run(_version, on_error="return")
+    for address, there in of_workers.items():
+        if isinstance(there, OSError):
+            continue  # a worker that is lost
+        if isinstance(there, Exception):
+            text = f"the worker {address} lacks RealModel {version} ({there}): install it there"
+            raise UsageError(text) from there
+        if there != version:
+            text = f"the worker {address} has RealModel {there}: install {version} there, which this is"
+            raise UsageError(text)
 
 
 class Workers:
@@ -165,7 +183,6 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
     They listen on free ports of this machine alone, so that several of them run beside each other."""
     starting = concurrent.futures.Future()
     if client is not None:
-        _require_this_version(client)
         starting.set_result(client)
         yield Workers(starting)
         return
@@ -212,28 +229,6 @@ def _any_size() -> contextlib.AbstractContextManager:
 
 def _ready() -> None:
     """On a worker: what all tasks import is there when this is."""
-
-
-def _require_this_version(client) -> None:
-    """Dask has its scheduler and its workers import what a task calls. Raises UsageError where they cannot,
-    or would call another version's."""
-    version = _version()
-    with _connection(client):
-        try:
-            client.run_on_scheduler(_ready)
-        except ImportError as error:
-            text = f"the scheduler lacks RealModel {version} ({error}): install it there"
-            raise UsageError(text) from error
-        of_workers = client.run(_version, on_error="return")
-    for address, there in of_workers.items():
-        if isinstance(there, OSError):
-            continue  # a worker that is lost
-        if isinstance(there, Exception):
-            text = f"the worker {address} lacks RealModel {version} ({there}): install it there"
-            raise UsageError(text) from there
-        if there != version:
-            text = f"the worker {address} has RealModel {there}: install {version} there, which this is"
-            raise UsageError(text)
 
 
 def _version() -> str:
