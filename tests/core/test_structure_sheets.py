@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
-from realmodel.core.structures.between_sheets import common_lines, torn_triangles
+from realmodel.core.structures.between_sheets import common_lines, places_between
 from realmodel.core.structures.families import around_tips, families
 from realmodel.core.structures.rock_structure import RockStructure
 from realmodel.core.structures.sides import RockFaults
@@ -46,18 +46,25 @@ def test_lines_in_the_plane_of_a_triangle_are_divided_where_they_leave_it():
 
 @pytest.mark.parametrize(("height", "is_torn"), [(1.5, True), (0.5, False), (2.5, False)])
 def test_what_lies_between_two_sheets_tears_them(height, is_torn):
-    nodes, triangles = LEVEL[:, :2], np.array([[0, 1, 2]])
-    level = np.array([[[-20.0, -20, 1.5], [40, -20, 1.5], [5, 60, 1.5]]])
-    level[:, :, 2] = height
-    sheets = np.full(3, 1.0), np.full(3, 2.0)
+    """Of three pairs of triangles the last two: it passes beside the first one."""
+    low = LEVEL + np.array([[[100.0, 0, 1]], [[0, 0, 1]], [[1, 0, 1]]])
+    high = low + np.array([0, 0, 1.0])
+    level = np.array([[[-20.0, -20, height], [40, -20, height], [5, 60, height]]])
+    for pair in ((low, high), (high, low)):
+        number, places = places_between(*pair, level, Between(5.0, 5.001))
+        assert set(number.tolist()) == ({1, 2} if is_torn else set())
+        assert len(places) == len(number) and (places[:, 2] == height).all()
+        assert Between(5.0, 5.001)(places).all()
+    assert not len(places_between(low, high, level, Between(11.5, 12.0))[0])
 
-    def everywhere(points):
-        return np.ones(len(points), bool)
 
-    for pair in (sheets, sheets[::-1]):
-        found = torn_triangles(nodes, triangles, pair, level, Between(5.0, 5.001), everywhere)
-        assert found.tolist() == [is_torn]
-    assert not torn_triangles(nodes, triangles, sheets, level, Between(11.0, 12.0), everywhere).any()
+def test_what_only_touches_one_of_two_sheets_lies_not_between_them():
+    low = LEVEL[None] + np.array([0, 0, 1.0])
+    high = low + np.array([[[0, 0, 1e-12], [0, 0, 1e-12], [0, 0, 1.0]]])
+    upright = np.array([[[-20.0, 0.0, -30], [40, 0.0, -30], [5, 0.0, 40]]])
+    assert not len(places_between(low, high, upright, Between(-9.0, 19.0))[0])
+    number, places = places_between(low, high, upright + np.array([0, 0.1, 0]), Between(-9.0, 19.0))
+    assert (number == 0).all() and len(number) and places[:, 1] == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +125,8 @@ def test_triangles_over_one_another_have_a_common_area():
 def test_lines_between_triangles_are_in_what_they_have_in_common():
     low = np.array([[0.0, 0, 0], [4, 0, 4], [0, 4, 0]])
     high = np.array([[2.0, 0, 9], [2, 6, 9], [-4, 0, 9]])
-    begin, end = common_lines(low, high)
+    apart = high + np.array([20, 0, 0])
+    begin, end = common_lines(np.array([low, low]), np.array([apart, high]))
     assert np.array_equal(begin[:, :2], end[:, :2])
     assert np.allclose(begin[:, 2], begin[:, 0])
     assert np.allclose(end[:, 2], 9)

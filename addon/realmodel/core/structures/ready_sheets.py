@@ -127,10 +127,9 @@ class ReadyMesh:
         left, right = (np.flatnonzero(own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
         corners = [self.vertices[self.triangles[some]] for some in (left, right)]
         pairs = overlapping_pairs(*(each[:, :, :2] for each in corners))
-        lines = [common_lines(corners[0][one], corners[1][other]) for one, other in pairs]
-        if not lines:
+        if not len(pairs):
             return found
-        begin, end = np.concatenate(lines, axis=1)
+        begin, end = common_lines(corners[0][pairs[:, 0]], corners[1][pairs[:, 1]])
         faults = self.entry.structure.faults
         is_missed = np.isnan(hit_shares(begin, end, faults.shapes[fault]))
         if is_missed.any():

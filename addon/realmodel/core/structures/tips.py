@@ -15,7 +15,7 @@ import numpy as np
 
 from ..algebra import norm
 from ..work import Work, native_module
-from .between_sheets import torn_triangles
+from .between_sheets import places_between
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .triangles import (
@@ -308,29 +308,48 @@ def _draw_between(
         some = differ[_met(work, fault, low, high, differ, threads) == _PASSES] if fault.dies_out else ()
         if not len(some):
             continue
-        corners = [np.column_stack([plan, np.nan_to_num(z)])[some.ravel()] for z in found.values()]
-        asked = fault_sides(work, np.concatenate(corners), fault, threads)
-        side = dict(zip(found, asked.reshape(len(found), -1, 3), strict=True))
-        for one, other in _pairs(found, number):
+        pairs = list(_pairs(found, number))
+        side, corners = _corners_with_sides(work, plan, some, found, fault, threads)
+        asked, numbers = [], []
+        for one, other in pairs:
             both = np.column_stack([side[one], side[other]])
-            heights = found[one][some], found[other][some]
+            heights = corners[one], corners[other]
             apart = (both != both[:, :1]).any(axis=1) & np.isfinite(heights).all(axis=(0, 2))
-            few = some[apart & (heights[0] != heights[1]).any(axis=1)]
-            if not len(few):
+            numbers.append(np.flatnonzero(apart & (heights[0] != heights[1]).any(axis=1)))
+            asked.append(np.concatenate([each[numbers[-1]] for each in heights], axis=1))
+        # what lies between two triangles is the same for all pairs of sheets that have these
+        which = np.concatenate([np.empty(0, np.int64), *numbers])
+        rows = np.column_stack([which, np.concatenate([np.empty((0, 6)), *asked])])
+        rows, of_row = np.unique(rows, axis=0, return_inverse=True)
+        there = np.repeat(plan[some[rows[:, 0].astype(np.int64)]][:, None], 2, axis=1)
+        one, other = np.concatenate([there, rows[:, 1:].reshape(-1, 2, 3, 1)], axis=3).transpose(1, 0, 2, 3)
+        owner, places = places_between(one, other, others, within)
+        sides = [fault_sides(work, places, shape, threads) for shape in faults]
+        first = 0
+        for (one, other), own in zip(pairs, numbers, strict=True):
+            its = of_row.ravel()[first : first + len(own)]
+            first += len(own)
+            is_there = np.ones(len(places), bool)
+            for n, given in enumerate(sides):
+                if n != number and (its_side := one[n] or other[n]):
+                    is_there &= given == its_side
+            torn = some[own[np.isin(its, owner[is_there])]]
+            if not len(torn):
                 continue
-            rest = [n for n in range(len(faults)) if n != number]
-            asked = [(faults[n], one[n] or other[n]) for n in rest]
-
-            def on_sides(points, asked=asked):
-                sides = [fault_sides(work, points, shape, threads) == side for shape, side in asked if side]
-                return np.all(sides, axis=0) if sides else np.ones(len(points), bool)
-
-            torn = few[torn_triangles(plan, few, (found[one], found[other]), others, within, on_sides)]
-            for sides in (one, other):
-                is_torn = is_torn or not near[sides][torn].all()
-                near[sides][torn] = True
+            for sides_of_sheet in (one, other):
+                is_torn = is_torn or not near[sides_of_sheet][torn].all()
+                near[sides_of_sheet][torn] = True
             drawn.let_be_equal(number, torn)
     return not drawn.is_settled() or is_torn
+
+
+def _corners_with_sides(work: Work, plan, triangles, sheets: dict, fault: FaultShape, threads: int):
+    """By the sides of each sheet, of the corners of some triangles (T, 3): on which side of a fault they are,
+    and their heights."""
+    heights = {sides: z[triangles] for sides, z in sheets.items()}
+    places = [np.column_stack([plan[triangles.ravel()], np.nan_to_num(z.ravel())]) for z in heights.values()]
+    side = fault_sides(work, np.concatenate(places), fault, threads)
+    return dict(zip(sheets, side.reshape(len(sheets), -1, 3), strict=True)), heights
 
 
 def _pairs(sheets: dict, number: int):
