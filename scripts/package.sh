@@ -11,6 +11,13 @@
 #     --pythons       the versions to compile for
 #     --skip-missing  leave out a version whose headers cannot be had, and say so, instead of failing
 #     --into FOLDER   default: dist
+#     --help          prints this text
+#
+# What takes how long, in times of a first scripts/build.sh: linux-x64 takes the core and the module of this
+# machine's Python from build/release, where scripts/build.sh made them, and compiles the bindings for each other
+# version: 0.2 each. windows-x64 and macos-arm64 have compilers of their own, so they compile the core, too,
+# once for all versions: 1, and 0.2 for each version; first they fetch and build their tools and libraries. What
+# is compiled stays in build/, and the second time takes seconds.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
@@ -29,6 +36,10 @@ while (($# > 0)); do
             ;;
         --pythons) pythons=${2:?package.sh: --pythons needs versions} && shift ;;
         --skip-missing) skip_missing=yes ;;
+        -h | --help)
+            sed -n '3,/^set -/{s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+            exit
+            ;;
         --into) into=${2:?package.sh: --into needs a folder} && shift ;;
         *)
             echo 'usage: package.sh [--platform linux-x64|windows-x64|macos-arm64]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2

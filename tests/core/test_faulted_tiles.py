@@ -249,7 +249,7 @@ def test_fine_meshes_need_a_part_of_the_triangles_only(cells, dies_out, tmp_path
     def look(windows, store, name, cancel, farther):
         real(windows, store, name, cancel, farther)
         seen.append(farther)
-        window = faulted_folder._window(store.parts(name) / "window.pickle")
+        window = faulted_folder._window(store.parts(name) / faulted_folder._WINDOW)
         used = sum(len(triangles) for _, triangles in window.inputs[0].surfaces)
         assert used < 0.55 * sum(len(triangles) for _, triangles in whole.rock_inputs[0].surfaces)
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Models with faults and bodies: closed cells, and at every point what the closed form says."""
 
+import dataclasses
+import itertools
 import sys
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import pytest
 from realmodel.batch.table import volume_table
 from realmodel.core import (
     Body,
+    BuildFailed,
     Fault,
     InputRefused,
     NotEnoughMemory,
@@ -22,6 +25,7 @@ from realmodel.core import (
 from realmodel.core.exporters.report import model_report
 from realmodel.core.residuals import residuals
 from realmodel.core.rules import RULES
+from realmodel.core.structures import setup
 from realmodel.core.structures.displacement import displacements
 from realmodel.core.structures.located import OUTSIDE, Locator
 from realmodel.core.structures.proof import closed_forms
@@ -480,3 +484,29 @@ def test_what_else_takes_a_project_with_faults():
     cut = model.cut_by_plane((0, 5, 0), (0, 1, 0))
     assert set(cut.above.cell_compartment) == set(model.cell_compartment)
     assert volume_deviations(model)[0] >= 0
+
+
+def test_parts_that_never_settle_are_refused(monkeypatch):
+    """Each round of sheets that reach beyond the divided box finds new parts."""
+    depths, parts = itertools.count(1), itertools.count(1)
+    real_box, real_divide = setup.box_around, setup.divide
+
+    def farther(inputs, structures, has_sheets=False):
+        low, high = real_box(inputs, structures, has_sheets)
+        return np.array([low - [0, 0, next(depths) if has_sheets else 0], high])
+
+    def other_parts(work, structures, box, threads):
+        found = real_divide(work, structures, box, threads)
+        sides = np.concatenate([found.sides, found.sides[:1].repeat(next(parts), axis=0)])
+        return dataclasses.replace(found, sides=sides)
+
+    monkeypatch.setattr(setup, "box_around", farther)
+    monkeypatch.setattr(setup, "divide", other_parts)
+    surface = Surface("S", points=[[x, y, 0.1 * x] for x in range(9) for y in range(9)])
+    region = [[0, 0], [8, 0], [8, 8], [0, 8]]
+    fault = Fault("F", *plane_fault(4.1, z=(-20.0, 20.0), y=(-9.0, 20.0)))
+    project = Project(
+        "P", [Rock("R", [surface], region=region, edge_length=2.0, base_elevation=-5.0)], faults=[fault]
+    )
+    with pytest.raises(BuildFailed, match="new parts each time"):
+        build(project)

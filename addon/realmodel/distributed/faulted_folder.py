@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import hashlib
-import pickle
 from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -36,12 +35,13 @@ from .run_folder import (
     stem,
     write_tile,
 )
+from .stored_objects import read_object, write_object
 from .tile_inputs import SurfaceReader
 from .workers import Workers
 
 _PREPARED, _BUILT = 0.4, 0.97  # of the time
 _ROUNDS = 4  # in which tiles are built again from more around them, at last from everything
-_WINDOW = "window.pickle"
+_WINDOW = "window"
 
 
 def build_faulted(
@@ -130,7 +130,7 @@ def _write_windows(windows: Windows, frame: Frame, store: Store, cancel) -> list
 def _write_window(windows: Windows, store: Store, name: Name, cancel, farther: int | None) -> None:
     window = run(lambda work: windows.window(work, name, farther), cancel=cancel)
     with Outputs() as outputs, outputs.file(store.parts(name) / _WINDOW) as file:
-        pickle.dump(window, file, pickle.HIGHEST_PROTOCOL)
+        write_object(window, file)
 
 
 def _build_tiles(shared, waiting: list[Name], count: int, workers: Workers, progress, cancel) -> None:
@@ -168,10 +168,9 @@ def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
 
 
 def _window(path: Path) -> Window:
-    try:
-        window = pickle.loads(path.read_bytes())
-    except (OSError, pickle.UnpicklingError, EOFError) as error:
-        raise BuildFailed(f"{path}: cannot be read; delete it and start again") from error
+    window = read_object(path)
+    if not isinstance(window, Window):
+        raise BuildFailed(f"{path}: is not a window of a tile; delete it and start again")
     window.number_sheets()
     return window
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..algebra import norm
 from ..build_warning import BuildWarning
+from ..errors import BuildFailed
 from ..mapped_arrays import Keep, as_it_is
 from ..project import Project
 from ..rock_input import RockInput, mesh_rock, read_rocks
@@ -46,7 +47,8 @@ def make_structures(
     returns the parts of space. Progress goes from `start` to `end`.
 
     faults, bodies: those of the project, with arrays. joins: whether `entry.surfaces` gets the sheets of each
-    surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused.
+    surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused, and
+    BuildFailed where the parts never settle.
     """
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
@@ -68,6 +70,11 @@ def make_structures(
         structures = divide(work, structures, box, threads)
         if np.array_equal(structures.sides, before):
             break
+    else:
+        raise BuildFailed(
+            "the faults divide space in new parts each time that the surfaces are made in these; "
+            "give points of the surfaces in all compartments, or extend the faults"
+        )
     if joins:
         for entry in inputs:
             for number in range(len(entry.surfaces)):

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects in files: what comes back, and that no file runs code."""
+
+import io
+import json
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from realmodel.core import BuildFailed, Fault
+from realmodel.core.mapped_arrays import write_mapped
+from realmodel.core.structures.sides import FaultShape
+from realmodel.distributed.stored_objects import read_object, write_object
+
+
+def stored(value, tmp_path):
+    file = tmp_path / "object"
+    with file.open("wb") as out:
+        write_object(value, out)
+    return read_object(file)
+
+
+def test_objects_come_back_with_their_types_and_identities(tmp_path):
+    corners, triangles = np.arange(9.0).reshape(3, 3), np.array([[0, 1, 2]], np.int32)
+    fault = Fault("F", corners, triangles, ends_at=("G",))
+    shape = FaultShape(corners, triangles, True)
+    given = {"fault": fault, 3: [shape, (shape, None)], (1, 2): Path("a/b"), "x": [0.1, np.inf, np.int64(7)]}
+    found = stored(given, tmp_path)
+    assert list(found) == ["fault", 3, (1, 2), "x"]
+    assert type(found["fault"]) is Fault and found["fault"].ends_at == ("G",)
+    first, (second, nothing) = found[3]
+    assert first is second and nothing is None and type(first) is FaultShape and first.dies_out is True
+    assert first.vertices is found["fault"].vertices
+    assert first.triangles.dtype == np.int32
+    np.testing.assert_array_equal(first.vertices, corners)
+    assert found[(1, 2)] == Path("a/b")
+    assert found["x"] == [0.1, np.inf, 7]
+
+
+def test_objects_of_others_are_not_written():
+    with pytest.raises(TypeError, match="StringIO"):
+        write_object([io.StringIO()], io.BytesIO())
+
+
+class Harmful:
+    def __reduce__(self):
+        return Path.touch, (Path("harmed"),)
+
+
+def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "object"
+    file.write_bytes(pickle.dumps(Harmful()))
+    with pytest.raises(BuildFailed, match="cannot be read; delete it"):
+        read_object(file)
+    assert not (tmp_path / "harmed").exists()
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["os:system", ".core.atomic:Path", ".core.build:build", ".core.nothing:X", ".core.structures.sides"],
+)
+def test_only_classes_of_the_package_are_made(kind, tmp_path):
+    file = tmp_path / "object"
+    text = json.dumps([[[kind, []]], [0]]).encode()
+    with file.open("wb") as out:
+        write_mapped({"objects": np.frombuffer(text, np.uint8)}, out)
+    with pytest.raises(BuildFailed, match="cannot be read"):
+        read_object(file)
