@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -152,19 +153,38 @@ def blended(
     compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
     weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
     """
-    result = {}
-    for sides, own in heights.items():
-        total, whole = np.zeros(len(own)), np.zeros(len(own))
-        for other, z in heights.items():
-            share = near[other].astype(float)
-            for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
-                alike = side == its  # where one has no such fault: on the side that the other is on
-                if not alike and 0 in (side, its):
-                    alike = on_side[sides if side else other][fault]
-                share = share * np.where(alike, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
-            total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
-        result[sides] = np.where(near[sides], total / np.where(whole > 0, whole, 1.0), own)
+    result = {sides: own.copy() for sides, own in heights.items()}
+    ramped = np.array([weight < 1.0 for weight in weights])
+    patterns, of_node = np.unique(ramped, axis=1, return_inverse=True)
+    for pattern, some in zip(patterns.T, _groups(of_node.ravel()), strict=True):
+        # where all of a fault's weights are 1, what is on its other side has no share
+        distinct = [fault for fault, is_ramped in enumerate(pattern) if not is_ramped]
+        there = {sides: near[sides][some] for sides in heights}
+        there = {sides: own for sides, own in there.items() if own.any()}
+        for sides, own in there.items():
+            total, whole = np.zeros(len(some)), np.zeros(len(some))
+            for other in there:
+                if any(sides[fault] * other[fault] < 0 for fault in distinct):
+                    continue
+                share = there[other].astype(float)
+                for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
+                    alike = side == its  # where one has no such fault: on the side that the other is on
+                    if not alike and 0 in (side, its):
+                        alike = on_side[sides if side else other][fault][some]
+                    elif alike and fault in distinct:
+                        continue
+                    half = 0.5 * weight[some]
+                    share = share * np.where(alike, 0.5 + half, 0.5 - half)
+                z = heights[other][some]
+                total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
+            result[sides][some[own]] = total[own] / np.where(whole > 0, whole, 1.0)[own]
     return result
+
+
+def _groups(number: np.ndarray) -> list[np.ndarray]:
+    """The places of each number in an array (N,) of all numbers from 0."""
+    order = np.argsort(number, kind="stable")
+    return np.split(order, np.cumsum(np.bincount(number))[:-1])
 
 
 def with_equal_ends(
@@ -183,13 +203,20 @@ def with_equal_ends(
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
         return dict.fromkeys(heights, first)
-    on_side = {}
-    for sides, z in heights.items():
-        at = np.nan_to_num(np.column_stack([plan, z]))
-        on_side[sides] = [
-            (side == 0) | (fault_sides(work, at, fault, threads) == side)
-            for fault, side in zip(faults, sides, strict=True)
-        ]
+    ends = [
+        [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
+        for fault in faults
+    ]
+    side_of = _sides_of_nodes(work, plan, heights, faults, threads)
+    on_side = {
+        sides: [(side == 0) | (of == side) for side, of in zip(sides, side_of[sides], strict=True)]
+        for sides in heights
+    }
+    of_branches = {
+        sides: {branch: of[branch].copy() for branch, own in enumerate(ends) if own}
+        for sides, of in side_of.items()
+    }
+    del side_of
     passed = [np.zeros(len(plan), bool) for _ in faults]
     for _ in range(2):  # what is passed between nodes alone is near, too
         near = {
@@ -208,39 +235,87 @@ def with_equal_ends(
             nodes[some] = True
     every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
     continuations = [_continued(fault, box_of(every)) for fault in faults]
-    ends = [
-        [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
-        for fault in faults
-    ]
-    drawn = _Drawn(plan, ramps, ends, near, _sides_of_branches(work, plan, heights, faults, ends, threads))
-    looked_at: dict[tuple, np.ndarray] = {}
+    drawn = _Drawn(plan, ramps, ends, near, of_branches)
+    looked_at: dict[int, np.ndarray] = {}
     while True:
         found = blended(heights, near, on_side, drawn.weights)
+        places = _places_of(plan, [np.where(known, z, 0.0) for z in found.values()])
         for number, fault in enumerate(faults):
-            for sides, z in found.items():
-                some = doubtful[number]
-                some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
-                if np.array_equal(looked_at.get((number, sides)), z[some]):
-                    continue
-                looked_at[number, sides] = z[some]
-                sheet = np.column_stack([plan, np.where(known, z, 0.0)])
-                met = _met(work, fault, sheet, sheet, some, threads)
-                passes = met == _PASSES
-                divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
-                passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
-                drawn.let_be_equal(number, some[passes])
-                edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
-                lie_in = _lie_in(work, fault, sheet[edges], continuations[number], within, threads)
-                drawn.let_be_equal(number, edges[lie_in])
-                touched = np.unique(some[met > 0]).astype(np.int32)
-                touched = touched[inside[touched]]
-                alone = np.repeat(touched[:, None], 3, axis=1)
-                on = _met(work, fault, sheet, sheet, alone, threads) > 0
-                drawn.let_be_equal(number, touched[on, None])
+            rows = [
+                places.number[row][doubtful[number][near[sides][doubtful[number]].any(axis=1)]]
+                for row, sides in enumerate(found)
+            ]
+            some = np.unique(np.concatenate(rows), axis=0)
+            corners = places.points[some]
+            if not np.array_equal(looked_at.get(number), corners):
+                looked_at[number] = corners
+                _draw_where_passed(
+                    work, places, some, number, fault, continuations[number], within, inside, drawn, threads
+                )
         if drawn.is_settled() and not _draw_between(
             work, plan, triangles, found, faults, continuations, within, near, drawn, threads
         ):
             return found
+
+
+def _draw_where_passed(
+    work: Work, places, some, number, fault, beyond, within: Within, inside, drawn, threads: int
+) -> None:
+    """Lets sheets be equal at the nodes of triangles that a fault passes beyond its ends, in the triangles
+    `beyond`, of edges that lie in these, and where it touches them.
+
+    places: of all sheets; some: (T, 3) int32 triangles of these. inside: (N,) bool, the nodes at which all
+    sheets are in the compartment."""
+    node = places.node
+    met = _met(work, fault, places.points, places.points, some, threads)
+    passes = met == _PASSES
+    divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
+    passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
+    drawn.let_be_equal(number, node[some[passes]])
+    edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
+    lie_in = _lie_in(work, fault, places.points[edges], beyond, within, threads)
+    drawn.let_be_equal(number, node[edges[lie_in]])
+    touched = np.unique(some[met > 0])
+    touched = touched[inside[node[touched]]]
+    on = _met_points(work, fault, places.points[touched], threads)
+    drawn.let_be_equal(number, node[touched[on], None])
+
+
+class _Places(NamedTuple):
+    """The different places that the nodes of sheets have: points (P, 3), and of which node each is. number:
+    (S, N) int32, the place of each node of each sheet."""
+
+    points: np.ndarray
+    node: np.ndarray
+    number: np.ndarray
+
+
+def _places_of(plan: np.ndarray, heights: list[np.ndarray]) -> _Places:
+    """Those of the nodes (N, 2) in sheets with heights (N,) each: at one node only those differ that some
+    fault near it parts."""
+    number = np.empty((len(heights), len(plan)), np.int32)
+    points, nodes, total = [], [], 0
+    for start in range(0, len(plan), some := max(1, _AT_ONCE // len(heights))):
+        part = slice(start, start + some)
+        z = np.array([each[part] for each in heights])
+        order = np.argsort(z, axis=0, kind="stable")
+        ascending = np.take_along_axis(z, order, axis=0)
+        is_new = np.ones(z.shape, bool)
+        is_new[1:] = ascending[1:] != ascending[:-1]
+        count = is_new.sum(axis=0)
+        first = total + count.cumsum() - count
+        np.put_along_axis(number[:, part], order, (first + is_new.cumsum(axis=0) - 1).astype(np.int32), 0)
+        nodes.append(np.repeat(np.arange(start, start + len(count)), count))
+        points.append(np.column_stack([plan[nodes[-1]], ascending.T[is_new.T]]))
+        total += len(nodes[-1])
+    return _Places(np.concatenate(points), np.concatenate(nodes), number)
+
+
+def _sides_of_nodes(work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int):
+    """By the sides of each sheet: (F, N) int8, on which side of each fault its nodes are."""
+    places = _places_of(plan, [np.nan_to_num(z) for z in heights.values()])
+    side = np.array([fault_sides(work, places.points, fault, threads) for fault in faults])
+    return {sides: side[:, number] for sides, number in zip(heights, places.number, strict=True)}
 
 
 class _Drawn:
@@ -276,21 +351,6 @@ class _Drawn:
                 self.weights[number] = _weight(self.plan, equal, ramp)
                 settled = False
         return settled
-
-
-def _sides_of_branches(
-    work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], ends: list, threads: int
-) -> dict[tuple[int, ...], dict[int, np.ndarray]]:
-    """By the sides of each sheet, and the number of each fault that ends at others: the sides (N,) of its
-    nodes."""
-    branches = [number for number, own in enumerate(ends) if own]
-    return {
-        sides: {
-            n: fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), faults[n], threads)
-            for n in branches
-        }
-        for sides, z in heights.items()
-    }
 
 
 def _draw_between(
