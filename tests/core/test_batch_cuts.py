@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.batch.cuts import read_polyline
+from realmodel.batch.options import parse
 from realmodel.core import InputRefused, load_project
 from stacks.project_files import write_off
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
@@ -185,3 +186,15 @@ def test_a_missing_cutter_is_refused_before_the_build(layers, out):  # noqa: F81
     assert "gone.off" in refused(run(project, "--cut", f"gone.off={out / 'a.npz'}"))
     assert "gone.csv" in refused(run(project, "--fence", f"gone.csv={out / 'a.csv'}"))
     assert load_project(project).rocks and names(out) == []
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [(("--section", "-5,0.5,0,1,0,0=s.svg"), "section"), (("--borehole", "-.5,0=b.csv"), "borehole")],
+)
+def test_values_may_begin_with_a_negative_number(given, name):
+    """argparse alone takes them for options."""
+    option, value = given
+    for arguments in (given, (f"{option}={value}",)):
+        assert getattr(parse(["p.toml", *arguments]), name) == [value]
+    assert getattr(parse([option, value, "p.toml"]), name) == [value]

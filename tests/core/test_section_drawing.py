@@ -9,6 +9,7 @@ import pytest
 from conftest import grid_surface
 from realmodel.core import Fault, Library, Project, Property, Rock, Surface, UsageError, build
 from realmodel.core.drawing.drawing import Line, Polygon, Text
+from realmodel.core.drawing.glyphs import text_width
 from realmodel.core.section_drawing import block_outlines, draw_section, flattened
 from structure_cases import plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
@@ -177,3 +178,63 @@ def test_names_of_faults_are_not_over_one_another():
     first, second = (item for item in drawing.items if isinstance(item, Text) and "A long" in item.text)
     assert abs(first.x - second.x) < 0.1 * drawing.width
     assert abs(first.y - second.y) > first.size
+
+
+def ring_areas(section):
+    """(B,) the area of the outlines of each block."""
+    flat, found = flattened(section), np.zeros(len(section.block_names))
+    for block in range(len(found)):
+        for x, y in (ring.T for ring in block_outlines(section, flat, block)):
+            x, y = x - x[0], y - y[0]
+            found[block] += (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
+    return found
+
+
+def test_outlines_have_the_areas_of_their_blocks():
+    """With two faults some polygons of a section are so thin that an edge has another one on its own side."""
+    random = np.random.default_rng(7)
+    levels = [
+        Surface(f"S{k}", *grid_surface(9, lambda x, y, k=k: 2.0 * k + np.sin(0.7 * x + k) * np.cos(y), 10.0))
+        for k in range(4)
+    ]
+    faults = [
+        Fault("F", *plane_fault(x=4.0, lean=0.4, turn=20.0)),
+        Fault("G", *plane_fault(x=5.0, lean=-0.7)),
+    ]
+    model = build(Project("p", [Rock("r", levels)], faults=faults))
+    for _ in range(80):
+        section = model.section(random.uniform(2, 8, 3), random.normal(size=3))
+        if len(section):
+            assert ring_areas(section) == pytest.approx(section.area_by_block(), rel=1e-6, abs=1e-6)
+
+
+def test_an_edge_of_three_polygons_is_counted(model):
+    """The third one, of no area, lies along the edge of the first two."""
+    section = model.section(at(0, 50, 0), (0, -1, 0))
+    corners = np.array([[0.0, 0, 0], [10, 0, 0], [10, 0, 10], [0, 0, 10]])
+    rings = [[0, 1, 2], [0, 2, 3], [0, 2, 0, 2]]
+    section.vertices = corners
+    section.polygon_vertices = np.concatenate(rings).astype(section.polygon_vertices.dtype)
+    section.offsets = np.cumsum([0, *map(len, rings)])
+    section.block = np.zeros(3, section.block.dtype)
+    assert np.abs(ring_areas(section)[0]) == pytest.approx(100.0)
+    section.polygon_vertices = np.array([0, 1, 2, 0, 2, 3, 0, 2, 1], section.polygon_vertices.dtype)
+    section.offsets = np.array([0, 3, 6, 9])
+    assert np.abs(ring_areas(section)[0]) == pytest.approx(
+        50.0
+    )  # one of two polygons at a place is taken back
+
+
+def test_the_ends_of_narrow_sections_are_below_the_subtitle(model):
+    drawing = draw_section(model.fence([at(48, 50)[:2], at(52, 50)[:2]]))
+    written = [item for item in drawing.items if isinstance(item, Text) and item.layer == "Text"]
+    boxes = [
+        (item.x, item.y, item.x + text_width(item.text, item.size), item.y + item.size)
+        for item in written
+        if item.anchor == "start"
+    ]
+    assert sum(item.text.startswith("x ") for item in written) == 2
+    for number, one in enumerate(boxes):
+        assert one[0] >= 0 and one[2] <= drawing.width and one[3] <= drawing.height
+        for other in boxes[:number]:
+            assert one[0] >= other[2] or other[0] >= one[2] or one[1] >= other[3] or other[1] >= one[3]

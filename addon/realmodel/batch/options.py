@@ -3,10 +3,12 @@
 
 import argparse
 import math
+import re
 from pathlib import Path
 
 from . import IN_BLENDER
 
+_NEGATIVE = re.compile(r"-\.?\d")
 _BLENDER_USAGE = "blender -b --factory-startup --python-exit-code 1 -P build_model.py -- PROJECT [options]"
 
 
@@ -184,9 +186,21 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         help="prove the model before anything is written, and print the proof",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    options = parser.parse_args(arguments)
+    options = parser.parse_args(_with_negative_values(arguments))
     _check(parser, options)
     return options
+
+
+def _with_negative_values(arguments: list[str]) -> list[str]:
+    """The arguments, a value that begins with a negative number joined to its option: alone argparse takes it
+    for an option."""
+    found: list[str] = []
+    for argument in arguments:
+        if _NEGATIVE.match(argument) and found and found[-1].startswith("--") and "=" not in found[-1]:
+            found[-1] += f"={argument}"
+        else:
+            found.append(argument)
+    return found
 
 
 def _check(parser: argparse.ArgumentParser, options: argparse.Namespace) -> None:

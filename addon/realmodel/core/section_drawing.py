@@ -4,6 +4,7 @@ age, and the coordinates of both ends."""
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +26,7 @@ _SIZE = 8.0
 _FAULT_WIDTH = 1.4
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
+_LINE = _SIZE + 3  # height of a line of coordinates
 _LEGEND = "Block"  # title of the legend; views have the names of properties
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
@@ -64,11 +66,16 @@ def draw_section(
     legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
     subtitle = _subtitle(section, ratio, exaggeration)
     title = title or section.name
+    ends = _end_texts(section, flat)
+    are_beside = width > sum(text_width(text, _SIZE - 1) for text in ends) + 40
+    above = _ABOVE if are_beside else _ABOVE + len(ends) * _LINE
     page = max(
-        _LEFT + width + _GAP + legend_width, *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle))
+        _LEFT + width + _GAP + legend_width,
+        *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle)),
+        *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in ends),
     )
     plot_height = max(height, legend_height)
-    drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + _ABOVE))
+    drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + above))
     base = _BELOW + plot_height - height
     drawing.scale, drawing.origin = (
         float(scale),
@@ -83,7 +90,7 @@ def draw_section(
         drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
     _draw_faults(drawing, axes, section)
     axes.frame(*_axis_names(section), layer="Axes")
-    _ends(drawing, axes, section, flat)
+    _draw_ends(drawing, axes, section, ends, are_beside)
     legend(drawing, _LEFT + width + _GAP, base + height, _LEGEND, entries, _SIZE, layer="Legend")
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
@@ -167,11 +174,12 @@ def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.nd
     at = number.reshape(-1)[section.polygon_vertices]
     some = np.empty(at.max() + 1, np.int64)
     some[at] = section.polygon_vertices
-    edges = {(a, b) for a, b in zip(at[corner].tolist(), at[following].tolist(), strict=True) if a != b}
+    # Thin polygons may have an edge several times once their corners are joined: each cancels one only.
+    edges = Counter(zip(at[corner].tolist(), at[following].tolist(), strict=True))
     onward: dict[int, list[int]] = {}
-    for a, b in edges:
-        if (b, a) not in edges:
-            onward.setdefault(a, []).append(b)
+    for (a, b), count in edges.items():
+        if a != b and count > edges.get((b, a), 0):
+            onward.setdefault(a, []).extend([b] * (count - edges.get((b, a), 0)))
     rings = []
     for first in sorted(onward):
         while onward[first]:
@@ -236,22 +244,31 @@ def _axis_names(section: Section) -> tuple[str, str]:
     return tuple(f"{name} ({section.unit})" for name in names)
 
 
-def _ends(drawing: Drawing, axes: Axes, section: Section, flat: np.ndarray) -> None:
-    """Letters and coordinates above the ends of a vertical section, and a line at each bend."""
+def _end_texts(section: Section, flat: np.ndarray) -> list[str]:
+    """The plan coordinates of the left and the right end of a vertical section; none of others."""
     if not is_vertical(section):
-        return
-    x, y, width, height = axes.box
+        return []
     if _is_fence(section):
         ends = section.polyline[[0, -1]]
+    else:
+        ends = section.vertices[[np.argmin(flat[:, 0]), np.argmax(flat[:, 0])], :2]
+    return [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
+
+
+def _draw_ends(drawing: Drawing, axes: Axes, section: Section, ends: list[str], are_beside: bool) -> None:
+    """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
+    coordinates are on one line; else they are on lines of their own, with their letters."""
+    x, y, width, height = axes.box
+    if _is_fence(section):
         for at in section.bends[1:-1]:
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
             drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
-    else:
-        ends = section.vertices[[np.argmin(flat[:, 0]), np.argmax(flat[:, 0])], :2]
-    texts = [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
-    fits = width > sum(text_width(text, _SIZE - 1) for text in texts) + 40
-    for letter, text, at, anchor in zip("AB", texts, (x, x + width), ("start", "end"), strict=True):
+    corners = (x, "start", 12), (x + width, "end", -12)
+    for number, (letter, text, (at, anchor, away)) in enumerate(zip("AB", ends, corners, strict=False)):
         drawing.text(at, y + height + 5, letter, _SIZE + 1, anchor=anchor, layer="Text")
-        away = (12 if anchor == "start" else -12) if fits else 0
-        lift = 5.5 if fits else 5.5 + (_SIZE + 3) * (1 if anchor == "start" else 2)
-        drawing.text(at + away, y + height + lift, text, _SIZE - 1, anchor=anchor, layer="Text")
+        if are_beside:
+            drawing.text(at + away, y + height + 5.5, text, _SIZE - 1, anchor=anchor, layer="Text")
+        else:
+            over = y + height + 5.5 + (len(ends) - number) * _LINE
+            drawing.text(x, over, letter, _SIZE - 1, layer="Text")
+            drawing.text(x + 12, over, text, _SIZE - 1, layer="Text")
