@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where sheets are looked at beside faults: in every part that other faults leave, however small."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.structures.between_sheets import common_lines, places_between
-from realmodel.core.structures.families import around_tips, families
+from realmodel.core.structures.families import around_tips, families, parting
 from realmodel.core.structures.rock_structure import RockStructure
 from realmodel.core.structures.sides import RockFaults
-from realmodel.core.structures.tips import _Drawn, _meet_within, _near
+from realmodel.core.structures.tips import _Drawn, _meet_within, _near, _places_of, blended
 from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
-from structure_cases import plane_fault
+from realmodel.core.work import Work
+from structure_cases import SQUARE, plane_fault, prepared
 
 
 class Between:
@@ -161,3 +164,82 @@ def test_a_fault_that_dies_out_is_not_there_beyond_one_that_does_not():
     found = {family.key: family.members for family in families(structure, 0)}
     assert found == {(1, 2): {0: (1,), 1: (-1,)}, (-1, 0): {2: ()}}
     assert around_tips(structure, 0, families(structure, 0)) == []
+
+
+def test_faults_that_part_no_data_are_not_asked_for():
+    """F0 displaces older surfaces only, but F1, at which F2 ends, is there beside it alone."""
+    structure = structure_of([False, True, True, True], [[], [(0, 1)], [(1, 1)], []], [[1, 1, 1, 1]])
+    structure.faults.youngest[:] = [0, 1, 1, 1]
+    assert parting(structure.faults, 0) == [0, 1, 2]
+    assert parting(structure.faults, 1) == [0, 1, 2]
+    structure.faults.ends[2] = []
+    assert parting(structure.faults, 1) == [0, 1]
+    structure.faults.ends[1] = []
+    assert parting(structure.faults, 1) == []
+
+
+def test_nodes_have_one_place_for_each_height():
+    plan = np.column_stack([np.arange(5000.0), np.zeros(5000)])
+    heights = np.random.default_rng(1).integers(0, 3, (600, 5000)).astype(float)
+    heights[:, 7] = 1.0
+    points, node, number = _places_of(plan, list(heights))
+    assert np.array_equal(points[number, 2], heights)
+    assert (node[number] == np.arange(5000)).all() and np.array_equal(points[:, 0], node)
+    assert len(np.unique(points, axis=0)) == len(points) == 3 * 5000 - 2
+
+
+def test_heights_are_shared_as_the_weights_say():
+    """Where only some faults die out nearby, the others keep their sides apart: to the bit as all of them
+    weighed one after another."""
+    rng = np.random.default_rng(2)
+    rows = [(1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 0, 1), (-1, 0, -1)]
+    heights = {row: rng.normal(size=400) for row in rows}
+    near = {row: rng.random(400) < 0.8 for row in rows}
+    on_side = {row: [(side == 0) | (rng.random(400) < 0.5) for side in row] for row in rows}
+    weights = [np.clip(rng.uniform(-0.5, 2.5, 400), 0.0, 1.0) for _ in range(3)]
+    heights[rows[0]][~near[rows[0]]] = np.nan
+    found = blended(heights, near, on_side, weights)
+    for row in rows:
+        total, whole = np.zeros(400), np.zeros(400)
+        for other in rows:
+            share = near[other].astype(float)
+            for n, weight in enumerate(weights):
+                alike = row[n] == other[n]
+                if not alike and 0 in (row[n], other[n]):
+                    alike = on_side[row if row[n] else other][n]
+                share = share * np.where(alike, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
+            total, whole = total + np.where(share == 0, 0, share * heights[other]), whole + share
+        expected = np.where(near[row], total / np.where(whole > 0, whole, 1), heights[row])
+        assert np.array_equal(found[row], expected, equal_nan=True)
+
+
+def test_faults_that_die_out_are_asked_for_all_combinations_of_sides_at_once(monkeypatch):
+    """With twice as many that overlap in plan there are more than twice as many combinations, and twice as
+    many questions to the native module."""
+    asked = Counter()
+    native = Work.native
+
+    def counted(self, function, *arguments, **options):
+        asked[function.__name__] += 1
+        return native(self, function, *arguments, **options)
+
+    monkeypatch.setattr(Work, "native", counted)
+    plan = np.random.default_rng(4).uniform(0.0, 10.0, (500, 2))
+    found = []
+    for count in (3, 6):
+        height, faults = 0.1 * plan[:, 0], []
+        for number in range(count):
+            x = 3.0 + 0.8 * number
+            lean, turn = (0.3, -0.4)[number % 2], 12.0 * (number % 3 - 1)
+            faults.append(Fault(f"F{number}", *plane_fault(x, lean, (2.0, 8.0), turn=turn), dies_out=True))
+            throw = 0.5 * np.clip(1.0 - np.abs(plan[:, 1] - 5.0) / 3.0, 0.0, None)
+            height = height + np.where(plan[:, 0] > x, throw, 0.0)
+        surface = Surface("S", points=np.column_stack([plan, height]), method="natural_neighbour")
+        rock = Rock("r", [surface], region=[SQUARE], edge_length=0.6, base_elevation=-5.0)
+        asked.clear()
+        (entry,) = prepared(Project("p", [rock], faults=faults))
+        found.append((len(entry.structure.distinct(0)), asked["structure_sides"], asked["structure_beyond"]))
+    (sheets, sides, beyond), (more_sheets, more_sides, more_beyond) = found
+    assert more_sheets > 2 * sheets
+    assert 0 < more_sides <= 2 * sides
+    assert 0 < more_beyond <= 2.5 * beyond, "drawing nearer may take one turn more"

@@ -62,6 +62,19 @@ def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndar
     return keys
 
 
+def parting(faults: RockFaults, number: int) -> list[int]:
+    """The faults whose sides decide in which family of surface `number` a place is. One that dies out and
+    neither ends at another nor has one end at it parts nothing."""
+    active = np.flatnonzero(faults.active(number)).tolist()
+    waiting = [n for n in active if faults.ends[n] or not faults.dies_out[n]]
+    found = set(waiting)
+    while waiting:
+        others = {other for other, _ in faults.ends[waiting.pop()]} - found
+        found |= others
+        waiting += others
+    return sorted(found)
+
+
 def families(structure: RockStructure, number: int) -> list[Family]:
     """The families of all compartments of a rock mass, for surface `number`."""
     found: dict[tuple[int, ...], Family] = {}

@@ -79,8 +79,12 @@ def fault_sides(work: Work, points: np.ndarray, shape: FaultShape, threads: int 
     return work.native(native_module().structure_sides, shape.native(), points, threads=threads)
 
 
-def sides_of(work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0) -> np.ndarray:
-    """(N, F) int8 sides of all faults; 0 where a branch is not there."""
-    sides = [fault_sides(work, points, shape, threads) for shape in faults.shapes]
-    given = np.column_stack(sides) if sides else np.zeros((len(points), 0), np.int8)
-    return faults.without_dropped(given.astype(np.int8))
+def sides_of(
+    work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0, asked: list[int] | None = None
+) -> np.ndarray:
+    """(N, F) int8 sides of all faults; 0 where a branch is not there. asked: only these are looked at, those
+    at which they end among them; points count as above the others."""
+    sides = np.ones((len(points), len(faults)), np.int8)
+    for fault in range(len(faults)) if asked is None else asked:
+        sides[:, fault] = fault_sides(work, points, faults.shapes[fault], threads)
+    return faults.without_dropped(sides)

@@ -359,48 +359,66 @@ def _draw_between(
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
     with_equal_ends has them, changed."""
-    is_torn = False
     every = np.array(list(found.values()))
     low, high = (np.column_stack([plan, each.reduce(every, axis=0)]) for each in (np.fmin, np.fmax))
     differ = triangles[(low[:, 2] < high[:, 2])[triangles].any(axis=1)]
     low, high = np.nan_to_num(low), np.nan_to_num(high)
+    between = {}
     for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
         some = differ[_met(work, fault, low, high, differ, threads) == _PASSES] if fault.dies_out else ()
-        if not len(some):
-            continue
-        pairs = list(_pairs(found, number))
-        side, corners = _corners_with_sides(work, plan, some, found, fault, threads)
-        asked, numbers = [], []
-        for one, other in pairs:
-            both = np.column_stack([side[one], side[other]])
-            heights = corners[one], corners[other]
-            apart = (both != both[:, :1]).any(axis=1) & np.isfinite(heights).all(axis=(0, 2))
-            numbers.append(np.flatnonzero(apart & (heights[0] != heights[1]).any(axis=1)))
-            asked.append(np.concatenate([each[numbers[-1]] for each in heights], axis=1))
-        # what lies between two triangles is the same for all pairs of sheets that have these
-        which = np.concatenate([np.empty(0, np.int64), *numbers])
-        rows = np.column_stack([which, np.concatenate([np.empty((0, 6)), *asked])])
-        rows, of_row = np.unique(rows, axis=0, return_inverse=True)
-        there = np.repeat(plan[some[rows[:, 0].astype(np.int64)]][:, None], 2, axis=1)
-        one, other = np.concatenate([there, rows[:, 1:].reshape(-1, 2, 3, 1)], axis=3).transpose(1, 0, 2, 3)
-        owner, places = places_between(one, other, others, within)
-        sides = [fault_sides(work, places, shape, threads) for shape in faults]
-        first = 0
-        for (one, other), own in zip(pairs, numbers, strict=True):
-            its = of_row.ravel()[first : first + len(own)]
-            first += len(own)
-            is_there = np.ones(len(places), bool)
-            for n, given in enumerate(sides):
-                if n != number and (its_side := one[n] or other[n]):
-                    is_there &= given == its_side
-            torn = some[own[np.isin(its, owner[is_there])]]
-            if not len(torn):
-                continue
-            for sides_of_sheet in (one, other):
-                is_torn = is_torn or not near[sides_of_sheet][torn].all()
-                near[sides_of_sheet][torn] = True
+        if len(some):
+            between[number] = _between(work, plan, some, found, number, fault, others, within, threads)
+    places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
+    sides = [fault_sides(work, places, fault, threads) for fault in faults]
+    is_torn, first = False, 0
+    for number, own in between.items():
+        part = slice(first, first + len(own.places))
+        first = part.stop
+        for (one, other), given, rows in own.pairs:
+            is_there = np.ones(len(own.places), bool)
+            for n, side in enumerate(sides):
+                if n != number and (its := one[n] or other[n]):
+                    is_there &= side[part] == its
+            torn = given[np.isin(rows, own.owner[is_there])]
+            for its in (one, other) if len(torn) else ():
+                is_torn = is_torn or not near[its][torn].all()
+                near[its][torn] = True
             drawn.let_be_equal(number, torn)
     return not drawn.is_settled() or is_torn
+
+
+class _Between(NamedTuple):
+    """Where a fault would go on between sheets. pairs: the sides of each two sheets, the triangles (T, 3)
+    over which it may be between them, and the numbers (T,) of these two triangles as one pair. places: (K, 3)
+    in the compartment, and owner (K,) the pair of triangles that each lies between."""
+
+    pairs: list[tuple]
+    places: np.ndarray
+    owner: np.ndarray
+
+
+def _between(
+    work: Work, plan, triangles, found: dict, number: int, fault, beyond, within: Within, threads: int
+) -> _Between:
+    """Those of one fault over some triangles. Of all pairs of sheets many have the same two triangles there,
+    and what lies between these is the same."""
+    side, heights = _corners_with_sides(work, plan, triangles, found, fault, threads)
+    pairs, rows = [], [np.empty((0, 7))]
+    for one, other in _pairs(found, number):
+        both = np.column_stack([side[one], side[other]])
+        z = np.column_stack([heights[one], heights[other]])
+        apart = (both != both[:, :1]).any(axis=1) & np.isfinite(z).all(axis=1)
+        given = np.flatnonzero(apart & (z[:, :3] != z[:, 3:]).any(axis=1))
+        pairs.append(((one, other), triangles[given]))
+        rows.append(np.column_stack([given, z[given]]))
+    rows, numbers = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
+    ends = np.cumsum([0, *(len(given) for _, given in pairs)]).tolist()
+    corners = plan[triangles[rows[:, 0].astype(np.int64)]]
+    one, other = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
+    owner, places = places_between(one, other, beyond, within)
+    parts = zip(pairs, itertools.pairwise(ends), strict=True)
+    pairs = [(*pair, numbers.ravel()[start:end]) for pair, (start, end) in parts]
+    return _Between(pairs, places, owner)
 
 
 def _corners_with_sides(work: Work, plan, triangles, sheets: dict, fault: FaultShape, threads: int):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..algebra import norm
 from ..work import Work, native_module
-from .families import DIES_OUT, Family, keys_of
+from .families import DIES_OUT, Family, keys_of, parting
 from .sides import sides_of
 from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
@@ -31,7 +31,8 @@ class Within:
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """(N,) bool of points (N, 3)."""
         structure = self.entry.structure
-        rows = sides_of(self.work, points, structure.faults, self.threads)
+        asked = parting(structure.faults, self.number)
+        rows = sides_of(self.work, points, structure.faults, self.threads, asked)
         keys = keys_of(structure, self.number, rows)
         keys[:, list(self.family.branches)] = DIES_OUT
         return (keys == self.family.key).all(axis=1)
@@ -40,11 +41,7 @@ class Within:
         """(M, 3, 3) triangles of all faults and of what continues them in a box (2, 3): between them nothing
         changes."""
         faults = self.entry.structure.faults
-        parting = [
-            self.family.key[n] != DIES_OUT or faults.ends[n]
-            for n in np.flatnonzero(faults.active(self.number))
-        ]
-        if not any(parting):
+        if not parting(faults, self.number):
             return np.empty((0, 3, 3))
         if self.known is None or (box[0] < self.known[0][0]).any() or (box[1] > self.known[0][1]).any():
             wider = box if self.known is None else box_of(box, self.known[0])
