@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .layer_values import at_places
-from .structures.sides import sides_of
+from .structures.points_at_faults import point_sides
 from .work import Work, run
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _heights(model: Model, number: int, at: int, entry, points: np.ndarray) -> n
     structure = entry.structure
 
     def task(work: Work) -> np.ndarray:
-        sides = sides_of(work, points, structure.faults, model.threads)
+        sides = point_sides(work, points, structure, at, model.threads).sides
         active = structure.faults.active(at)
         found = np.full(len(points), np.nan)
         for row, sheets in zip(structure.compartments, structure.sheets, strict=True):

@@ -16,6 +16,7 @@ from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
 from .families import Family, keys_of
+from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import sides_of
 from .tips import shared, trace_of, with_equal_ends
@@ -34,10 +35,15 @@ class InterpolatedSurface:
         self.work, self.entry, self.number, self.threads = work, entry, number, threads
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
-        self.sides = sides_of(work, self.points, entry.structure.faults, threads)
+        structure = entry.structure
+        self.placed = point_sides(work, self.points, structure, number, threads)
+        names = structure.faults.names
+        warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
+        if warning is not None:
+            structure.warnings.append((list(range(len(structure.compartments))), warning))
         self._leave_out_contradictions()
         self.counts = self._that_count()
-        self.keys = keys_of(entry.structure, number, self.sides)
+        self.keys = keys_of(entry.structure, number, self.placed.sides)
         self.made: dict[
             int, tuple
         ] = {}  # the interpolation and the diagnostics of its vertices, by the id of a sheet
@@ -46,7 +52,7 @@ class InterpolatedSurface:
     def _leave_out_contradictions(self) -> None:
         """Leaves out points that others at their place in plan contradict, with a warning."""
         faults = self.entry.structure.faults
-        rows = np.where(faults.active(self.number), self.sides, 0)
+        rows = np.where(faults.active(self.number), self.placed.sides, 0)
         beyond = beyond_faults(self.points, rows)
         wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
         left_out = beyond.copy()
@@ -62,7 +68,7 @@ class InterpolatedSurface:
         warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
         every = list(range(len(self.entry.structure.compartments)))
         self.entry.structure.warnings.append((every, warning))
-        self.points, self.sides = self.points[~left_out], self.sides[~left_out]
+        self.points, self.placed = self.points[~left_out], self.placed.some(~left_out)
 
     def _that_count(self) -> np.ndarray:
         """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
@@ -107,7 +113,7 @@ class InterpolatedSurface:
         met = family.with_ends(met, self.entry.structure.faults)
         hidden = {
             (number, side): own
-            & (self.sides[:, family.dying[number]] == -side)
+            & (self.placed.sides[:, family.dying[number]] == -side)
             & traces[number].beside(self.points[:, :2])
             for number in met
             for side in (-1, 1)
@@ -176,6 +182,7 @@ class InterpolatedSurface:
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
+        points = np.concatenate([points, self._beyond(family, own)])
         surfaces[self.number] = replace(surface or self.surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
@@ -202,12 +209,22 @@ class InterpolatedSurface:
             entry.structure.warn(list(family.members), warning)
         return sheet
 
+    def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
+        """(K, 3) points beyond the faults that part the family, for a method that needs them."""
+        name, settings = self.surface.method_options()
+        shapes = self.entry.structure.faults.shapes
+        parting = {fault: shapes[fault] for fault, side in enumerate(family.key) if side in (-1, 1)}
+        if not METHODS[name].is_triangulated or settings["extrapolate"] != "method":
+            return np.empty((0, 3))
+        return beyond_lips(self.points[own], self.placed.some(own), parting)
+
     def _with_own_points(self, family: Family, surface):
         """Another surface with only its points in the family's compartments."""
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        return replace(surface, points=points[self._within(family)(points)])
+        placed = point_sides(self.work, points, self.entry.structure, self.number, self.threads)
+        return replace(surface, points=points[self._within(family).has(placed.sides)])
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of

@@ -32,8 +32,11 @@ class Within:
         """(N,) bool of points (N, 3)."""
         structure = self.entry.structure
         asked = parting(structure.faults, self.number)
-        rows = sides_of(self.work, points, structure.faults, self.threads, asked)
-        keys = keys_of(structure, self.number, rows)
+        return self.has(sides_of(self.work, points, structure.faults, self.threads, asked))
+
+    def has(self, sides: np.ndarray) -> np.ndarray:
+        """(N,) bool of points with these sides (N, F) of the faults."""
+        keys = keys_of(self.entry.structure, self.number, sides)
         keys[:, list(self.family.branches)] = DIES_OUT
         return (keys == self.family.key).all(axis=1)
 
