@@ -6,7 +6,8 @@ import csv
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import Body, PointFile, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import Body, Cancelled, PointFile, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core.exporters import save_model
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.vendored import vendored
 from realmodel.core.regular_cells import plan_grids, regular_cells
@@ -156,3 +157,18 @@ def test_what_cannot_be_is_refused(model, tmp_path):
     with pytest.raises(UsageError, match="take larger ones"):
         model.save(tmp_path / "m.tif", cell_size=0.0001)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_table_stops_while_it_is_written(model, tmp_path):
+    """Its rows are most of the time: who cancels must not wait for all of them."""
+    shares = []
+
+    def step(share):
+        shares.append(share)
+        if share > 0.5:
+            raise Cancelled("cancelled")
+
+    with pytest.raises(Cancelled):
+        save_model(model, tmp_path / "m.csv", step, cell_size=1.0)
+    assert 0.5 < shares[-1] < 1.0 and shares == sorted(shares)
+    assert not list(tmp_path.iterdir())

@@ -10,7 +10,7 @@ along the planes of the grid for that, so nothing is sampled.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,9 +54,13 @@ def checked_size(model, size: float | Sequence[float] | None) -> np.ndarray:
     return given[{1: [0, 0, 0], 2: [0, 0, 1], 3: [0, 1, 2]}[len(given)]]
 
 
-def regular_cells(model, size: float | Sequence[float] | None = None) -> RegularCells:
+def regular_cells(
+    model,
+    size: float | Sequence[float] | None = None,
+    step: Callable[[float], None] = lambda share: None,
+) -> RegularCells:
     """The volume of each block in each cell of a grid that covers the model; its corners are multiples of the
-    size. size: as of `checked_size`. Raises UsageError."""
+    size. size: as of `checked_size`. step(share) is called after each block. Raises UsageError."""
     size = checked_size(model, size)
     origin, counts = frame_of(model, size)
     cells = int(np.prod(counts, dtype=np.float64))
@@ -67,6 +71,7 @@ def regular_cells(model, size: float | Sequence[float] | None = None) -> Regular
     nx, ny, nz = counts
     volumes = np.zeros((len(model.blocks), nz, ny, nx))
     for block in range(len(model.blocks)):
+        step(block / len(model.blocks))
         triangles = (_triangles(model, block) - origin) / size  # in cells
         for axis in range(3):
             triangles = _divided(triangles, axis)

@@ -25,8 +25,7 @@ def write_block_table(model, path, outputs: Outputs, step: Callable[[float], Non
     """A row for each cell that has rock: its center, its size, the name of the block with the largest
     share, and
     the share of each block in it."""
-    cells = regular_cells(model, size)
-    step(0.5)
+    cells = regular_cells(model, size, lambda share: step(0.5 * share))
     shares = cells.shares
     names = distinct_names(block.name for block in model.blocks)
     z, y, x = np.nonzero(shares.sum(axis=0) > 0)
@@ -38,7 +37,8 @@ def write_block_table(model, path, outputs: Outputs, step: Callable[[float], Non
     with outputs.file(path) as file:
         file.write((",".join(map(_quoted, columns)) + "\n").encode())
         form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
-        write_rows(file, form, center, np.tile(cells.size, (len(center), 1)), largest, own.T)
+        columns = center, np.tile(cells.size, (len(center), 1)), largest, own.T
+        write_rows(file, form, *columns, step=lambda share: step(0.5 + 0.5 * share))
     step(1.0)
 
 
@@ -50,8 +50,7 @@ def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size
     """A VTK image with the cell arrays `block` (number in the model's list of the block with the largest
     share,
     -1: none) and `share NAME` of each block."""
-    cells = regular_cells(model, size)
-    step(0.5)
+    cells = regular_cells(model, size, lambda share: step(0.5 * share))
     names = distinct_names(block.name for block in model.blocks)
     shares = cells.shares
     block = (

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import BinaryIO
 
 import numpy as np
@@ -10,9 +11,16 @@ import numpy as np
 _AT_ONCE = 50_000
 
 
-def write_rows(file: BinaryIO, form: str, *columns: np.ndarray, ends: str = "\n") -> None:
+def write_rows(
+    file: BinaryIO,
+    form: str,
+    *columns: np.ndarray,
+    ends: str = "\n",
+    step: Callable[[float], None] | None = None,
+) -> None:
     """Writes a line a row. form: of the whole row, as of the operator %, "%r" for the shortest number that is
-    the same float64. columns: arrays (N,) or (N, K), side by side."""
+    the same float64. columns: arrays (N,) or (N, K), side by side. step(share) is called now and then, last
+    with 1."""
     count = len(columns[0])
     line = form + ends
     for begin in range(0, count, _AT_ONCE):
@@ -25,3 +33,5 @@ def write_rows(file: BinaryIO, form: str, *columns: np.ndarray, ends: str = "\n"
         for place, values in enumerate(cells):
             flat[place :: len(cells)] = values
         file.write((line * rows % tuple(flat)).encode("utf-8"))
+        if step is not None:
+            step((begin + rows) / count)
