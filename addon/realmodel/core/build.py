@@ -73,7 +73,7 @@ def _build(
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs = read_rocks(work, project)
-        faults, bodies, warnings = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads, inputs)
     for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
         with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)

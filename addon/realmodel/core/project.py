@@ -231,7 +231,9 @@ class Project:
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
-        files += [entry.input_file for entry in (*self.faults, *self.bodies)]
+        for entry in (*self.faults, *self.bodies):
+            if entry.input_file is not None:
+                files += [entry.input_file, *companions(entry.input_file)]
         return [Path(file) for file in files if file is not None]
 
     def stage(self, m: int) -> Project:

@@ -219,19 +219,46 @@ def _read_surface(table: Table, folder: Path) -> Surface:
 
 
 def _shape_files(table: Table, folder: Path) -> dict:
-    """The files of points and of a mesh that a table names, with how they are read."""
+    """The files of points, of a trace and of a mesh that a table names, with how they are read."""
     files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
+    if "trace" in table:
+        files["trace"] = _read_trace(table, folder)
     reading = {key: table.content[key] for key in READING if key in table}
-    if "mesh" in files and "points" not in files:
+    if list(files) == ["mesh"]:
         said = {key: reading.pop(key) for key in MESH_READING if key in reading}
         if said:
             files["mesh"] = MeshFile(files["mesh"], **said)
-    if reading and "points" not in files:
+    read = next((key for key in ("points", "trace") if isinstance(files.get(key), Path)), None)
+    if reading and read is None:
         key = next(iter(reading))
         raise table.refuse(f"'{key}' needs a file of points", key)
     if reading:
-        files["points"] = PointFile(files["points"], **reading)
+        files[read] = PointFile(files[read], **reading)
     return files
+
+
+def _read_trace(table: Table, folder: Path):
+    """A file, well-known text, one line, or several; z of points without one is NaN."""
+    given = table.content["trace"]
+    if isinstance(given, str):
+        return given if is_wkt(given) else folder / table.text("trace")
+
+    def refuse(what: str, *at: int):
+        where = Table(table.document, {}, (*table.path, "trace", *at), table.item)
+        return where.refuse(what, advice="write [[x, y], [x, y], ...], or [x, y, z] for each")
+
+    def line(points: list, *at: int) -> np.ndarray:
+        for number, point in enumerate(points):
+            is_point = isinstance(point, list) and len(point) in (2, 3)
+            if not is_point or not all(is_number(value) for value in point):
+                raise refuse(f"trace: a point must be two or three numbers, not {point!r}", *at, number)
+        return np.array([(*point, np.nan)[:3] for point in points], np.float64).reshape(-1, 3)
+
+    if not isinstance(given, list):
+        raise refuse("'trace' must be a file or a list of points")
+    if _is_list_of_rings(given):
+        return [line(points, number) for number, points in enumerate(given)]
+    return line(given)
 
 
 def _optional(top: Table, key: str) -> list[Table]:
@@ -251,7 +278,7 @@ def _read_fault(table: Table, folder: Path) -> Fault:
         ends_at=_names(table, "ends_at"),
         rocks=_names(table, "rocks"),
         source=Source(table.document, table.path),
-        **_values(table, FAULT, ("youngest", "dies_out", "extend")),
+        **_values(table, FAULT, ("youngest", "dies_out", "extend", "dip", "dip_direction", "elevation")),
         **_shape_files(table, folder),
     )
 

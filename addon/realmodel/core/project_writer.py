@@ -126,9 +126,14 @@ def _rings_text(rings) -> str:
 
 
 def _ring_text(ring) -> str:
-    corners = [f"[{x!r}, {y!r}]" for x, y in np.asarray(ring, np.float64).tolist()]
+    corners = [_point_text(point) for point in np.asarray(ring, np.float64).tolist()]
     rows = [", ".join(corners[start : start + 4]) for start in range(0, len(corners), 4)]
     return "[" + ",\n  ".join(rows) + "]"
+
+
+def _point_text(point: list[float]) -> str:
+    """A point of two or three numbers; without z where there is none."""
+    return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
 def _shape_file(rock: Rock, surface: Surface, beside, write) -> tuple[str, str] | None:
@@ -161,12 +166,22 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
 
 
 def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]:
-    if entry.vertices is None:
+    if entry.input_file is not None or (kind == "fault" and isinstance(entry.trace, str)):
         raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
-    mesh = write(beside(kind, entry.name, ending=".off"), off_text(entry.vertices, entry.triangles))
     keys = ("youngest", "ends_at", "dies_out", "rocks")
     keys = keys if kind == "fault" else ("after", "property", "void", "rock")
-    return _lines({"name": entry.name, "mesh": mesh} | {key: getattr(entry, key) or None for key in keys})
+    values = {key: getattr(entry, key) or None for key in keys}
+    if kind == "fault" and entry.trace is not None:
+        own = {key: getattr(entry, key) for key in ("dip", "dip_direction", "elevation")}
+        lines = _lines({"name": entry.name} | own | {"extend": entry.extend or None} | values)
+        several = len(entry.trace) and np.ndim(entry.trace[0]) > 1
+        return [*lines, f"trace = {_rings_text(entry.trace) if several else _ring_text(entry.trace)}"]
+    if entry.vertices is None:
+        raise UsageError(
+            f"{kind} '{entry.name}': no surface is fitted to its points yet; build the model first"
+        )
+    mesh = write(beside(kind, entry.name, ending=".off"), off_text(entry.vertices, entry.triangles))
+    return _lines({"name": entry.name, "mesh": mesh} | values)
 
 
 def _lines(values: Mapping) -> list[str]:

@@ -2,6 +2,7 @@
 """The settings of a project, a rock mass, a surface and the reading of files (setting.py says what follows).
 Those of kind "other" are read, checked and shown by code of their own; so are parts of some more."""
 
+from .directions import checked_direction
 from .mesh_sizes import edge_length_fault, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
 from .method_options import OptionRefused
@@ -231,9 +232,31 @@ FAULT = {
         0.0,
         kind="length",
         label="Extend",
-        tip="Distance by which the fitted surface continues beyond its points",
+        tip="Distance by which the fitted surface continues beyond its points, or the trace beyond its ends",
         low=0.0,
-        more="Default 0",
+        more="Default 0; a trace goes through the rock then, unless the fault dies out",
+    ),
+    "trace": _OTHER,
+    "dip": Setting(
+        label="Dip",
+        tip="Angle below the horizontal, in degrees; 0: the attribute of the file",
+        low=0.0,
+        high=90.0,
+        above=0.0,
+        zero_is_none=True,
+    ),
+    "dip_direction": Setting(
+        kind="direction",
+        label="Dip Direction",
+        tip="Degrees clockwise from north (+Y), or the side of the trace: N, NE, E, ... Not needed for a "
+        "vertical fault",
+        check=checked_direction,
+    ),
+    "elevation": Setting(
+        kind="surface",
+        label="Elevation",
+        tip="Elevation of the trace, or the surface that it is on. Empty: z of the trace, or the youngest "
+        "surface where it has none",
     ),
     "youngest": Setting(
         kind="any_surface",

@@ -132,7 +132,7 @@ def _build(
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project, reader)
-        faults, bodies, warnings = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads, inputs)
         inputs[0].warnings += warnings
     count = len(inputs)
     for number, entry in enumerate(inputs):

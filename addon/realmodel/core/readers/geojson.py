@@ -69,7 +69,7 @@ class _Walk:
     def __init__(self, file: Path, where: Mapping, heights: Heights | None):
         self.file = file
         self.selection = Selection(file, where)
-        self.shapes = Shapes(has_heights=heights is not None)
+        self.shapes = Shapes.wanted(heights)
         self.attribute = heights.attribute if heights else None
 
     def refuse(self, what: str, item: str) -> InputRefused:
@@ -88,6 +88,8 @@ class _Walk:
             if self.selection.takes(properties) and node["geometry"] is not None:
                 before = self.shapes.counts()
                 self.node(node["geometry"], item)
+                if self.shapes.attributes is not None:
+                    self.shapes.attributes[item] = properties
                 if self.attribute is not None:
                     height = self.selection.height(properties, self.attribute, item)
                     self.shapes.set_height(before, height)

@@ -97,7 +97,7 @@ def _read(
         what = f"it has no layer '{layer}'"
         raise InputRefused(what, file=file, advice=f"it has {names_shown(list(layers))}")
     selection = Selection(file, where, table)
-    shapes = Shapes(has_heights=heights is not None)
+    shapes = Shapes.wanted(heights)
     rows = base.execute(f"SELECT * FROM {_quoted(table)} ORDER BY rowid")
     names = [entry[0] for entry in rows.description]
     if layers[table] not in names:
@@ -115,6 +115,8 @@ def _read(
         except (ValueError, struct.error, IndexError, TypeError) as error:
             what = f"its geometry cannot be read: {error}"
             raise InputRefused(what, file=file, item=f"layer '{table}', {item}") from error
+        if shapes.attributes is not None:
+            shapes.attributes[item] = attributes
         if heights and heights.attribute is not None:
             shapes.set_height(before, selection.height(attributes, heights.attribute, item))
         yield shapes

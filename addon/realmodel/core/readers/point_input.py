@@ -57,7 +57,7 @@ _DAMAGED_ARRAY = (
 )
 _NUMPY = b"\x93NUMPY"
 # Values that many programs write for "no data".
-_OFTEN_NO_VALUE = (
+OFTEN_NO_VALUE = (
     -9999.0,
     -99999.0,
     -999.0,
@@ -87,13 +87,13 @@ def read_point_file(
         points, warnings = _raster_points(given, file, raster, step, gather, kept)
     elif head.startswith(_NUMPY):
         chosen = ["where"] if given.where else []
-        _refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
+        refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
         points, warnings = _array_points(file, kept), []
     elif is_map_layer(file, head):
-        _refuse_keys(file, "has shapes", given.only_for_tables)
+        refuse_keys(file, "has shapes", given.only_for_tables)
         points, warnings = read_map_points(given, step, kept)
     else:
-        _refuse_keys(file, "is a table", given.only_for_shapes)
+        refuse_keys(file, "is a table", given.only_for_shapes)
         reading = given.columns, given.where, given.separator, given.decimal, given.nodata_values
         rows = read_point_rows(file, *reading, step, kept)
         points, warnings = rows.points, []
@@ -164,14 +164,14 @@ class _Heights:
 
     def __init__(self):
         self._count = 0
-        self._of_value = dict.fromkeys(_OFTEN_NO_VALUE, 0)
+        self._of_value = dict.fromkeys(OFTEN_NO_VALUE, 0)
         self._low, self._high = np.inf, -np.inf  # of the others
 
     def add(self, z: np.ndarray) -> None:
         self._count += len(z)
-        often = np.isin(z, _OFTEN_NO_VALUE)
+        often = np.isin(z, OFTEN_NO_VALUE)
         if often.any():
-            for value in _OFTEN_NO_VALUE:
+            for value in OFTEN_NO_VALUE:
                 self._of_value[value] += int((z == value).sum())
             z = z[~often]
         if len(z):
@@ -194,7 +194,8 @@ class _Heights:
         return said
 
 
-def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
+def refuse_keys(file: Path, what: str, keys: list[str]) -> None:
+    """Refuses options that have no effect on a file."""
     if keys:
         raise InputRefused(f"it {what}, so '{keys[0]}' has no effect", file=file, advice="take it out")
 
@@ -220,7 +221,7 @@ def _raster_points(
     given: PointFile, file: Path, known: RasterFormat, step: Step, gather: Gather, kept: Gather
 ) -> tuple[np.ndarray, list[str]]:
     chosen = ["where"] if given.where else []
-    _refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
+    refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
     raster = known.read(file, nodata, step, gather)
     warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]

@@ -53,7 +53,8 @@ def shapes_of_shapefile(
         what = "there is no .dbf beside it, which holds the attributes"
         advice = f"bring it along, or leave out '{'where' if where else 'height'}'"
         raise InputRefused(what, file=file, advice=advice)
-    selection, shapes = Selection(file, where), Shapes(has_heights=heights is not None)
+    selection, shapes = Selection(file, where), Shapes.wanted(heights)
+    has_table |= shapes.attributes is not None and ".dbf" in files
     try:
         with open(file, "rb") as shp, _opened(files.get(".dbf") if has_table else None) as dbf:
             with warnings.catch_warnings():
@@ -69,6 +70,8 @@ def shapes_of_shapefile(
                 if selection.takes(attributes):
                     item, before = f"feature {number}", shapes.counts()
                     _add(shape, item, shapes)
+                    if shapes.attributes is not None:
+                        shapes.attributes[item] = attributes
                     if attribute is not None:
                         shapes.set_height(before, selection.height(attributes, attribute, item))
                     yield shapes

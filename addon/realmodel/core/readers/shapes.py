@@ -30,12 +30,20 @@ class Polygon:
 @dataclass
 class Shapes:
     """The shapes of one file: polygons, lines (N, 2) and points (2,), the latter two with their names in
-    messages. Read with heights, positions have three numbers, the third NaN where the file gives none."""
+    messages. Read with heights, positions have three numbers, the third NaN where the file gives none.
+    attributes: of features, by their names in messages, where they are wanted."""
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)
     points: list[tuple[str, np.ndarray]] = field(default_factory=list)
     has_heights: bool = False
+    attributes: dict[str, Mapping] | None = None
+
+    @classmethod
+    def wanted(cls, heights: Heights | None) -> Shapes:
+        """Without anything yet, for shapes that are read so."""
+        keeps = heights is not None and heights.with_attributes
+        return cls(has_heights=heights is not None, attributes={} if keeps else None)
 
     @property
     def ordinates(self) -> int:
@@ -79,9 +87,11 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Heights:
-    """The heights to read: those of the positions, or one for each feature, by its attribute."""
+    """The heights to read: those of the positions, or one for each feature, by its attribute.
+    with_attributes: keep all attributes of the features, too."""
 
     attribute: str | None = None
+    with_attributes: bool = False
 
 
 class NothingSelected(InputRefused):

@@ -7,10 +7,13 @@ import math
 from pathlib import Path
 
 from ..errors import InputRefused
-from ..method_options import is_name
+from ..method_options import OptionRefused, checked, is_name
 from ..point_file import ReadingRefused
+from ..schema import FAULT
 from .entries import Body, Fault, body_item, fault_item
 from .history import displaced_surfaces
+
+_OF_TRACES = ("dip", "dip_direction", "elevation")
 
 
 def check_structures(project) -> None:
@@ -41,20 +44,45 @@ def _check_fault(project, fault: Fault) -> None:
     def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
         return _refuse(fault, fault_item(fault), what, key, advice)
 
-    _check_shape(fault, refuse, ("points", "mesh"))
+    _check_shape(fault, refuse, ("trace", "points", "mesh"))
     for key in ("rocks", "ends_at"):
         names = getattr(fault, key)
         if isinstance(names, str) or not all(isinstance(name, str) for name in names):
             raise refuse(f"'{key}' must be a list of names, not {names!r}", key, f'write {key} = ["..."]')
     if not isinstance(fault.dies_out, bool):
         raise refuse(f"'dies_out' must be true or false, not {fault.dies_out!r}", "dies_out")
-    if fault.points is None:
+    _check_trace(project, fault, refuse)
+    if fault.points is None and fault.trace is None:
         for key, given in (("extend", fault.extend), ("stick", fault.stick)):
             if given:
                 raise refuse(f"'{key}' has no effect, as no surface is fitted through points", key)
+    elif fault.points is None and fault.stick is not None:
+        raise refuse("'stick' has no effect, as its shape is a trace", "stick")
     elif not _is_length(fault.extend):
         raise refuse(f"'extend' must be a length of at least 0, not {fault.extend!r}", "extend")
     _check_names(project, refuse, "rocks", fault.rocks, "youngest", fault.youngest)
+
+
+def _check_trace(project, fault: Fault, refuse) -> None:
+    """Refuses a trace without a dip, and what there is of one without a trace."""
+    if fault.trace is None:
+        for key in _OF_TRACES:
+            if getattr(fault, key) is not None:
+                raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")
+        return
+    for key in _OF_TRACES:
+        try:
+            checked(key, FAULT[key], getattr(fault, key))
+        except OptionRefused as error:
+            raise refuse(error.what, key, error.advice) from error
+    if fault.trace_file is None and fault.dip is None:
+        raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
+    if isinstance(fault.elevation, str):
+        rocks = [project.rocks[number] for number in displaced_surfaces(project, fault)]
+        names = dict.fromkeys(surface.name for rock in rocks for surface in rock.surfaces)
+        if fault.elevation not in names:
+            what = f"'elevation' names surface '{fault.elevation}', which the rock that it displaces lacks"
+            raise refuse(what, "elevation", _there(names) if names else None)
 
 
 def _check_body(project, body: Body) -> None:
@@ -88,7 +116,7 @@ def _check_shape(entry, refuse, files: tuple[str, ...]) -> None:
     if arrays and (entry.vertices is None or entry.triangles is None):
         raise refuse("it needs vertices and triangles together")
     try:
-        for file in (entry.mesh_file, getattr(entry, "point_file", None)):
+        for file in (entry.mesh_file, *(getattr(entry, key, None) for key in ("point_file", "trace_file"))):
             if file is not None:
                 file.check()
     except ReadingRefused as error:

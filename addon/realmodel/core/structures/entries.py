@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..map_layer import is_wkt
 from ..point_file import MeshFile, PointFile
 
 
@@ -23,7 +24,7 @@ class _Shape:
     @property
     def input_file(self) -> Path | None:
         """The file that gives its shape; None where arrays do."""
-        given = self.mesh_file or getattr(self, "point_file", None)
+        given = self.mesh_file or getattr(self, "point_file", None) or getattr(self, "trace_file", None)
         return None if given is None else Path(given.file)
 
     def shape_source(self) -> tuple[Path | None, int | None]:
@@ -44,6 +45,14 @@ class Fault(_Shape):
     file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
     such a surface is continued beyond the points, model units.
 
+    Or its shape is a `trace`, the line in which it cuts the ground, with a `dip` in degrees below the
+    horizontal: points (N, 2) or (N, 3), several such lines, well-known text, or a file or PointFile of lines.
+    `dip_direction`: degrees clockwise from north (+y), or "N", "NE", ... for the side of the trace; not
+    needed where it is vertical. Files may have both as attributes. `elevation` of the line: a number, or the
+    name of the surface that it is on; None: z of the line (NaN: none), else it is on the youngest surface.
+    The fault goes on straight at both ends, through the rock; with `extend`, or where it dies out, only so
+    far.
+
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at
     which it ends; the smaller part of it beyond is dropped. dies_out: it ends inside the rock, where its
     displacement vanishes. rocks: names of the rock masses that it displaces; none: all that have `youngest`.
@@ -60,15 +69,29 @@ class Fault(_Shape):
     stick: str | int | None = None
     extend: float = 0.0
     mesh: str | Path | MeshFile | None = None
+    trace: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = None
+    dip: float | None = None
+    dip_direction: float | str | None = None
+    elevation: float | str | None = None
+    traced: Fault | None = field(default=None, repr=False, compare=False)  # as it was, with the line as read
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: object | None = field(default=None, repr=False, compare=False)
 
     @property
     def point_file(self) -> PointFile | None:
         """The file of its points; None where they are an array, or there are none."""
-        if isinstance(self.points, (str, Path)):
-            return PointFile(self.points)
-        return self.points if isinstance(self.points, PointFile) else None
+        return _as_point_file(self.points)
+
+    @property
+    def trace_file(self) -> PointFile | None:
+        """The file of its trace; None where it is an array or text, or there is none."""
+        return None if isinstance(self.trace, str) and is_wkt(self.trace) else _as_point_file(self.trace)
+
+
+def _as_point_file(given) -> PointFile | None:
+    if isinstance(given, (str, Path)):
+        return PointFile(given)
+    return given if isinstance(given, PointFile) else None
 
 
 @dataclass

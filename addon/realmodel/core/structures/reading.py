@@ -17,18 +17,24 @@ from ..work import Work
 from ..wrong_sides import Triangulation
 from .entries import Body, Fault, body_item, fault_item
 from .fitted import fit_points, fit_sticks
+from .history import displaced_surfaces
+from .traces import read_trace, trace_surface
 from .triangles import NoTwoSides, open_edges, oriented, without_flat
 
 
-def read_structures(work: Work, project, threads: int = 0):
+def read_structures(work: Work, project, threads: int = 0, inputs=None):
     """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
-    only; and the warnings of reading and fitting. Raises InputRefused."""
+    only; and the warnings of reading and fitting. inputs: the rock masses, read (RockInput), which faults
+    given by a trace go through; None: these keep their traces, read. Raises InputRefused."""
     warnings: list[BuildWarning] = []
     total = len(project.faults) + len(project.bodies) or 1
     faults, bodies = [], []
     for number, fault in enumerate(project.faults):
         work.step(number / total)
-        faults.append(_read_fault(work, fault, project.units, threads, warnings))
+        if fault.trace is not None:
+            faults.append(_read_traced(work, fault, project, inputs, threads, warnings))
+        else:
+            faults.append(_read_fault(work, fault, project.units, threads, warnings))
     for number, body in enumerate(project.bodies, len(faults)):
         work.step(number / total)
         bodies.append(_read_body(body, project.units, warnings))
@@ -59,6 +65,43 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
         mesh=None,
         shape_file=shape_file,
     )
+
+
+def _read_traced(
+    work: Work, fault: Fault, project, inputs, threads: int, warnings: list[BuildWarning]
+) -> Fault:
+    item, shape_file = fault_item(fault), fault.input_file or fault.shape_file
+    try:
+        traced, texts = read_trace(fault, project.units)
+        traced = replace(traced, shape_file=shape_file)
+        if inputs is None:
+            return traced
+        (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault), threads)
+    except InputRefused as error:
+        raise _within(error, fault, item) from error
+    warnings += [BuildWarning(f"{item}: {text}", "trace") for text in (*texts, *more)]
+    return replace(
+        traced,
+        vertices=vertices,
+        triangles=triangles,
+        trace=None,
+        dip=None,
+        dip_direction=None,
+        elevation=None,
+        extend=0.0,
+        traced=traced,
+    )
+
+
+def _tops(project, inputs, fault: Fault) -> list[tuple]:
+    """Of each rock mass that a fault displaces its RockInput, and the number of the surface that the trace is
+    on: of the named one (None where there is none), else of the youngest."""
+    tops = []
+    for rock in displaced_surfaces(project, fault):
+        names = [surface.name for surface in inputs[rock].rock.surfaces]
+        named = fault.elevation if isinstance(fault.elevation, str) else names[-1]
+        tops.append((inputs[rock], names.index(named) if named in names else None))
+    return tops
 
 
 def _fitted(work: Work, fault: Fault, points, threads: int) -> Triangulation:

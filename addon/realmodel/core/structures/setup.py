@@ -92,7 +92,7 @@ def structured_inputs(
     sheets and regions are kept. Raises InputRefused."""
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project, reader)
-        faults, bodies, warnings = read_structures(work, project, threads)
+        faults, bodies, warnings = read_structures(work, project, threads, inputs)
     steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
     for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):

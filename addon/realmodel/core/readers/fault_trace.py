@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Traces of faults: lines of a file with the attributes that say how the fault dips."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..directions import checked_direction
+from ..errors import InputRefused
+from ..map_layer import MapLayer
+from ..method_options import OptionRefused
+from ..point_file import PointFile
+from ..units import MODEL_UNIT
+from .map_input import shapes_in_turn
+from .point_input import OFTEN_NO_VALUE, in_model, refuse_keys
+from .shapes import Heights, Shapes
+from .text import Step, no_step
+from .wkt import parse_wkt
+
+_NOT_LETTERS = re.compile(r"[^a-z]")
+_DIP, _DIRECTION, _STRIKE = re.compile("dip(angle)?"), re.compile("dip(dir|az).*"), re.compile("strike.*")
+
+
+@dataclass(frozen=True)
+class FaultLines:
+    """lines: (N, 3) float64 each, z NaN where there is none. dip, dip_direction: degrees (or a point of the
+    compass) of their attributes; None where they have none."""
+
+    lines: list[np.ndarray]
+    dip: float | None = None
+    dip_direction: float | str | None = None
+
+
+def read_fault_trace(
+    given: PointFile | str, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> FaultLines:
+    """The lines of a file of outlines and lines, or of a well-known text, in the model's unit.
+
+    The attributes of the dip are `dip`, and `dip_direction` (`dip_dir`, `dip_azimuth`, ...) or `strike` (the
+    fault dips to the right of it), in upper or lower case. Raises InputRefused naming the file and the
+    feature.
+    """
+    if isinstance(given, str):
+        return FaultLines(_lines(parse_wkt(given, None, True), None))
+    file = Path(given.file)
+    refuse_keys(file, "has lines", given.only_for_tables)
+    shapes = Shapes()
+    layer = MapLayer(file, given.layer, given.where)
+    for found in shapes_in_turn(layer, step, Heights(given.height, with_attributes=True)):
+        shapes = found
+    missing = [float(value) for value in given.nodata_values if not isinstance(value, str)]
+    lines = _lines(shapes, file)
+    for line in lines:
+        line[np.isin(line[:, 2], missing), 2] = np.nan
+    features = {_feature(shapes, item): None for item, _ in shapes.lines}
+    attributes = [(item, (shapes.attributes or {}).get(item, {})) for item in features]
+    missing += OFTEN_NO_VALUE
+    return FaultLines(
+        [in_model(line, given, model_unit) for line in lines],
+        _value(file, attributes, missing, "dip", _dip),
+        _value(file, attributes, missing, "dip direction", _direction),
+    )
+
+
+def _lines(shapes: Shapes, file: Path | None) -> list[np.ndarray]:
+    lines = [line for _, line in shapes.lines if len(line)]
+    if not lines:
+        has = " (it has polygons)" if shapes.polygons else " (it has points)" if shapes.points else ""
+        raise InputRefused(
+            f"there are no lines in it{has}", file=file, advice="draw the trace of the fault as a line"
+        )
+    return lines
+
+
+def _feature(shapes: Shapes, item: str) -> str:
+    """The name of the feature that a line is of; a line of a collection has a longer one."""
+    known = shapes.attributes or {}
+    return next((name for name in (item, item.partition(",")[0]) if name in known), "")
+
+
+def _value(file: Path, attributes, missing: list[float], name: str, read):
+    """What the attributes of all features say alike; None where they say nothing."""
+    found = {}
+    for item, given in attributes:
+        try:
+            value = read(given, missing)
+        except OptionRefused as error:
+            raise InputRefused(error.what, file=file, item=item or None, advice=error.advice) from error
+        if value is not None:
+            found.setdefault(value, item)
+    if len(found) > 1:
+        (one, first), (other, second) = list(found.items())[:2]
+        key = name.replace(" ", "_")
+        raise InputRefused(
+            f"its lines have several values of {name}: {one} ({first}) and {other} ({second})",
+            file=file,
+            advice=f"set {key} = ..., or choose the lines of one fault with where = {{ ... }}",
+        )
+    return next(iter(found), None)
+
+
+def _dip(attributes: Mapping, missing: list[float]) -> float | None:
+    value = _attribute(attributes, _DIP, missing)
+    if value is None:
+        return None
+    if isinstance(value, str) or not 0.0 < value <= 90.0:
+        raise OptionRefused(f"its attribute of the dip is {value!r}; it must be above 0, and at most 90")
+    return value
+
+
+def _direction(attributes: Mapping, missing: list[float]) -> float | str | None:
+    value = _attribute(attributes, _DIRECTION, missing)
+    if value is not None:
+        return checked_direction("dip_direction", value)
+    value = _attribute(attributes, _STRIKE, missing)
+    if isinstance(value, str):
+        raise OptionRefused(f"its attribute of the strike is not a number: {value!r:.40}")
+    return None if value is None else (value + 90.0) % 360.0
+
+
+def _attribute(attributes: Mapping, name: re.Pattern, missing: list[float]) -> float | str | None:
+    """A number or a text of the first attribute that has such a name and a value."""
+    for key, value in attributes.items():
+        if not name.fullmatch(_NOT_LETTERS.sub("", str(key).lower())) or isinstance(value, bool):
+            continue
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            if isinstance(value, str) and value.strip():
+                return value.strip()
+            continue
+        if np.isfinite(number) and number not in missing:
+            return number
+    return None
