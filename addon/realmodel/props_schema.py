@@ -12,6 +12,7 @@ _SEARCH = {
     "rock_mass": choices.rocks,
     "column": choices.columns,
     "layer": choices.layers,
+    "direction": choices.directions,
 }
 
 

@@ -20,9 +20,13 @@ _POINTS_SOURCE = (
     "Points File",
     "File with fault sticks or scattered points; a surface is fitted through them",
 )
+_TRACE_SOURCES = (
+    ("TRACE_OBJECT", "Trace Object", "A curve, or a mesh of edges, along the fault on the ground"),
+    ("TRACE_FILE", "Trace File", "File with the line of the fault on the ground, as of a geological map"),
+)
 
 
-def _shape_properties(sources):
+def _shape_properties(sources, poll=settings.is_mesh_object):
     """A base of a property group with where the shape comes from, and with the object that shows it."""
     properties = {
         "source": EnumProperty(
@@ -39,8 +43,8 @@ def _shape_properties(sources):
         "object": PointerProperty(
             name="Object",
             type=bpy.types.Object,
-            poll=settings.is_mesh_object,
-            description="Mesh object with the shape, including its modifiers",
+            poll=poll,
+            description="Object with the shape, including its modifiers",
             update=changes.source,
         ),
         **interface_properties(),
@@ -77,13 +81,19 @@ _MESH_READING = {key: setting for key, setting in BODY.items() if key in READING
 
 
 class RealModelFault(
-    settings_of(_FAULT, name=changes.name, **dict.fromkeys(_FITTED, changes.fitted)),
+    settings_of(
+        _FAULT,
+        name=changes.name,
+        **dict.fromkeys(_FITTED, changes.fitted),
+        **{key: changes.unset_of_file(key) for key in ("dip", "dip_direction")},
+    ),
     settings_of(READING, changes.reading),
-    _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE)),
+    _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE, *_TRACE_SOURCES), settings.is_fault_object),
     bpy.types.PropertyGroup,
 ):
     """A fault: where its surface comes from, and what it displaces."""
 
+    stored_trace: StringProperty(options={"HIDDEN"})
     filters: CollectionProperty(type=RealModelFilter)
     ends_at: CollectionProperty(type=RealModelFaultEnd)
     rocks: CollectionProperty(type=RealModelFaultRock)

@@ -247,15 +247,20 @@ def test_attributes_of_a_file(write):
         of("F2")
     with pytest.raises(InputRefused, match="no dip direction; set dip_direction = 90 or 270"):
         of("F2", dip=60)
-    with pytest.raises(
-        InputRefused, match=r"faults.geojson.*several values of dip: 60.0 \(feature 1\) and 80"
-    ):
+    with pytest.raises(InputRefused, match=r"faults.geojson: fault 'F': the lines of its trace do not go on"):
         fault_of(Fault("F", trace=file))
     file.write_text(faults_geojson(Dip=95))
     with pytest.raises(
         InputRefused, match=r"feature 1: its attribute of the dip is 95.0; it must be above 0"
     ):
         of("F1")
+    pieces = json.loads(faults_geojson())
+    pieces["features"][2]["geometry"]["coordinates"] = [[5, 8], [5, 9]]
+    file.write_text(json.dumps(pieces))
+    both = PointFile(file, where={"NAME": ["F1", "F3"]})
+    with pytest.raises(InputRefused, match=r"differ in 'dip': it is 60.0 in feature 1 and 80.0 in feature 3"):
+        fault_of(Fault("F", trace=both))
+    fault_of(Fault("F", trace=both, dip=90))
 
 
 def packed(line, z=None):

@@ -379,7 +379,7 @@ def _place_interfaces(current, tree, interfaces):
             scene.give_name(bpy.data.objects, item, row.name)
         row.interface = item
         row.interface_digest = digest
-        if row.source in ("MESH_FILE", "POINTS_FILE"):
+        if row.source in ("MESH_FILE", "POINTS_FILE", "TRACE_FILE"):
             row.object = item
 
 

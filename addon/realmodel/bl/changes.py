@@ -125,6 +125,17 @@ def fitted(fault, context):
     (reading if fault.source == "POINTS_FILE" else setting)(fault, context)
 
 
+def unset_of_file(key):
+    """A callback for a setting that an attribute of the file of a trace gives, where it is unset: the file is
+    read again then."""
+
+    def changed(fault, context):
+        reads = fault.source == "TRACE_FILE" and not getattr(fault, key)
+        (reading if reads else setting)(fault, context)
+
+    return changed
+
+
 def fit_variogram(surface, context):
     """The fitting of the variogram was switched off: the settings begin with the fitted one."""
     if settings.is_filling():

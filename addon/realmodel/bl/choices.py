@@ -3,6 +3,7 @@
 file. Blender asks for them when such a field is edited, never while a panel is drawn."""
 
 from ..core import RealModelError
+from ..core.directions import COMPASS
 from ..core.readers import contents
 from . import caches, project_settings, reading_text, settings, stored_arrays
 
@@ -11,7 +12,9 @@ _found = caches.new(most=64)  # by the stamp of a file and the kind of names: re
 
 
 def surfaces(row, _context, _text):
-    """The other surfaces of the rock mass."""
+    """The other surfaces of the rock mass; of a fault those of all rock masses."""
+    if settings.kind_of(row) == "fault":
+        return all_surfaces(row, _context, _text)
     return [other.name for other in settings.rock_of(row).surfaces if other != row]
 
 
@@ -23,6 +26,10 @@ def all_surfaces(row, _context, _text):
 
 def rocks(row, _context, _text):
     return [rock.name for rock in row.id_data.realmodel.rocks]
+
+
+def directions(_row, _context, _text):
+    return list(COMPASS)
 
 
 def faults(row, _context, _text):

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..core import InputRefused, PointFile, RealModelError
 from ..core.readers import read_point_file, read_region
+from ..core.readers.fault_trace import read_fault_trace
 from . import borehole_picks, display, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
@@ -136,6 +137,13 @@ def _wanted(scene, read):
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),
                 )
+    for fault in scene.realmodel.faults:
+        if fault.source == "TRACE_FILE" and (fault.filepath or fault.stored_trace):
+            key = fault.stored_stamp if fault.stored_trace else file_key(fault)
+            found[f"trace {fault.name} {key or _checksum(fault.stored_trace)}"] = (
+                f"{fault.name} trace",
+                lambda fault=fault: _trace(scene, fault),
+            )
     return found
 
 
@@ -170,6 +178,20 @@ def _outline(scene, rock):
     plan = np.concatenate(rings)
     begin_z = project_settings.model_origin(scene)[2]
     return np.column_stack([plan, np.full(len(plan), begin_z)]), np.concatenate(edges).astype(np.int32)
+
+
+def _trace(scene, fault):
+    """The lines of a fault's file, where they have no elevation at the height of the scene's zero."""
+    if fault.stored_trace:
+        lines = [stored_arrays.unpack(fault.stored_trace)["line"]]
+    else:
+        given = PointFile(project_settings.absolute(fault.filepath), **reading_text.options(fault))
+        lines = read_fault_trace(given, scene.realmodel.units).lines
+    places = np.concatenate(lines)
+    places[np.isnan(places[:, 2]), 2] = project_settings.model_origin(scene)[2]
+    ends = np.cumsum([len(line) for line in lines])
+    first = np.setdiff1d(np.arange(len(places)), ends - 1)
+    return places, np.stack([first, first + 1], 1).astype(np.int32)
 
 
 def _new(scene, stamp, name, coordinates, edges):

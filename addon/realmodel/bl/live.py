@@ -60,7 +60,7 @@ def changed(scene, depsgraph):
         made = row.interface if row.interface_digest else None
         if made is not None and _names(made) & edited:
             touch(scene)
-        source = row.object if row.source in ("MESH_OBJECT", "POINTS_OBJECT") else None
+        source = row.object if row.source in settings.OF_OBJECTS else None
         if source is not None and _names(source) & edited:
             touch(scene)
 

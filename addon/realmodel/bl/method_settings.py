@@ -10,6 +10,7 @@ from ..core.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.setting import property_name, switch_name
 from .settings import number, set_number
 
+_NAME_OR_NUMBER = ("surface", "direction")  # kinds of settings that are a text in the panel
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
 
 
@@ -39,8 +40,8 @@ def value(row, key, settings):
         given = number(row, name)
         return None if setting.zero_is_none and given == 0.0 else given
     given = getattr(row, name)
-    if setting.kind == "surface":
-        return _surface_or_elevation(given)
+    if setting.kind in _NAME_OR_NUMBER:
+        return _name_or_number(given)
     return None if given == "" or (given == "NONE" and "" in setting.words) else given
 
 
@@ -59,7 +60,7 @@ def set_value(row, key, settings, given):
             setattr(row, name, setting.default or "NONE")
     elif setting.kind in ("number", "length"):
         set_number(row, name, given)
-    elif setting.kind == "surface":
+    elif setting.kind in _NAME_OR_NUMBER:
         setattr(row, name, given if isinstance(given, str) else repr(given))
     else:
         setattr(row, name, given)
@@ -93,7 +94,7 @@ def set_options(row, method, options):
     row.other_options = json.dumps(others) if others else ""
 
 
-def _surface_or_elevation(text):
+def _name_or_number(text):
     text = text.strip()
     try:
         return float(text)

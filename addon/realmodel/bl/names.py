@@ -40,7 +40,7 @@ def _references(scene, row, kind):
     if kind == "surface":
         rock = settings.rock_of(row)
         yield from ((other, key) for other in rock.surfaces for key in _OF_SURFACES)
-        yield from ((fault, "youngest") for fault in group.faults)
+        yield from ((fault, key) for fault in group.faults for key in ("youngest", "elevation"))
         yield from ((body, "after") for body in group.bodies)
     elif kind == "fault":
         yield from ((end, "name") for fault in group.faults for end in fault.ends_at)

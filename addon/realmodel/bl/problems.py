@@ -25,7 +25,8 @@ def remember(scene, error):
     activity = bpy.context.window_manager.realmodel
     activity.problem = build_job.message(error)
     row = build_job.refused_surface(scene, error)
-    item = None if row is None else (row.object if row.source == "MESH_OBJECT" else row.interface)
+    is_given = row is not None and row.source in ("MESH_OBJECT", "TRACE_OBJECT")
+    item = None if row is None else (row.object if is_given else row.interface)
     if project_settings.in_use(item) and (error.triangles or error.place is not None):
         activity.problem_object = item.name
         activity.problem_triangles = json.dumps([int(t) for t in error.triangles])

@@ -65,11 +65,7 @@ def user_objects(scene):
     """The objects of the user that a model is made from: where they stand fixes its origin."""
     found = [row.region for row in scene.realmodel.rocks]
     found += [item for row in scene.realmodel.rocks for item in plan_mesh.objects(row)]
-    found += [
-        row.object
-        for _, row in settings.interface_rows(scene)
-        if row.source in ("POINTS_OBJECT", "MESH_OBJECT")
-    ]
+    found += [row.object for _, row in settings.interface_rows(scene) if row.source in settings.OF_OBJECTS]
     return [item for item in found if item is not None]
 
 
@@ -184,14 +180,17 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             return
+    if row.source == "TRACE_OBJECT":
+        _trace_of_object(composed, surface, row, depsgraph)
+        return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
         name_file(surface, row, path)
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
-        _take_stored(surface, stored)
+        _take_stored(surface, stored, row)
     else:
-        kind = "points" if row.source == "POINTS_FILE" else "mesh"
+        kind = {"POINTS_FILE": "points", "TRACE_FILE": "trace"}.get(row.source, "mesh")
         raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
 
 
@@ -199,6 +198,8 @@ def name_file(entry, row, path):
     """Sets the file of a surface, fault or body from its row, with its import options."""
     if row.source == "POINTS_FILE":
         entry.points = PointFile(path, **reading_text.options(row))
+    elif row.source == "TRACE_FILE":
+        structure_settings.set_trace(entry, row, PointFile(path, **reading_text.options(row)))
     else:
         entry.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
 
@@ -206,6 +207,8 @@ def name_file(entry, row, path):
 def _stored_key(row):
     """The key under which a row stores the shape of its file: of faults the fitted surface, not the
     points."""
+    if row.source == "TRACE_FILE":
+        return "stored_trace"
     return "stored" if row.source == "POINTS_FILE" and hasattr(row, "stored") else "stored_mesh"
 
 
@@ -223,10 +226,15 @@ def keep_shape(row, text, stamp):
 def forget_shape(row):
     """Discards the stored shape of a row's file."""
     setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
+    if hasattr(row, "stored_trace"):
+        row.stored_trace = ""
     row.stored_stamp = ""
 
 
-def _take_stored(surface, text):
+def _take_stored(surface, text, row):
+    if row.source == "TRACE_FILE":
+        structure_settings.set_stored_trace(surface, row, text)
+        return
     for key, array in stored_arrays.unpack(text).items():
         setattr(surface, key, array)
 
@@ -234,7 +242,7 @@ def _take_stored(surface, text):
 def _from_object(composed, place, surface, row, depsgraph):
     if row.object is None:
         if row.source == "MESH_OBJECT" and row.stored_mesh:
-            _take_stored(surface, row.stored_mesh)
+            _take_stored(surface, row.stored_mesh, row)
             return
         raise InputRefused("it has no object", advice="choose the object that gives its shape")
     if not in_use(row.object) and row.object.modifiers:
@@ -253,6 +261,13 @@ def _from_object(composed, place, surface, row, depsgraph):
     composed.objects.add(place)
     base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
     _take_mesh(composed, surface, row.object, given, triangles, base)
+
+
+def _trace_of_object(composed, fault, row, depsgraph):
+    if row.object is None:
+        raise InputRefused("it has no object", advice="choose the curve or mesh along its trace")
+    lines = [line + composed.origin for line in shapes.lines(row.object, depsgraph)]
+    structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
 
 
 def _made_of(scene, place, row):
@@ -315,6 +330,8 @@ def entry_at(project, place):
 
 def packed(surface):
     """The text that a row keeps of the shape of a realmodel.core.Surface, Fault or Body with arrays."""
+    if getattr(surface, "traced", None) is not None:
+        return structure_settings.packed_trace(surface.traced)
     if getattr(surface, "points", None) is not None:
         return stored_arrays.pack(points=np.asarray(surface.points, np.float64))
     return stored_arrays.pack_mesh(surface.vertices, surface.triangles)

@@ -12,6 +12,9 @@ VERSION = 5  # of the settings; versioning.py brings older ones up to it
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
+OF_OBJECTS = ("POINTS_OBJECT", "MESH_OBJECT", "TRACE_OBJECT")  # sources that are objects of the user
+TRACES = ("TRACE_OBJECT", "TRACE_FILE")  # sources of faults that are lines
+
 _quiet = 0  # how many blocks of code fill in settings at the moment
 
 
@@ -47,6 +50,11 @@ def is_mesh_object(_row, item):
 def is_region_object(_row, item):
     """Poll of pointers to objects that can bound a region."""
     return item.type in {"MESH", "CURVE"} and DATA not in item
+
+
+def is_fault_object(row, item):
+    """Poll of the pointer of a fault: to a mesh, or to a curve or mesh along its trace."""
+    return (is_region_object if row.source == "TRACE_OBJECT" else is_mesh_object)(row, item)
 
 
 def active_rock(scene):

@@ -162,39 +162,53 @@ def plan_lines(item, depsgraph):
 def polyline(item, depsgraph):
     """The one line of a curve or mesh object seen from above, (N, 2) float64 offsets from the origin, as it
     was drawn; a closed one ends where it begins. Raises InputRefused where it is no line."""
+    found, what = lines(item, depsgraph), f"object '{item.name}'"
+    if len(found) > 1:
+        raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
+    line = found[0][:, :2]
+    line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
+    if len(line) < 2:
+        raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
+    return line
+
+
+def lines(item, depsgraph):
+    """The lines of a curve or mesh object, each (N, 3) float64 offsets from the origin, as they were drawn;
+    closed ones end where they begin. Raises InputRefused where there are none, or they have branches."""
     with evaluated_mesh(item, depsgraph) as mesh:
-        plan = offsets(item, mesh)[:, :2]
+        places = offsets(item, mesh)
         edges = versions.edge_vertices(mesh)
-    degree = np.bincount(edges.ravel(), minlength=len(plan))
-    ends = np.flatnonzero(degree == 1)
+    degree = np.bincount(edges.ravel(), minlength=len(places))
     what = f"object '{item.name}'"
     if not len(edges):
         raise InputRefused(
             "it has no edges", item=what, advice="draw a line, such as a curve seen from above"
         )
-    if (degree > 2).any() or len(ends) > 2:
+    if (degree > 2).any():
         raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
-    onward = [[] for _ in plan]
+    onward = [[] for _ in places]
     for a, b in edges.tolist():
         onward[a].append(b)
         onward[b].append(a)
-    at = int(ends[0] if len(ends) else edges.min())
-    chain, before = [at], -1
-    while True:
-        following = next((k for k in onward[at] if k != before), None)
-        if following is None:
-            break
-        before, at = at, following
-        chain.append(at)
-        if at == chain[0]:
-            break
-    if len(set(chain)) < (degree > 0).sum():
-        raise InputRefused("it has several parts", item=what, advice="leave one line without branches")
-    line = plan[chain]
-    line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
-    if len(line) < 2:
-        raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
-    return line
+    left, found = degree > 0, []
+    for start in [*np.flatnonzero(degree == 1).tolist(), *np.flatnonzero(degree == 2).tolist()]:
+        if not left[start]:
+            continue
+        chain, before = [start], -1
+        while (following := next((k for k in onward[chain[-1]] if k != before), None)) is not None:
+            before = chain[-1]
+            chain.append(following)
+            if following == start:
+                break
+        left[chain] = False
+        found.append(places[chain])
+    return found
+
+
+def has_edges(item, depsgraph):
+    """Whether there is an edge in a curve or mesh object."""
+    with evaluated_mesh(item, depsgraph) as mesh:
+        return len(mesh.edges) > 0
 
 
 def _bounding_edges(mesh):

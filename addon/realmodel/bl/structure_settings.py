@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Converts faults and bodies between the rows of a scene and realmodel.core."""
 
+import numpy as np
+
 from ..core import Body, Fault, Project, work
 from ..core.schema import BODY, FAULT
 from ..core.structures.entries import body_item, fault_item
@@ -8,6 +10,7 @@ from ..core.structures.reading import read_structures
 from . import method_settings, reading_text, settings, stored_arrays
 
 _FAULT_KEYS = ("youngest", "dies_out", "extend")
+_TRACE_KEYS = ("dip", "dip_direction", "elevation")
 _BODY_KEYS = ("after", "property", "void", "rock")
 
 
@@ -26,6 +29,30 @@ def entry_of(place, row):
     return fault
 
 
+def set_trace(fault, row, trace):
+    """Sets the trace of a realmodel.core.Fault, and what the row says of it."""
+    fault.trace = trace
+    for key in _TRACE_KEYS:
+        setattr(fault, key, method_settings.value(row, key, FAULT))
+
+
+def set_stored_trace(fault, row, text):
+    """Sets the trace that a row has stored; the dip of its file counts where the row has none."""
+    arrays = stored_arrays.unpack(text)
+    set_trace(fault, row, arrays["line"])
+    for key in ("dip", "dip_direction"):
+        if getattr(fault, key) is None and key in arrays:
+            setattr(fault, key, arrays[key].item())
+
+
+def packed_trace(fault):
+    """The text that a row keeps of the trace of a realmodel.core.Fault that was read, with its dip."""
+    dips = {key: getattr(fault, key) for key in ("dip", "dip_direction")}
+    return stored_arrays.pack(
+        line=fault.trace, **{key: np.array(value) for key, value in dips.items() if value is not None}
+    )
+
+
 def item_of(entry):
     """The name of a fault or a body in messages."""
     return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
@@ -41,7 +68,7 @@ def fill(scene, project):
     for fault in project.faults:
         row = group.faults.add()
         row.name = fault.name
-        for key in _FAULT_KEYS:
+        for key in (*_FAULT_KEYS, *_TRACE_KEYS):
             method_settings.set_value(row, key, FAULT, getattr(fault, key))
         for key in ("ends_at", "rocks"):
             for name in getattr(fault, key):
@@ -59,13 +86,16 @@ def fill(scene, project):
 def _fill_shape(row, entry, units):
     row.source = "MESH_FILE"
     if entry.input_file is not None:
-        points = getattr(entry, "point_file", None)
-        row.source = "MESH_FILE" if points is None else "POINTS_FILE"
+        points, trace = (getattr(entry, key, None) for key in ("point_file", "trace_file"))
+        row.source = "POINTS_FILE" if points else "TRACE_FILE" if trace else "MESH_FILE"
         row.filepath = str(entry.input_file)
-        reading_text.fill(row, vars(points or entry.mesh_file))
+        reading_text.fill(row, vars(points or trace or entry.mesh_file))
         return
-    if entry.vertices is None:  # points from a script
+    if entry.vertices is None:  # points or a trace from a script or a project file
         entry = work.run(lambda task: _read_fault(task, entry, units))
+    if entry.vertices is None:
+        row.source, row.stored_trace = "TRACE_FILE", packed_trace(entry)
+        return
     row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
 
 

@@ -110,6 +110,11 @@ def selected_meshes(context):
     return None if there else "no mesh object is selected; select the surfaces of your model first"
 
 
+def selected_shapes(context):
+    there = any(settings.is_region_object(None, item) for item in context.selected_objects)
+    return None if there else "no mesh object or curve is selected; select faults or bodies first"
+
+
 def selected_blocks(context):
     selected = set(context.selected_objects)
     there = any(row.object in selected for row in context.scene.realmodel.results)

@@ -9,10 +9,12 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, StringProp
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
-from ..core import InputRefused, MeshFile
+from ..core import InputRefused, MapLayer, MeshFile
+from ..core.errors import HeightsMissing
 from ..core.point_file import PointFile
-from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh
+from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh, read_shapes
 from ..core.readers.fault_sticks import read_fault_points
+from ..core.structures.traces import VERTICAL
 from ..core.structures.triangles import open_edges
 from .reporting import (
     Reporting,
@@ -22,7 +24,7 @@ from .reporting import (
     remove_row,
     require_file,
     row_number,
-    selected_meshes,
+    selected_shapes,
 )
 from .surfaces import library_items
 from .view import edit_interface
@@ -88,11 +90,12 @@ def _counts_text(kinds):
 
 
 class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
-    """Add the selected mesh objects: a closed mesh as a body, an open one as a fault"""
+    """Add the selected objects: a closed mesh as a body, an open one as a fault, and a curve or a mesh of
+    edges as the trace of a vertical fault, whose dip can be set then"""
 
     bl_idname = "realmodel.fault_body_from_selected"
     bl_label = "From Selected Meshes"
-    needs = (selected_meshes,)
+    needs = (selected_shapes,)
 
     kind: EnumProperty(name="Kind", description="What they are", items=_KINDS, options={"SKIP_SAVE"})
 
@@ -101,29 +104,36 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
         chosen = [
             item
             for item in context.selected_objects
-            if settings.is_mesh_object(None, item) and not _is_surface(scene, item)
+            if settings.is_region_object(None, item) and not _is_surface(scene, item)
         ]
         if not chosen:
             raise InputRefused(
                 "the selected meshes are in the model already", advice="select other mesh objects"
             )
-        kinds = []
-        for item in chosen:
-            vertices, triangles = shapes.triangulation(item, depsgraph)
-            if not len(triangles):
-                raise InputRefused(f"object '{item.name}' has no faces", advice="select meshes with faces")
-            kinds.append(_kind_of_shape(self.kind, vertices, triangles))
-        for item, kind in zip(chosen, kinds, strict=True):
-            row = _add(scene, kind, item.name, "MESH_OBJECT")
+        found = [self._looked_at(item, depsgraph) for item in chosen]
+        for item, (kind, source) in zip(chosen, found, strict=True):
+            row = _add(scene, kind, item.name, source)
             with settings.filling():
                 row.object = item
+                if source == "TRACE_OBJECT":
+                    settings.set_number(row, "dip", VERTICAL)
         live.touch(scene)
-        self.report({"INFO"}, f"Added {_counts_text(kinds)}")
+        self.report({"INFO"}, f"Added {_counts_text([kind for kind, _ in found])}")
+
+    def _looked_at(self, item, depsgraph):
+        """(kind, source) of an object. Raises InputRefused."""
+        vertices, triangles = shapes.triangulation(item, depsgraph)
+        if len(triangles):
+            return _kind_of_shape(self.kind, vertices, triangles), "MESH_OBJECT"
+        if self.kind == "BODY" or not shapes.has_edges(item, depsgraph):
+            raise InputRefused(f"object '{item.name}' has no faces", advice="select meshes with faces")
+        shapes.lines(item, depsgraph)
+        return "fault", "TRACE_OBJECT"
 
 
 class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
-    """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...), or fault sticks and points, through
-    which a surface is fitted"""
+    """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...), fault sticks and points, through
+    which a surface is fitted, or lines of a map, which continue down their dip"""
 
     bl_idname = "realmodel.fault_body_add"
     bl_label = "Import Faults and Bodies"
@@ -184,7 +194,14 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
         if not is_mesh_file(path):
             if self.kind == "BODY":
                 raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
-            points, _ = read_fault_points(PointFile(path), None, units)
+            try:
+                points, _ = read_fault_points(PointFile(path), None, units)
+            except HeightsMissing:
+                lines = [line for _, line in read_shapes(MapLayer(path), units).lines]
+                if not lines:
+                    raise
+                plan = np.concatenate(lines)
+                return "fault", "TRACE_FILE", path, np.column_stack([plan, np.zeros(len(plan))])
             whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
             return "fault", "POINTS_FILE", path, whole
         mesh = read_mesh(path)
@@ -232,7 +249,7 @@ class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
         with settings.filling():
             row.name = settings.free_name(rows, source.name, own=row)
             row.interface, row.interface_digest, row.figures = None, "", ""
-            if row.source != "MESH_OBJECT":
+            if row.source not in settings.OF_OBJECTS:
                 row.object = None
             rows.move(len(rows) - 1, number + 1)
             setattr(scene.realmodel, f"active_{kind}", number + 1)

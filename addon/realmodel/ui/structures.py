@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import settings
+from ..bl import project_settings, settings
 from ..core.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
 from .lists import draw_swatch
@@ -11,7 +11,8 @@ from .panel import OfAModel, TabPanel, file_field, hint
 from .surfaces import draw_figures, draw_filters, draw_property
 
 _EMPTY = {
-    "FAULT": "Faults displace the layers. Select open meshes, or import meshes or fault sticks.",
+    "FAULT": "Faults displace the layers. Select open meshes or lines on the ground, or import meshes, fault "
+    "sticks or lines.",
     "BODY": "Bodies are another rock in the layers, or a void: intrusions, domes, tunnels. "
     "Select closed meshes, or import them.",
 }
@@ -49,11 +50,11 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
             return
         layout.separator()
         layout.prop(entry, "source")
-        if entry.source == "MESH_OBJECT":
+        if entry.source in settings.OF_OBJECTS:
             layout.prop(entry, "object")
         else:
             file_field(layout, entry, "filepath")
-            if entry.stored_mesh and not entry.filepath:
+            if project_settings.stored_shape(entry) and not entry.filepath:
                 hint(layout, "The shape is stored in the .blend.")
         if kind == "FAULT":
             _draw_fault(layout, entry)
@@ -68,6 +69,9 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
 
 
 def _draw_fault(layout, fault):
+    if fault.source in settings.TRACES:
+        for key in ("dip", "dip_direction", "elevation", "extend"):
+            setting_rows.draw(layout, fault, key, FAULT)
     setting_rows.draw(layout, fault, "youngest", FAULT)
     setting_rows.draw(layout, fault, "dies_out", FAULT)
     _draw_names(layout, fault, "ends_at", "Ends At")
@@ -103,7 +107,7 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         entry = settings.active_structure(context.scene)
-        return entry is not None and entry.source != "MESH_OBJECT" and bool(entry.filepath)
+        return entry is not None and entry.source not in settings.OF_OBJECTS and bool(entry.filepath)
 
     def draw_in(self, layout, context, _group):
         entry = settings.active_structure(context.scene)
@@ -112,9 +116,12 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
             for key in MESH_READING:
                 setting_rows.draw(layout, entry, key, READING)
             return
-        for key in ("extend", "stick"):
+        is_trace = entry.source == "TRACE_FILE"
+        for key in () if is_trace else ("extend", "stick"):
             setting_rows.draw(layout, entry, key, FAULT)
         for key in READING:
+            if is_trace and key in ("columns", "separator", "decimal"):
+                continue
             if key == "where":
                 draw_filters(layout, entry, of_fault=True)
             else:

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -28,23 +28,49 @@ _DIP, _DIRECTION, _STRIKE = re.compile("dip(angle)?"), re.compile("dip(dir|az).*
 
 @dataclass(frozen=True)
 class FaultLines:
-    """lines: (N, 3) float64 each, z NaN where there is none. dip, dip_direction: degrees (or a point of the
-    compass) of their attributes; None where they have none."""
+    """lines: (N, 3) float64 each, z NaN where there is none. attributes: of the features that they are of, by
+    the names of these in messages; missing: numbers in them that mean no value."""
 
     lines: list[np.ndarray]
-    dip: float | None = None
-    dip_direction: float | str | None = None
+    file: Path | None = None
+    attributes: dict[str, Mapping] = field(default_factory=dict)
+    missing: Sequence[float] = ()
+
+    def dip(self) -> float | None:
+        """The dip in degrees that the attributes of all features say alike; None where they say none. Raises
+        InputRefused naming the feature."""
+        return self._value("dip", _dip)
+
+    def dip_direction(self) -> float | str | None:
+        """As dip: degrees, or a point of the compass, of `dip_direction` (`dip_dir`, `dip_azimuth`, ...) or
+        `strike` (the fault dips to the right of it), in upper or lower case."""
+        return self._value("dip_direction", _direction)
+
+    def _value(self, key: str, read):
+        found = {}
+        for item, given in self.attributes.items():
+            try:
+                value = read(given, self.missing)
+            except OptionRefused as error:
+                item = item or None
+                raise InputRefused(error.what, file=self.file, item=item, advice=error.advice) from error
+            if value is not None:
+                found.setdefault(value, item)
+        if len(found) > 1:
+            (one, first), (other, second) = list(found.items())[:2]
+            raise InputRefused(
+                f"its lines differ in '{key}': it is {one} in {first} and {other} in {second}",
+                file=self.file,
+                advice=f"set {key} = ..., or choose the lines of one fault with where = {{ ... }}",
+            )
+        return next(iter(found), None)
 
 
 def read_fault_trace(
     given: PointFile | str, model_unit: str = MODEL_UNIT, step: Step = no_step
 ) -> FaultLines:
-    """The lines of a file of outlines and lines, or of a well-known text, in the model's unit.
-
-    The attributes of the dip are `dip`, and `dip_direction` (`dip_dir`, `dip_azimuth`, ...) or `strike` (the
-    fault dips to the right of it), in upper or lower case. Raises InputRefused naming the file and the
-    feature.
-    """
+    """The lines of a file of outlines and lines, or of a well-known text, in the model's unit. Raises
+    InputRefused naming the file."""
     if isinstance(given, str):
         return FaultLines(_lines(parse_wkt(given, None, True), None))
     file = Path(given.file)
@@ -57,14 +83,10 @@ def read_fault_trace(
     lines = _lines(shapes, file)
     for line in lines:
         line[np.isin(line[:, 2], missing), 2] = np.nan
-    features = {_feature(shapes, item): None for item, _ in shapes.lines}
-    attributes = [(item, (shapes.attributes or {}).get(item, {})) for item in features]
-    missing += OFTEN_NO_VALUE
-    return FaultLines(
-        [in_model(line, given, model_unit) for line in lines],
-        _value(file, attributes, missing, "dip", _dip),
-        _value(file, attributes, missing, "dip direction", _direction),
-    )
+    known = shapes.attributes or {}
+    attributes = {name: known.get(name, {}) for name in (_feature(known, item) for item, _ in shapes.lines)}
+    lines = [in_model(line, given, model_unit) for line in lines]
+    return FaultLines(lines, file, attributes, (*missing, *OFTEN_NO_VALUE))
 
 
 def _lines(shapes: Shapes, file: Path | None) -> list[np.ndarray]:
@@ -77,34 +99,12 @@ def _lines(shapes: Shapes, file: Path | None) -> list[np.ndarray]:
     return lines
 
 
-def _feature(shapes: Shapes, item: str) -> str:
+def _feature(known: Mapping, item: str) -> str:
     """The name of the feature that a line is of; a line of a collection has a longer one."""
-    known = shapes.attributes or {}
     return next((name for name in (item, item.partition(",")[0]) if name in known), "")
 
 
-def _value(file: Path, attributes, missing: list[float], name: str, read):
-    """What the attributes of all features say alike; None where they say nothing."""
-    found = {}
-    for item, given in attributes:
-        try:
-            value = read(given, missing)
-        except OptionRefused as error:
-            raise InputRefused(error.what, file=file, item=item or None, advice=error.advice) from error
-        if value is not None:
-            found.setdefault(value, item)
-    if len(found) > 1:
-        (one, first), (other, second) = list(found.items())[:2]
-        key = name.replace(" ", "_")
-        raise InputRefused(
-            f"its lines have several values of {name}: {one} ({first}) and {other} ({second})",
-            file=file,
-            advice=f"set {key} = ..., or choose the lines of one fault with where = {{ ... }}",
-        )
-    return next(iter(found), None)
-
-
-def _dip(attributes: Mapping, missing: list[float]) -> float | None:
+def _dip(attributes: Mapping, missing: Sequence[float]) -> float | None:
     value = _attribute(attributes, _DIP, missing)
     if value is None:
         return None
@@ -113,7 +113,7 @@ def _dip(attributes: Mapping, missing: list[float]) -> float | None:
     return value
 
 
-def _direction(attributes: Mapping, missing: list[float]) -> float | str | None:
+def _direction(attributes: Mapping, missing: Sequence[float]) -> float | str | None:
     value = _attribute(attributes, _DIRECTION, missing)
     if value is not None:
         return checked_direction("dip_direction", value)
@@ -123,7 +123,7 @@ def _direction(attributes: Mapping, missing: list[float]) -> float | str | None:
     return None if value is None else (value + 90.0) % 360.0
 
 
-def _attribute(attributes: Mapping, name: re.Pattern, missing: list[float]) -> float | str | None:
+def _attribute(attributes: Mapping, name: re.Pattern, missing: Sequence[float]) -> float | str | None:
     """A number or a text of the first attribute that has such a name and a value."""
     for key, value in attributes.items():
         if not name.fullmatch(_NOT_LETTERS.sub("", str(key).lower())) or isinstance(value, bool):

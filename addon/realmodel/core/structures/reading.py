@@ -70,10 +70,10 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
 def _read_traced(
     work: Work, fault: Fault, project, inputs, threads: int, warnings: list[BuildWarning]
 ) -> Fault:
-    item, shape_file = fault_item(fault), fault.input_file or fault.shape_file
+    item = fault_item(fault)
+    fault = replace(fault, shape_file=fault.input_file or fault.shape_file)
     try:
         traced, texts = read_trace(fault, project.units)
-        traced = replace(traced, shape_file=shape_file)
         if inputs is None:
             return traced
         (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault), threads)

@@ -49,10 +49,10 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
         text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
         warnings.append(text)
-    dip = found.dip if fault.dip is None else fault.dip
-    direction = found.dip_direction
-    if fault.dip_direction is not None:
-        direction = checked_direction("dip_direction", fault.dip_direction)
+    dip = found.dip() if fault.dip is None else fault.dip
+    direction = checked_direction("dip_direction", fault.dip_direction)
+    if direction is None and dip != VERTICAL:
+        direction = found.dip_direction()
     if dip is None:
         what = "it has no dip, and its file has no attribute 'dip'"
         raise InputRefused(what, advice="set dip = ... (90 where the fault is vertical)")
