@@ -178,6 +178,8 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             row = _add(scene, kind, path.stem, source)
             with settings.filling():
                 row.filepath = str(path)
+                scene.realmodel.show_data |= source == "TRACE_FILE"
+        data_objects.update(scene)
         live.touch(scene)
         self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
 
@@ -230,6 +232,7 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
             built_scene.release_surface(scene, row)
             rows.remove(number)
             setattr(scene.realmodel, f"active_{kind}", max(0, min(number, len(rows) - 1)))
+        data_objects.update(scene)
         live.touch(scene)
 
 
@@ -253,6 +256,7 @@ class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
                 row.object = None
             rows.move(len(rows) - 1, number + 1)
             setattr(scene.realmodel, f"active_{kind}", number + 1)
+        data_objects.update(scene)
         live.touch(scene)
 
 
