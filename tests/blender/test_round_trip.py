@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A project file opened in the panel and saved again says the same: nothing that it can say is lost."""
 
+import json
 import sqlite3
 import struct
 from pathlib import Path
@@ -166,6 +167,29 @@ name = "F2"
 mesh = "fault.off"
 units = { xy = "ft", z = "m" }
 ends_at = ["F1"]
+
+[[fault]]
+name = "F3"
+trace = [[450.1, 3, 2.5], [452, 33], [449, 70, 0.1]]
+dip = 62.3
+dip_direction = "se"
+elevation = "top"
+extend = 3.7
+dies_out = true
+rocks = ["by points"]
+
+[[fault]]
+name = "F4"
+trace = "faults.geojson"
+where = { NAME = "F4" }
+units = "ft"
+dip_direction = 250.25
+elevation = -3.3
+
+[[fault]]
+name = "F5"
+trace = "MULTILINESTRING Z ((440 0 1, 440 30 2), (440 35 2, 440 80 2))"
+dip = 90
 """
 
 BODIES = """
@@ -188,6 +212,9 @@ def write_files(folder: Path):
     (folder / "project.toml").write_text(EVERY_KEY + FAULTS + BODIES)
     sticks = [(450 + z / 9, y, z, y) for y in (0, 40, 80) for z in (-90, 0, 90)]
     (folder / "sticks.csv").write_text("x,y,z,s\n" + "".join(f"{x!r},{y},{z},{y}\n" for x, y, z, _ in sticks))
+    feature = {"type": "Feature", "properties": {"NAME": "F4", "dip": 50.5, "strike": 1}}
+    feature["geometry"] = {"type": "LineString", "coordinates": [[1450, 0], [1460.1, 260]]}
+    (folder / "faults.geojson").write_text(json.dumps(feature))
     (folder / "fault.off").write_text("OFF\n3 1 0\n450 0 -9\n450 80 -9\n480.1 40 99\n3 0 1 2\n")
     corners = "5 5 5\n10.3 5 5\n5 10 5\n5 5 10\n"
     (folder / "salt.off").write_text(f"OFF\n4 4 0\n{corners}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n")
@@ -236,8 +263,9 @@ def write_contours(path):
 
 def said(project):
     """All that a project says, with arrays in the place of files, and equal where it means the same."""
-    rocks = [entry.rock for entry in run(lambda work: read_rocks(work, project))]
-    faults, bodies, _ = run(lambda work: read_structures(work, project))
+    inputs = run(lambda work: read_rocks(work, project))
+    rocks = [entry.rock for entry in inputs]
+    faults, bodies, _ = run(lambda work: read_structures(work, project, inputs=inputs))
     return {
         "name": project.name,
         "units": project.units,
