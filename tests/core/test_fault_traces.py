@@ -8,6 +8,7 @@ import struct
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from realmodel.core import (
     BuildFailed,
     Fault,
@@ -21,8 +22,12 @@ from realmodel.core import (
     load_project,
 )
 from realmodel.core.project_writer import save_project
+from realmodel.core.readers import read_point_file
 from realmodel.core.readers.vendored import vendored
+from realmodel.core.rock_input import read_rocks
 from realmodel.core.structures.displacement import displacements
+from realmodel.core.structures.reading import read_structures
+from realmodel.core.work import run
 from structure_cases import SQUARE, plane_fault
 
 try:
@@ -131,6 +136,19 @@ def ground_mesh(height, n=41):
     a, b, c, d = (part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
     triangles = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     return np.column_stack([x, y, height(x, y)]), triangles
+
+
+def test_a_side_gives_the_plane_through_the_line_back():
+    """A trace across a slope is oblique to the dip direction; with the side alone it is the same plane."""
+    lean = 1 / math.tan(math.radians(35))
+    line = np.array([[5.0 - lean * z, y, z] for y, z in ((1, 0.5), (4, 0.9), (5, 0.2), (9, 2.5))])
+    vertices, _, _ = fault_of(Fault("F", trace=line, dip=35, dip_direction="SE"))
+    assert np.abs(vertices[:, 0] - 5.0 + lean * vertices[:, 2]).max() < 1e-9
+    steep = Fault("F", trace=line, dip=5, dip_direction="SE")
+    with pytest.raises(
+        InputRefused, match="between the ends of its trace is about as steep as its dip, 5 deg"
+    ):
+        fault_of(steep)
 
 
 def test_a_trace_on_a_hilly_ground_gives_the_plane_back():
@@ -487,3 +505,40 @@ def test_the_elevation_is_needed_where_nothing_says_it():
         Fault("F", trace=NORTHWARD, dip=60, dip_direction="E", elevation=7.0), surfaces=surfaces
     )
     assert np.allclose(vertices.min(axis=0), wanted.min(axis=0))
+
+
+MAP = ROOT.parent / "shared" / "data" / "field" / "hamersley_map_dips"
+
+
+@pytest.mark.skipif(not MAP.is_dir(), reason="../shared/data/field/hamersley_map_dips is not there")
+def test_faults_of_a_real_map():
+    """Each on the relief of the ground: vertical as its attributes say, and with a dip of 30 to its side."""
+    ground = read_point_file(PointFile(MAP / "dtm.tif"))[0][::5]
+    low, high = ground.min(axis=0), ground.max(axis=0)
+    region = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
+    surfaces = [
+        Surface(name, points=ground + np.array([0, 0, z])) for name, z in (("base", -3000), ("ground", 0))
+    ]
+    given = Project("map", [Rock("r", surfaces, np.array(region), edge_length=2000.0)])
+    features = json.loads((MAP / "faults.geojson").read_text())["features"][::4]
+    for feature in features:
+        trace = PointFile(MAP / "faults.geojson", where={"objectid": feature["properties"]["objectid"]})
+        (line,) = feature["geometry"]["coordinates"]
+        (dx, dy) = np.subtract(line[-1], line[0])
+        side = math.degrees(math.atan2(dy, -dx)) % 360  # to the left of it
+        word = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")[round(side / 45) % 8]
+        given.faults.append(Fault(f"{len(given.faults)} as it is", trace=trace))
+        given.faults.append(
+            Fault(f"{len(given.faults)} {side}", trace=trace, dip=30, dip_direction=word, dies_out=True)
+        )
+    faults, _, warnings = run(lambda work: read_structures(work, given, inputs=read_rocks(work, given)))
+    assert warnings == []
+    for plain, dipping in zip(faults[::2], faults[1::2], strict=True):
+        assert np.allclose(attitude(plain.vertices, plain.triangles)[0], 90)
+        assert attitude(dipping.vertices, dipping.triangles)[0].min() > 30 - 1e-6
+        a, b, c = dipping.vertices[dipping.triangles].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a).sum(axis=0)
+        normal *= np.sign(normal[2])
+        assert math.degrees(math.acos(normal[2] / np.linalg.norm(normal))) == pytest.approx(30, abs=1e-6)
+        wanted = float(dipping.name.split()[1])
+        assert (math.degrees(math.atan2(*normal[:2])) - wanted + 180) % 360 - 180 == pytest.approx(0, abs=45)

@@ -73,15 +73,15 @@ def trace_surface(
 
     tops: of each rock mass that it displaces, the RockInput, and the number of the surface that the line is
     on where it has no elevation, or None. A number as direction is that of the dip, and all rulings are
-    parallel to it; a point of the compass says the side, and the dip is at right angles to the line through
-    the ends. Raises InputRefused.
+    parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
+    InputRefused.
     """
     plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace[:, 2])
     extent = float(norm(plan[1] - plan[0]))
     margin = (high - low) + extent / 4
     low, high = low - margin, high + margin
-    run, toward = _dip_of(fault)
     line, given = _with_heights(work, fault, tops, extent, threads)
+    run, toward = _dip_of(fault, line)
     # where the surface cuts the level `high`: a line along its strike
     top = (
         line[:, :2] if fault.dip == VERTICAL else line[:, :2] - (run * (high - line[:, 2]))[:, None] * toward
@@ -203,7 +203,7 @@ def _sides(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return right, -right
 
 
-def _dip_of(fault: Fault) -> tuple[float, np.ndarray]:
+def _dip_of(fault: Fault, line: np.ndarray) -> tuple[float, np.ndarray]:
     """How far the surface goes sideways for each unit down, and the direction (2,) of that."""
     if fault.dip == VERTICAL:
         return 0.0, np.zeros(2)
@@ -211,11 +211,21 @@ def _dip_of(fault: Fault) -> tuple[float, np.ndarray]:
     run, direction = float(cos(angle) / sin(angle)), fault.dip_direction
     if direction not in COMPASS:
         return run, unit_vector(direction)
-    right, left = _sides(fault.trace)
-    share = float(dot(right, unit_vector(COMPASS[direction])))
-    if abs(share) < _ALONG:
+    right, left = _sides(line)
+    side = float(dot(right, unit_vector(COMPASS[direction])))
+    if abs(side) < _ALONG:
         raise _along(f"its dip direction, {direction},", right)
-    return run, right if share > 0 else left
+    # of the two planes with this dip through both ends the one that dips to this side
+    ends = line[[0, -1]]
+    share = run * float(ends[0, 2] - ends[1, 2]) / float(norm(ends[1, :2] - ends[0, :2]))
+    if abs(share) >= _OBLIQUE:
+        raise InputRefused(
+            f"the line between the ends of its trace is about as steep as its dip, {fault.dip:g} degrees",
+            advice="give the dip direction in degrees, or correct the dip or the elevations",
+            place=tuple(ends[0].tolist()),
+        )
+    along = (ends[1, :2] - ends[0, :2]) / norm(ends[1, :2] - ends[0, :2])
+    return run, math.sqrt(1.0 - share * share) * (right if side > 0 else left) + share * along
 
 
 def _along(what: str, across: np.ndarray) -> InputRefused:
