@@ -225,15 +225,17 @@ def test_an_edge_of_three_polygons_is_counted(model):
     )  # one of two polygons at a place is taken back
 
 
-def test_the_ends_of_narrow_sections_are_below_the_subtitle(model):
-    drawing = draw_section(model.fence([at(48, 50)[:2], at(52, 50)[:2]]))
-    written = [item for item in drawing.items if isinstance(item, Text) and item.layer == "Text"]
-    boxes = [
-        (item.x, item.y, item.x + text_width(item.text, item.size), item.y + item.size)
-        for item in written
-        if item.anchor == "start"
-    ]
-    assert sum(item.text.startswith("x ") for item in written) == 2
+@pytest.mark.parametrize("width", [0.5, 2, 4, 10, 30])
+def test_the_ends_of_narrow_sections_are_below_the_subtitle(model, width):
+    drawing = draw_section(model.fence([at(48, 50)[:2], at(48 + width, 50)[:2]]))
+    level = [item for item in drawing.items if isinstance(item, Text) and not item.angle]
+    shift = {"start": 0.0, "middle": 0.5, "end": 1.0}
+    boxes = []
+    for item in level:
+        long = text_width(item.text, item.size)
+        left = item.x - shift[item.anchor] * long
+        boxes.append((left, item.y, left + long, item.y + item.size))
+    assert sum(item.text.startswith("x ") for item in level) == 2
     for number, one in enumerate(boxes):
         assert one[0] >= 0 and one[2] <= drawing.width and one[3] <= drawing.height
         for other in boxes[:number]:

@@ -263,7 +263,10 @@ def _draw_ends(drawing: Drawing, axes: Axes, section: Section, ends: list[str], 
         for at in section.bends[1:-1]:
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
             drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
-    corners = (x, "start", 12), (x + width, "end", -12)
+    sides = ("start", "end")
+    if width < sum(text_width(letter, _SIZE + 1) for letter in "AB") + _SIZE:
+        sides = ("end", "start")  # no room for both over the section
+    corners = (x, sides[0], 12), (x + width, sides[1], -12)
     for number, (letter, text, (at, anchor, away)) in enumerate(zip("AB", ends, corners, strict=False)):
         drawing.text(at, y + height + 5, letter, _SIZE + 1, anchor=anchor, layer="Text")
         if are_beside:

@@ -86,13 +86,13 @@ class Axes:
             drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
 
     def _x_ticks(self) -> tuple[np.ndarray, list[str]]:
-        """As many ticks as there is room for."""
+        """As many ticks as there is room for; the first one at least."""
         for most in range(9, 1, -1):
             values = ticks(*self.x_range, most)
             texts = tick_texts(values)
             if sum(text_width(text, self.size) + self.size for text in texts) < self.box[2]:
-                break
-        return values, texts
+                return values, texts
+        return values[:1], texts[:1]
 
 
 def legend(
