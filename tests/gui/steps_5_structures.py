@@ -106,4 +106,40 @@ def lists_of_faults_and_bodies(walk):
                 bpy.utils.register_class(cls)
 
 
-STEPS = (compartments_apart, lists_of_faults_and_bodies)
+def a_line_with_a_dip(walk):
+    """A curve on the ground becomes a fault; with its dip the compartments are others."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    panels = _show_alone({"REALMODEL_PT_start", "REALMODEL_PT_structures"})
+    try:
+        yield from open_the_tab(walk)
+        with in_the_viewport(walk):
+            _select([_object(f"S{n}", *_sheet(30.0 * n)) for n in range(2)])
+            bpy.ops.realmodel.from_selected()
+            curve = bpy.data.curves.new("Scarp", "CURVE")
+            curve.dimensions = "3D"
+            line = curve.splines.new("POLY")
+            line.points.add(1)
+            line.points.foreach_set("co", (50, 10, 30, 1, 50, 90, 30, 1))
+            item = bpy.data.objects.new("Scarp", curve)
+            bpy.context.scene.collection.objects.link(item)
+            _select([item])
+            bpy.ops.realmodel.fault_body_from_selected()
+        group = bpy.context.scene.realmodel
+        group.faults[0].dip, group.faults[0].dip_direction = 60.0, "E"
+        walk.over_viewport()
+        invoked(walk, bpy.ops.realmodel.build)
+        yield lambda: idle() and len(group.results) > 0
+        volumes = compartments.read(bpy.context.scene)["volumes"]["S1 block"]
+        assert max(volumes) > 1.1 * min(volumes), volumes
+        yield walk.redrawn(3)
+        walk.shot("trace")
+    finally:
+        for cls in panels:
+            if not cls.is_registered:
+                bpy.utils.register_class(cls)
+
+
+STEPS = (compartments_apart, lists_of_faults_and_bodies, a_line_with_a_dip)
