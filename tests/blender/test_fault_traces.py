@@ -168,6 +168,10 @@ class Drawn(TraceCase):
         self.refused(ops.build, "must be a direction, not 'east'")
         fault.dip, fault.dip_direction = 0.0, ""
         self.refused(ops.build, "a trace needs a dip")
+        tube = outline("tube", LINE, cyclic=False)
+        tube.data.bevel_depth = 1.0
+        select(tube)
+        self.refused(ops.fault_body_from_selected, "object 'tube': it is not one line")
         fault.object = None
         self.refused(ops.build, "it has no object; choose the curve or mesh along its trace")
 

@@ -473,6 +473,15 @@ def test_arrays_that_are_no_lines():
             build_surfaces(project(Fault("F", trace=trace, dip=90)))
 
 
+def test_numbers_of_numpy():
+    given = Fault("F", trace=NORTHWARD, dip=np.int64(60), dip_direction=np.float32(90), elevation=np.int32(1))
+    wanted, _, _ = fault_of(Fault("F", trace=NORTHWARD, dip=60.0, dip_direction="E", elevation=1.0))
+    assert fault_of(given)[0] == pytest.approx(wanted)
+    given.elevation = np.ones(3)
+    with pytest.raises(InputRefused, match="'elevation' must be a number or the name of a surface"):
+        fault_of(given)
+
+
 def test_an_oblique_direction_is_warned_of():
     """Exactly the direction given, with what the dip becomes then."""
     vertices, triangles, warnings = fault_of(

@@ -139,7 +139,10 @@ def _wanted(scene, read):
                 )
     for fault in scene.realmodel.faults:
         if fault.source == "TRACE_FILE" and (fault.filepath or fault.stored_trace):
-            key = fault.stored_stamp if fault.stored_trace else file_key(fault)
+            try:
+                key = fault.stored_stamp if fault.stored_trace else file_key(fault)
+            except RealModelError:
+                continue
             found[f"trace {fault.name} {key or _checksum(fault.stored_trace)}"] = (
                 f"{fault.name} trace",
                 lambda fault=fault: _trace(scene, fault),

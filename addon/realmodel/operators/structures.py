@@ -123,7 +123,7 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
     def _looked_at(self, item, depsgraph):
         """(kind, source) of an object. Raises InputRefused."""
         vertices, triangles = shapes.triangulation(item, depsgraph)
-        if len(triangles):
+        if item.type == "MESH" and len(triangles):
             return _kind_of_shape(self.kind, vertices, triangles), "MESH_OBJECT"
         if self.kind == "BODY" or not shapes.has_edges(item, depsgraph):
             raise InputRefused(f"object '{item.name}' has no faces", advice="select meshes with faces")

@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import InputRefused
 from ..method_options import OptionRefused, checked, is_name
 from ..point_file import ReadingRefused
@@ -77,6 +79,8 @@ def _check_trace(project, fault: Fault, refuse) -> None:
             raise refuse(error.what, key, error.advice) from error
     if fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
+    if np.ndim(fault.elevation):
+        raise refuse("'elevation' must be a number or the name of a surface", "elevation")
     if isinstance(fault.elevation, str):
         rocks = [project.rocks[number] for number in displaced_surfaces(project, fault)]
         names = dict.fromkeys(surface.name for rock in rocks for surface in rock.surfaces)

@@ -12,6 +12,7 @@ from ..methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
 from ..project import Surface, surface_item
 from ..work import Work, native_module
 
+_MANY = 10_000  # points: these are enough for the elevations of a line
 _LIFTS = ("thickness", "minimum_thickness")  # by which a surface may lie above another one's data
 
 
@@ -66,9 +67,17 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[tuple], threads: int) ->
         what = f"the elevation of its trace is not known: {named} has no points or mesh"
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
-    points = np.ascontiguousarray(np.unique(points, axis=0))
+    points = np.ascontiguousarray(np.unique(_near(points, plan[rest]), axis=0))
     found[rest] = heights(work, points, plan[rest], CONTINUATION, options, threads).z
     return found
+
+
+def _near(points: np.ndarray, plan: np.ndarray) -> np.ndarray:
+    """Of very many points those around places, as far as these reach; all, if there are few."""
+    low, high = plan.min(axis=0), plan.max(axis=0)
+    margin = (high - low).max()
+    inside = ((points[:, :2] >= low - margin) & (points[:, :2] <= high + margin)).all(axis=1)
+    return points[inside] if np.count_nonzero(inside) >= _MANY else points
 
 
 def _every_data(entry) -> list[np.ndarray]:
@@ -79,7 +88,9 @@ def _data(entry, number: int) -> np.ndarray:
     """(P, 3) the points of a surface, or the vertices of its mesh."""
     shape, points = entry.surfaces[number], entry.rock.surfaces[number].points
     if shape is not None:
-        return shape[0][np.unique(shape[1])]
+        used = np.zeros(len(shape[0]), bool)
+        used[shape[1].ravel()] = True
+        return shape[0][used]
     return np.empty((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 
 

@@ -62,7 +62,9 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
             "it has a dip, but no dip direction",
             advice=f"set dip_direction = {one} or {other}, the two sides of its trace",
         )
-    return replace(fault, trace=line, dip=dip, dip_direction=direction), warnings
+    level = fault.elevation
+    level = level if level is None or isinstance(level, str) else float(level)
+    return replace(fault, trace=line, dip=float(dip), dip_direction=direction, elevation=level), warnings
 
 
 def trace_surface(
@@ -243,7 +245,7 @@ def _with_heights(
     more where it is put on a surface."""
     line = fault.trace.copy()
     given = np.ones(len(line), bool)
-    if isinstance(fault.elevation, (int, float)):
+    if isinstance(fault.elevation, float):
         line[:, 2] = fault.elevation
     elif fault.elevation is not None:
         line[:, 2] = np.nan
