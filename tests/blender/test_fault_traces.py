@@ -6,8 +6,8 @@ import json
 import bpy
 import numpy as np
 from panel_case import ops, outline, select
-from realmodel.bl import compartments, data_objects, project_settings, settings, viewports
-from realmodel.core import load_project
+from realmodel.bl import built_scene, compartments, data_objects, project_settings, settings, viewports
+from realmodel.core import PointFile, build, load_project
 from test_structures import StructureCase, mesh_object, wall
 
 LINE = [(50.0, 10.0), (50.0, 90.0)]
@@ -235,6 +235,27 @@ class OfFiles(TraceCase):
         ops.save_project(filepath=str(self.folder / "p.toml"))
         (again,) = load_project(self.folder / "p.toml").faults
         self.assertEqual(again.trace.shape, (2, 3))
+
+    def test_a_model_that_was_built_elsewhere(self):
+        """As build_model.py leaves it: the line is kept, with its file or without, not the surface alone."""
+        path = self.line_file(DIP=45, DIP_DIR=90)
+        self.layers()
+        ops.fault_body_add(filepath=str(path))
+        ops.build()
+        wanted = self.parts()
+        project = project_settings.compose(self.scene, viewports.updated_layer(self.scene).depsgraph).project
+        project.faults[0].trace = PointFile(path)
+        self.emptied()
+        model = build(project)
+        for given in (None, project):
+            built_scene.write_model(self.scene, model, given)
+            row = self.model.faults[0]
+            self.assertEqual((row.source, bool(row.filepath)), ("TRACE_FILE", given is not None))
+            self.assertTrue(row.stored_trace)
+            self.same(wanted)
+        path.unlink()
+        ops.build()
+        self.same(wanted)
 
     def test_a_project_file_with_a_trace(self):
         self.line_file(DIP=45, DIP_DIR=90, NAME="F1")

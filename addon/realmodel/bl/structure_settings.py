@@ -65,7 +65,7 @@ def fill(scene, project):
     group.bodies.clear()
     group.active_fault = group.active_body = 0
     group.structure_kind = "BODY" if project.bodies and not project.faults else "FAULT"
-    for fault in project.faults:
+    for fault in (each.traced or each for each in project.faults):
         row = group.faults.add()
         row.name = fault.name
         for key in (*_FAULT_KEYS, *_TRACE_KEYS):
