@@ -10,6 +10,7 @@ from random import Random
 import numpy as np
 import pytest
 from realmodel.core import Model, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core.cell_complex import CellComplex
 from realmodel.core.contours import checked_interval, contours
 from realmodel.core.geological_map import geological_map
 from realmodel.core.map_layer import MapLayer
@@ -105,11 +106,9 @@ def test_maps_of_samples(sample):
 
 def as_model(case, cells):
     arrays = built(case, cells=cells)
-    names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
     none, offsets = np.empty((0, 3)), np.zeros(1, np.int64)
     return Model(
-        *(np.asarray(arrays[name]) for name in names),
-        cells,
+        CellComplex.of(arrays, cells),
         [],
         none,
         none.astype(np.int32),

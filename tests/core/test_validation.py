@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
 from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
+from realmodel.core.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
 from realmodel.core.validation import ValidationReport
 from stacks import places
@@ -47,7 +48,8 @@ def model(request):
 
 def damaged(model, **arrays):
     """A copy of a model with some arrays replaced."""
-    return dataclasses.replace(model, **arrays)
+    of_cells = {name: arrays.pop(name) for name in ARRAYS if name in arrays}
+    return dataclasses.replace(model, complex=dataclasses.replace(model.complex, **of_cells), **arrays)
 
 
 def failed(report):

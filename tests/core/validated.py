@@ -5,18 +5,13 @@ import io
 
 import numpy as np
 from realmodel.core import Block, Model, Project, Rock, Surface
+from realmodel.core.cell_complex import CellComplex
 from realmodel.core.exporters.npz import write_npz
 from realmodel.core.rock_input import RockInput
 from stacks import places
 from stacks.model_view import built, exported_arrays, rocks_of
 
-_OF_MODEL = (
-    "vertices",
-    "face_offsets",
-    "face_vertices",
-    "face_cells",
-    "face_surface",
-    "cell_block",
+_OF_SURFACES = (
     "surface_vertices",
     "surface_triangles",
     "surface_vertex_offsets",
@@ -42,9 +37,9 @@ def as_model(case, cells="columns"):
         for b, (s, rock) in enumerate(zip(arrays["block_surface"], arrays["block_rock"], strict=True))
     ]
     return Model(
-        **{name: arrays[name] for name in _OF_MODEL},
-        cell_kind=cells,
-        blocks=blocks,
+        CellComplex.of(arrays, cells),
+        blocks,
+        **{name: arrays[name] for name in _OF_SURFACES},
         surface_names=[s.name for entry in inputs for s in entry.rock.surfaces],
         project=Project("stack", [entry.rock for entry in inputs]),
         rock_inputs=inputs,

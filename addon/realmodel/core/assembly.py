@@ -5,32 +5,31 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .blocks import Block, count_blocks
+from .blocks import Block
 from .build_options import check_cells, check_stage
 from .build_warning import BuildWarning
+from .built_cells import BuiltCells
+from .cell_complex import CellComplex
+from .model_data import ModelData, surface_arrays
 from .rock_input import RockInput
 from .stack_refusals import refused_stack
 from .structures.joining import build_joined
 from .structures.labels import cell_compartments, warnings_where_rock_is
 from .work import Cancel, Progress, Work, native_module, run
 
-if TYPE_CHECKING:
-    from .model import Model
-
 _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
 
 def build_stage(
-    model: Model,
+    model: ModelData,
     m: int,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     cells: str | None = None,
-) -> Model:
+) -> ModelData:
     """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
     check_stage(model.project, m)
     kind = model.cell_kind if cells is None else cells
@@ -44,22 +43,11 @@ def build_stage(
     given = model.project
     project = replace(given, rocks=[entry.rock for entry in inputs])
 
-    def task(work: Work) -> Model:
+    def task(work: Work) -> ModelData:
         structures = None if model.structures is None else model.structures.stage(m)
         built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
         timings = {"intersect": time.perf_counter() - began}
-        return assemble(
-            type(model),
-            work,
-            project,
-            inputs,
-            built,
-            kind,
-            model.threads,
-            timings,
-            _STAGE_INTERSECTED,
-            structures,
-        )
+        return assemble(work, project, inputs, built, model.threads, timings, _STAGE_INTERSECTED, structures)
 
     began = time.perf_counter()
     return run(task, progress, cancel)
@@ -67,53 +55,53 @@ def build_stage(
 
 def intersect(
     work: Work, inputs, cells: str, threads: int, start: float, end: float, structures=None
-) -> dict:
-    """The native result of all rock masses, divided by structures where there are some."""
+) -> BuiltCells:
+    """The cells of all rock masses, divided by structures where there are some."""
     if structures is not None:
         return build_joined(work, inputs, structures, cells, threads, start, end)
     native = native_module()
     rocks = [entry.native() for entry in inputs]
     with work.phase(start, end, "intersecting and cutting"):
         try:
-            return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
+            return BuiltCells.of(
+                work.native(native.build_rock_masses, rocks, cells=cells, threads=threads), cells
+            )
         except native.InputError as error:
             raise refused_stack(error, inputs) from error
 
 
 def assemble(
-    kind: type[Model],
     work: Work,
     project,
     inputs: list[RockInput],
-    built: dict,
-    cells,
-    threads,
-    timings,
+    built: BuiltCells,
+    threads: int,
+    timings: dict[str, float],
     start: float,
     structures=None,
-) -> Model:
-    """The model that the native arrays are of. kind: the class Model."""
+) -> ModelData:
+    """The model that these cells are of."""
     began = time.perf_counter()
     with work.phase(start, 1.0, "assembling the model"):
-        arrays = _arrays(inputs, built, structures)
-        component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
+        own = _complex(inputs, built, structures)
+        own.find_components(work)
         work.step(0.8)
-        blocks = list_blocks(inputs, built["volumes"], arrays["cell_block"], component, structures)
+        blocks = list_blocks(inputs, built.volumes, own, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
         kinds = [0] * len(names)
         if structures is not None:
             names += structures.names
             kinds += structures.kinds
         compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
-        model = kind(
-            **arrays,
+        model = ModelData(
+            own,
+            blocks,
+            **_surface_arrays(inputs, structures),
             surface_kind=np.array(kinds, np.int32),
             cell_compartment=compartment,
             compartment_names=compartment_names,
             compartment_sides=sides,
             structures=structures,
-            cell_kind=cells,
-            blocks=blocks,
             surface_names=names,
             project=project,
             rock_inputs=inputs,
@@ -121,29 +109,26 @@ def assemble(
             timings=timings,
             threads=threads,
         )
-        model.cell_component = component
     timings["merge"] = time.perf_counter() - began
     return model
 
 
-def _arrays(inputs: list[RockInput], built: dict, structures) -> dict[str, np.ndarray]:
-    """The arrays that docs/dev/geometry.md names; blocks are numbered without those that cannot exist."""
+def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComplex:
+    """The cells with blocks numbered without those that cannot exist."""
     exists = [
         number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
     ]
-    surfaces = [surface for entry in inputs for surface in entry.surfaces]
     if structures is not None:
         exists += [structures.has_block(number) for number in range(len(structures))]
-        surfaces += [(each.vertices, each.triangles) for each in (*structures.faults, *structures.bodies)]
     block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
-    names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface")
-    arrays = {name: built[name] for name in names}
-    arrays["cell_block"] = block_of_surface[built["cell_block"]].astype(np.int32, copy=False)
-    arrays["surface_vertices"] = np.concatenate([vertices for vertices, _ in surfaces])
-    arrays["surface_triangles"] = np.concatenate([triangles for _, triangles in surfaces])
-    for name, column in (("surface_vertex_offsets", 0), ("surface_triangle_offsets", 1)):
-        arrays[name] = np.cumsum([0, *(len(surface[column]) for surface in surfaces)], dtype=np.int64)
-    return arrays
+    cell_block = block_of_surface[built.complex.cell_block].astype(np.int32, copy=False)
+    return replace(built.complex, cell_block=cell_block)
+
+
+def _surface_arrays(inputs: list[RockInput], structures) -> dict[str, np.ndarray]:
+    """The surfaces one after another, then the structures, by their names in docs/dev/geometry.md."""
+    surfaces = [surface for entry in inputs for surface in entry.surfaces]
+    return surface_arrays(surfaces if structures is None else [*surfaces, *structures.shapes])
 
 
 def _first_block(entry: RockInput) -> int:
@@ -151,13 +136,12 @@ def _first_block(entry: RockInput) -> int:
     return 0 if entry.rock.base_elevation is not None else 1
 
 
-def list_blocks(
-    inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray, structures
-) -> list[Block]:
+def list_blocks(inputs, volumes: np.ndarray, own: CellComplex, structures) -> list[Block]:
+    """The blocks of some cells; without cells those that may be."""
     total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
     bodies = [] if structures is None else structures.blocks_of_bodies()
     total += len(bodies)
-    cells, components = count_blocks(cell_block, component, total)
+    cells, components = own.count_blocks(total)
     blocks, first_surface = [], 0
     for number, entry in enumerate(inputs):
         for k in range(_first_block(entry), len(entry.surfaces)):
@@ -191,12 +175,12 @@ def list_blocks(
     return blocks
 
 
-def _warnings(inputs, built: dict, blocks: list[Block], structures) -> list[BuildWarning]:
+def _warnings(inputs, built: BuiltCells, blocks: list[Block], structures) -> list[BuildWarning]:
     warnings = [warning for entry in inputs for warning in entry.warnings]
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
-    for kind, surface, items, text in built["warnings"]:
+    for kind, surface, items, text in built.warnings:
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
-        warnings.append(BuildWarning(text, kind, rock, named, tuple(int(i) for i in items)))
+        warnings.append(BuildWarning(text, kind, rock, named, items))
     if structures is not None:
         warnings += warnings_where_rock_is(inputs, built, structures)
     for number, entry in enumerate(inputs):

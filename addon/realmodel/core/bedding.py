@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .model_data import ModelData
 from .native_rocks import native_rocks
 from .structures.sides import fault_sides
 from .work import Work, native_module
-
-if TYPE_CHECKING:
-    from .model import Model
 
 _INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
 _INWARDS = 1e-5  # of the distance from a corner to the inner point
@@ -53,7 +50,9 @@ class Bedding:
         return Bedding(*(np.concatenate([vars(part)[name] for part in parts]) for name in vars(parts[0])))
 
 
-def bedding_of(work: Work, model: Model, faces: np.ndarray, is_second: np.ndarray, threads: int) -> Bedding:
+def bedding_of(
+    work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray, threads: int
+) -> Bedding:
     """Bedding coordinates of the faces of a model, cell by cell. faces: (N,) numbers; is_second: (N,) bool,
     of the second cell; then the corners are those of the face in reverse order. Raises Cancelled."""
     faces = np.ascontiguousarray(faces, np.int32)
@@ -107,14 +106,14 @@ def bedding_of(work: Work, model: Model, faces: np.ndarray, is_second: np.ndarra
     return _with_bodies(model, found, faces, is_second, body[block])
 
 
-def _age(model: Model, block: int, layer: np.ndarray) -> float:
+def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
     if layer[block] != _NO_LAYER:
         return float(layer[block])
     body = model.blocks[block].surface - len(model.surface_names) + len(model.structures.bodies)
     return model.structures.times[body].get(model.blocks[block].rock, 0) + 0.5
 
 
-def _with_bodies(model: Model, found: Bedding, faces, is_second, body: np.ndarray) -> Bedding:
+def _with_bodies(model: ModelData, found: Bedding, faces, is_second, body: np.ndarray) -> Bedding:
     """body: (N,) the surface of the body that each polygon is of, -1: none."""
     if (body < 0).all():
         return found
@@ -136,7 +135,7 @@ def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     return np.repeat(begin[numbers] - (ends - size), size) + np.arange(ends[-1] if len(ends) else 0)
 
 
-def _compartments(work: Work, model: Model, structure, faces, is_second, cells, threads) -> np.ndarray:
+def _compartments(work: Work, model: ModelData, structure, faces, is_second, cells, threads) -> np.ndarray:
     """(C,) the compartment of a rock mass that each corner of some faces lies in, by its rows of sides. What
     a compartment of the model leaves open - a fault that does not divide the block, or that dies out - is
     where the corner lies, drawn a little into its cell."""
@@ -156,7 +155,7 @@ def _compartments(work: Work, model: Model, structure, faces, is_second, cells, 
     return equal.argmax(axis=1).astype(np.int32)[row.ravel()]
 
 
-def _points_inside(model: Model, faces: np.ndarray, is_second: np.ndarray) -> np.ndarray:
+def _points_inside(model: ModelData, faces: np.ndarray, is_second: np.ndarray) -> np.ndarray:
     """(C, 3) for each corner a point in its cell close by."""
     offsets, corners = model.face_corners(faces, is_second)
     begin, count = offsets[:-1], np.diff(offsets)
@@ -171,7 +170,7 @@ def _points_inside(model: Model, faces: np.ndarray, is_second: np.ndarray) -> np
     return points + _INWARDS * (np.repeat(inside, count, axis=0) - points)
 
 
-def seen_from_below(model: Model, faces: np.ndarray) -> np.ndarray:
+def seen_from_below(model: ModelData, faces: np.ndarray) -> np.ndarray:
     """(N,) bool: the faces whose corners go clockwise seen from above."""
     offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
     if not len(faces):

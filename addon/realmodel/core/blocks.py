@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,10 +36,3 @@ class BlockBoundary:
     face_vertices: np.ndarray
     face_surface: np.ndarray
     faces: np.ndarray
-
-
-def count_blocks(cell_block: np.ndarray, component: np.ndarray, blocks: int) -> tuple[Sequence, Sequence]:
-    """Cells and connected parts of each block."""
-    cells = np.bincount(cell_block, minlength=blocks)
-    roots = component == np.arange(len(component))
-    return cells, np.bincount(cell_block[roots], minlength=blocks)

@@ -99,7 +99,7 @@ def _build(
     with timed("intersect"):
         built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
     given = replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
-    return assemble(Model, work, given, inputs, built, cells, threads, timings, ends["intersect"], structures)
+    return Model.of(assemble(work, given, inputs, built, threads, timings, ends["intersect"], structures))
 
 
 def _phase_ends(project: Project) -> dict[str, float]:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .polygon_mesh import PolygonMesh, fanned, of_triangles
+from .fans import fanned
+from .polygon_mesh import PolygonMesh, of_triangles
 
 _UP, _DOWN = 1, 2
 

@@ -6,27 +6,25 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Generic, TypeVar
 
 import numpy as np
 
-from .blocks import count_blocks
+from .cell_complex import CellComplex
 from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
+from .model_data import ModelData
 from .section import Fence, Section
 from .section_faults import traces_on_fence, traces_on_plane
 from .surface_input import checked_triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
-if TYPE_CHECKING:
-    from .model import Model
-
 _CUT_SHARE = 0.97
-_ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+SomeModel = TypeVar("SomeModel", bound=ModelData)  # halves are of the class of the whole
 
 
 @dataclass(eq=False)
-class Cut:
+class Cut(Generic[SomeModel]):
     """Both halves of a model, each a model with the same blocks, surfaces and project.
 
     above: the half to which the plane's normal points, above the surface, or outside of a closed surface or
@@ -35,29 +33,29 @@ class Cut:
     that it is or was part of.
     """
 
-    above: Model
-    below: Model
+    above: SomeModel
+    below: SomeModel
     section: Section
     above_cells: np.ndarray
     below_cells: np.ndarray
 
     @property
-    def inside(self) -> Model:
+    def inside(self) -> SomeModel:
         return self.below
 
     @property
-    def outside(self) -> Model:
+    def outside(self) -> SomeModel:
         return self.above
 
 
 def cut_by_plane(
-    model: Model,
+    model: SomeModel,
     point,
     normal,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-) -> Cut:
+) -> Cut[SomeModel]:
     """Cuts a model by a plane. Returns both halves, above (where the normal points) and below, and the
     section.
 
@@ -69,13 +67,13 @@ def cut_by_plane(
 
 
 def cut_by_surface(
-    model: Model,
+    model: SomeModel,
     vertices,
     triangles,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-) -> Cut:
+) -> Cut[SomeModel]:
     """Cuts a model by a triangulated surface in any position: above and below it; outside and inside of a
     closed one.
 
@@ -88,13 +86,13 @@ def cut_by_surface(
 
 
 def cut_by_block(
-    model: Model,
-    other: Model,
+    model: SomeModel,
+    other: ModelData,
     block: int | str,
     threads: int = 0,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
-) -> Cut:
+) -> Cut[SomeModel]:
     """Cuts a model by a block (number or name) of another model, or of the same one: inside and outside.
 
     Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
@@ -102,14 +100,14 @@ def cut_by_block(
     number = _block_number(other, block)
     return _cut(
         model,
-        lambda native: (native.cut_by_block, _native_arrays(other), number),
+        lambda native: (native.cut_by_block, other.native(), number),
         threads,
         progress,
         cancel,
     )
 
 
-def _block_number(model: Model, block: int | str) -> int:
+def _block_number(model: ModelData, block: int | str) -> int:
     names = [entry.name for entry in model.blocks]
     if isinstance(block, str):
         if names.count(block) != 1:
@@ -121,17 +119,19 @@ def _block_number(model: Model, block: int | str) -> int:
     return int(block)
 
 
-def _cut(model: Model, call, threads: int, progress: Progress | None, cancel: Cancel | None) -> Cut:
+def _cut(
+    model: SomeModel, call, threads: int, progress: Progress | None, cancel: Cancel | None
+) -> Cut[SomeModel]:
     """The cut made by call(native), a native function and its arguments after the model."""
     threads = check_threads(threads)
     native = native_module()
 
-    def task(work: Work) -> Cut:
+    def task(work: Work) -> Cut[SomeModel]:
         began = time.perf_counter()
         function, *cutter = call(native)
         with work.phase(0.0, _CUT_SHARE, "cutting"):
             try:
-                halves = work.native(function, _native_arrays(model), *cutter, threads=threads)
+                halves = work.native(function, model.native(), *cutter, threads=threads)
             except native.InputError as error:
                 raise _refused(error) from error
         return _assembled(work, model, halves, began)
@@ -163,7 +163,7 @@ def _refused(error) -> InputRefused:
 
 
 def section(
-    model: Model,
+    model: ModelData,
     point,
     normal,
     threads: int = 0,
@@ -178,7 +178,11 @@ def section(
     def task(work: Work) -> Section:
         with work.phase(0.0, 1.0, "cutting"):
             found = work.native(
-                native_module().section_by_plane, _native_arrays(model), point, normal, threads=threads
+                native_module().section_by_plane,
+                model.native(),
+                point,
+                normal,
+                threads=threads,
             )
         return Section(
             **_section_arrays(model, found),
@@ -190,7 +194,7 @@ def section(
 
 
 def fence(
-    model: Model,
+    model: ModelData,
     polyline,
     threads: int = 0,
     progress: Progress | None = None,
@@ -217,7 +221,7 @@ def fence(
                 panels.append(
                     work.native(
                         native_module().fence_panel,
-                        _native_arrays(model),
+                        model.native(),
                         tuple(start),
                         tuple(end),
                         threads=threads,
@@ -263,12 +267,7 @@ def _plane(point, normal) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return found[0], found[1]
 
 
-def _native_arrays(model: Model) -> dict:
-    arrays = {name: getattr(model, name) for name in _ARRAYS}
-    return arrays | {"blocks": len(model.blocks), "cell_kind": model.cell_kind}
-
-
-def _section_arrays(model: Model, found: dict) -> dict:
+def _section_arrays(model: ModelData, found: dict) -> dict:
     """The arrays of a Section."""
     cells = found["cells"]
     blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
@@ -292,7 +291,7 @@ def _section_arrays(model: Model, found: dict) -> dict:
     }
 
 
-def _assembled(work: Work, model: Model, halves: dict, began: float) -> Cut:
+def _assembled(work: Work, model: SomeModel, halves: dict, began: float) -> Cut[SomeModel]:
     with work.phase(_CUT_SHARE, 1.0, "assembling the halves"):
         found = Section(**_section_arrays(model, halves["section"]))
         above = _half(work, model, halves["above"], halves["above_touches"])
@@ -303,9 +302,10 @@ def _assembled(work: Work, model: Model, halves: dict, began: float) -> Cut:
     return Cut(above, below, found, halves["above"]["cells"], halves["below"]["cells"])
 
 
-def _half(work: Work, model: Model, arrays: dict, touches: bool) -> Model:
-    component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
-    cells, components = count_blocks(arrays["cell_block"], component, len(model.blocks))
+def _half(work: Work, model: SomeModel, arrays: dict, touches: bool) -> SomeModel:
+    own = CellComplex.of(arrays, "blocks" if touches else model.cell_kind)
+    own.find_components(work)
+    cells, components = own.count_blocks(len(model.blocks))
     blocks = [
         replace(
             block,
@@ -315,16 +315,13 @@ def _half(work: Work, model: Model, arrays: dict, touches: bool) -> Model:
         )
         for number, block in enumerate(model.blocks)
     ]
-    half = replace(
+    return replace(
         model,
-        **{name: arrays[name] for name in _ARRAYS},
+        complex=own,
         blocks=blocks,
-        cell_kind="blocks" if touches else model.cell_kind,
         is_cut=True,
         warnings=list(model.warnings),
         timings={},
         cell_compartment=model.cell_compartment[arrays["cells"]],
         compartment_names=model.compartment_names,
     )
-    half.cell_component = component
-    return half

@@ -144,22 +144,22 @@ def _stage_volumes(
     first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)
     if model.structures is None:
-        built = work.native(
+        volume = work.native(
             native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
-        )
+        )["volumes"]
         bodies = None
     else:
         bodies = _with_bodies(model.structures, until or (m + 1, 0))
         inputs = [entry.stage(m) for entry in model.rock_inputs]
-        built = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch)
+        volume = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch).volumes
     for b, block in enumerate(model.blocks):
         own = block.surface - first[block.rock]
         body = block.surface - first[-1]
         if body >= 0:
             if bodies.has_block(body):
-                volumes[b] = built["volumes"][first_kept[-1] + body]
+                volumes[b] = volume[first_kept[-1] + body]
         elif own < kept[block.rock]:
-            volumes[b] = built["volumes"][first_kept[block.rock] + own]
+            volumes[b] = volume[first_kept[block.rock] + own]
     return volumes
 
 

@@ -6,15 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .bedding import Bedding, bedding_of, seen_from_below
+from .model_data import ModelData
 from .work import Cancel, native_module, run
-
-if TYPE_CHECKING:
-    from .model import Model
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,15 +43,6 @@ class PolygonMesh:
         return len(self.offsets) - 1
 
 
-def fanned(offsets: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Polygons as triangles (T, 3) from their first corners, and the polygon (T,) of each."""
-    size = np.diff(offsets)
-    owner = np.repeat(np.arange(len(size)), np.maximum(size - 2, 0))
-    first = offsets[owner]
-    at = first + np.arange(len(owner)) - np.repeat(np.cumsum(size - 2) - (size - 2), size - 2) + 1
-    return np.column_stack([corners[first], corners[at], corners[at + 1]]), owner
-
-
 def of_triangles(coordinates: np.ndarray, triangles: np.ndarray, smooth: bool = False) -> PolygonMesh:
     """A mesh of triangles, (T, 3) int32, with its edges."""
     offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32)
@@ -63,7 +51,7 @@ def of_triangles(coordinates: np.ndarray, triangles: np.ndarray, smooth: bool = 
     return PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges, smooth)
 
 
-def of_surfaces(model: Model, origin: np.ndarray) -> list[PolygonMesh | None]:
+def of_surfaces(model: ModelData, origin: np.ndarray) -> list[PolygonMesh | None]:
     """For each surface of a model, by its global index, the faces that are left of it; None where it is all
     eroded. origin: as for `of_blocks`."""
     order = np.argsort(model.face_surface, kind="stable")
@@ -85,7 +73,7 @@ def of_surfaces(model: Model, origin: np.ndarray) -> list[PolygonMesh | None]:
 
 
 def of_blocks(
-    model: Model,
+    model: ModelData,
     origin: np.ndarray,
     threads: int = 0,
     cancel: Cancel | None = None,
@@ -115,7 +103,7 @@ def of_blocks(
 
 
 def of_cells(
-    model: Model,
+    model: ModelData,
     origin: np.ndarray,
     shrink: float | None,
     threads: int = 0,
@@ -148,7 +136,7 @@ def moved_apart(shape: PolygonMesh, shifts: np.ndarray) -> PolygonMesh:
     return replace(shape, coordinates=shape.coordinates + shifts)
 
 
-def _numbers(model: Model, names: Sequence[str] | None) -> np.ndarray | None:
+def _numbers(model: ModelData, names: Sequence[str] | None) -> np.ndarray | None:
     """The numbers by which the compartments of a model are named; None where it has only one."""
     own = model.compartment_names
     names = list(own if names is None else names)

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .layer_values import at_places
+from .model_data import ModelData
 from .structures.points_at_faults import point_sides
 from .work import Work, run
-
-if TYPE_CHECKING:
-    from .model import Model
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +38,7 @@ class Residuals:
         return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
 
 
-def _heights(model: Model, number: int, at: int, entry, points: np.ndarray) -> np.ndarray:
+def _heights(model: ModelData, number: int, at: int, entry, points: np.ndarray) -> np.ndarray:
     """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
     if model.structures is None:
         return at_places(*model.surface(number), points[:, :2], model.threads)
@@ -60,7 +57,7 @@ def _heights(model: Model, number: int, at: int, entry, points: np.ndarray) -> n
     return run(task)
 
 
-def residuals(model: Model) -> list[Residuals]:
+def residuals(model: ModelData) -> list[Residuals]:
     """The residuals of each surface of a model that was interpolated from points, in the model's order."""
     found, number = [], 0
     for rock, entry in zip(model.project.rocks, model.rock_inputs or model.project.rocks, strict=True):

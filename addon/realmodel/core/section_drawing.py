@@ -5,7 +5,6 @@ age, and the coordinates of both ends."""
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +12,8 @@ from .drawing.charts import Axes, legend, legend_size, tick_texts
 from .drawing.drawing import BLACK, Drawing
 from .drawing.glyphs import text_width
 from .errors import UsageError
+from .section_data import FenceData, SectionData
 from .units import METERS
-
-if TYPE_CHECKING:
-    from .section import Section
 
 MOST_EXAGGERATION = 1000.0
 _POINT = 0.0254 / 72  # meters
@@ -32,7 +29,7 @@ _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 
 def draw_section(
-    section: Section,
+    section: SectionData,
     exaggeration: float = 1.0,
     title: str | None = None,
     cells: tuple[np.ndarray, np.ndarray] | None = None,
@@ -54,7 +51,7 @@ def draw_section(
     exaggeration = exaggeration if is_vertical(section) else 1.0
     places = flat if cells is None else np.concatenate([flat, cells[0].reshape(-1, 2)])
     low, high = places.min(axis=0), places.max(axis=0)
-    if _is_fence(section):
+    if isinstance(section, FenceData):
         low[0], high[0] = 0.0, section.length
     if is_vertical(section):
         high[1] += _SKY * (high[1] - low[1])
@@ -98,21 +95,21 @@ def draw_section(
     return drawing
 
 
-def is_vertical(section: Section) -> bool:
+def is_vertical(section: SectionData) -> bool:
     """Whether heights are upright in the picture: of fences and vertical planes."""
-    return _is_fence(section) or abs(_unit_normal(section)[2]) < _UPRIGHT
+    return isinstance(section, FenceData) or abs(_unit_normal(section)[2]) < _UPRIGHT
 
 
-def flattened(section: Section) -> np.ndarray:
+def flattened(section: SectionData) -> np.ndarray:
     """(V, 2) float64: the vertices in the plane of the picture.
 
     Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
     y, of others distances along strike and up dip. Planes are seen from where their normal points.
     """
-    return section.unrolled() if _is_fence(section) else flat_of(section, section.vertices)
+    return section.unrolled() if isinstance(section, FenceData) else flat_of(section, section.vertices)
 
 
-def flat_of(section: Section, points: np.ndarray) -> np.ndarray:
+def flat_of(section: SectionData, points: np.ndarray) -> np.ndarray:
     """(N, 2) points (N, 3) on the plane of a section as it is drawn."""
     right, up = directions(section)
     if right is None:
@@ -123,13 +120,13 @@ def flat_of(section: Section, points: np.ndarray) -> np.ndarray:
     return (points - section.plane[0]) @ axes - ((section.vertices - section.plane[0]) @ axes).min(axis=0)
 
 
-def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
+def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:
     """Draws faults as thick lines, with their names at the lower end, or as low as other names allow."""
     right = axes.box[0] + axes.box[2]
     taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
     for trace in section.faults:
         points = trace.ends.reshape(-1, 3)
-        if _is_fence(section):
+        if isinstance(section, FenceData):
             flat = section.along_panels(points, np.repeat(trace.panel, 2))
         else:
             flat = flat_of(section, points)
@@ -154,7 +151,7 @@ def _overlap(one: tuple[float, float, float], other: tuple[float, float, float])
     return one[0] < other[1] and other[0] < one[1] and abs(one[2] - other[2]) < 1.2 * _SIZE
 
 
-def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.ndarray]:
+def block_outlines(section: SectionData, flat: np.ndarray, block: int) -> list[np.ndarray]:
     """The rings (N, 2) around all polygons of a block, joined where they share an edge; holes turn the other
     way.
 
@@ -191,18 +188,14 @@ def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.nd
     return rings
 
 
-def _is_fence(section: Section) -> bool:
-    return hasattr(section, "panel")
-
-
-def _unit_normal(section: Section) -> np.ndarray:
+def _unit_normal(section: SectionData) -> np.ndarray:
     if section.plane is None:
         raise UsageError("only sections by a plane and fences are drawn")
     normal = np.asarray(section.plane[1], np.float64)
     return normal / np.linalg.norm(normal)
 
 
-def directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]:
+def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Unit vectors to the right and up in the picture; None for a level plane, which is drawn as a map."""
     normal = _unit_normal(section)
     right = np.array([-normal[1], normal[0], 0.0])
@@ -221,7 +214,7 @@ def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     return ratio, float(METERS[unit]) / ratio / _POINT
 
 
-def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:
+def _subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
     denominator = f"{ratio:,.0f}" if ratio >= 10 else f"{ratio:g}"
     text = f"Scale 1 : {denominator}"
     if is_vertical(section):
@@ -234,7 +227,7 @@ def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:
     return f"{text}, plane that dips {dip:.1f}° to azimuth {azimuth:.0f}°"
 
 
-def _axis_names(section: Section) -> tuple[str, str]:
+def _axis_names(section: SectionData) -> tuple[str, str]:
     if is_vertical(section):
         names = ("Distance", "Elevation")
     elif directions(section)[0] is None:
@@ -244,22 +237,22 @@ def _axis_names(section: Section) -> tuple[str, str]:
     return tuple(f"{name} ({section.unit})" for name in names)
 
 
-def _end_texts(section: Section, flat: np.ndarray) -> list[str]:
+def _end_texts(section: SectionData, flat: np.ndarray) -> list[str]:
     """The plan coordinates of the left and the right end of a vertical section; none of others."""
     if not is_vertical(section):
         return []
-    if _is_fence(section):
+    if isinstance(section, FenceData):
         ends = section.polyline[[0, -1]]
     else:
         ends = section.vertices[[np.argmin(flat[:, 0]), np.argmax(flat[:, 0])], :2]
     return [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
 
 
-def _draw_ends(drawing: Drawing, axes: Axes, section: Section, ends: list[str], are_beside: bool) -> None:
+def _draw_ends(drawing: Drawing, axes: Axes, section: SectionData, ends: list[str], are_beside: bool) -> None:
     """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
     coordinates are on one line; else they are on lines of their own, with their letters."""
     x, y, width, height = axes.box
-    if _is_fence(section):
+    if isinstance(section, FenceData):
         for at in section.bends[1:-1]:
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
             drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")

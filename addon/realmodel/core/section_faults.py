@@ -5,14 +5,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .algebra import dot
-
-if TYPE_CHECKING:
-    from .model import Model
+from .model_data import ModelData
 
 _FAULT = 1  # of `surface_kind`
 
@@ -27,17 +24,17 @@ class FaultTrace:
     panel: np.ndarray
 
 
-def traces_on_plane(model: Model, point, normal) -> list[FaultTrace]:
+def traces_on_plane(model: ModelData, point, normal) -> list[FaultTrace]:
     """The faults of a model on a plane."""
     return _joined(model, [_segments(model, np.asarray(point, float), np.asarray(normal, float))])
 
 
-def traces_on_fence(model: Model, polyline: np.ndarray) -> list[FaultTrace]:
+def traces_on_fence(model: ModelData, polyline: np.ndarray) -> list[FaultTrace]:
     """The faults of a model on the vertical panels below the segments of a polyline (N, 2)."""
     return _joined(model, [_on_panel(model, start, end) for start, end in pairwise(polyline)])
 
 
-def _joined(model: Model, panels: list[tuple[np.ndarray, np.ndarray]]) -> list[FaultTrace]:
+def _joined(model: ModelData, panels: list[tuple[np.ndarray, np.ndarray]]) -> list[FaultTrace]:
     ends = np.concatenate([found for found, _ in panels])
     surface = np.concatenate([of for _, of in panels])
     panel = np.repeat(np.arange(len(panels), dtype=np.int32), [len(of) for _, of in panels])
@@ -47,7 +44,7 @@ def _joined(model: Model, panels: list[tuple[np.ndarray, np.ndarray]]) -> list[F
     ]
 
 
-def _segments(model: Model, point: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _segments(model: ModelData, point: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(N, 2, 3) where the faces on faults meet a plane, and (N,) the number of each one's fault."""
     kind = np.append(model.surface_kind, 0)  # faces on no surface have numbers below 0
     faces = np.flatnonzero(kind[np.maximum(model.face_surface, -1)] == _FAULT)
@@ -68,7 +65,7 @@ def _segments(model: Model, point: np.ndarray, normal: np.ndarray) -> tuple[np.n
     return at[order].reshape(-1, 2, 3), model.face_surface[faces][face[crossing][order][::2]]
 
 
-def _on_panel(model: Model, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _on_panel(model: ModelData, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The segments on the plane through two points in plan, between these."""
     step = end - start
     ends, surface = _segments(model, np.array([*start, 0.0]), np.array([step[1], -step[0], 0.0]))

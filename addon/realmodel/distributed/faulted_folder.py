@@ -13,6 +13,7 @@ import numpy as np
 from ..core import BuildFailed, BuildWarning
 from ..core.assembly import list_blocks
 from ..core.atomic import Outputs
+from ..core.cell_complex import CellComplex
 from ..core.errors import place_text
 from ..core.mapped_arrays import MappedArrays
 from ..core.structures.setup import structured_inputs
@@ -72,10 +73,10 @@ def _built(
     digest = _digest(frame, windows)
     if (folder / CATALOG).exists():
         return finished(folder, digest)
-    store, none = Store(folder, digest), np.empty(0, np.int32)
+    store = Store(folder, digest)
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
     whole = Whole(
-        list_blocks(inputs, np.zeros(len(names) + len(structures)), none, none, structures),
+        list_blocks(inputs, np.zeros(len(names) + len(structures)), CellComplex.empty(cells), structures),
         replace(
             structures,
             faults=[replace(each, vertices=None, triangles=None, points=None) for each in structures.faults],

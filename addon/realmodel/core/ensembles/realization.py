@@ -71,7 +71,7 @@ class Realizer:
         built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
         timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
         project = self.model.project
-        return assemble(Model, work, project, inputs, built, cells, threads, timings, 0.98, structures)
+        return Model.of(assemble(work, project, inputs, built, threads, timings, 0.98, structures))
 
     def _interpolated(self, work: Work, number: int, threads: int) -> tuple:
         """The rock masses with heights drawn, and the structures or None."""

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
+from ..fans import fanned
 from ..mapped_arrays import ROWS_AT_ONCE, Gather, MakeRows, Rows, in_memory, in_pieces
 from ..point_file import MeshFile
-from ..polygon_mesh import fanned
 
 _MOST_VERTICES = np.iinfo(np.int32).max
 

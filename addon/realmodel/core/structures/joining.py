@@ -3,8 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..built_cells import BuiltCells, CellParts
+from ..cell_complex import CellComplex
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
 from .part_models import DEEP, FILLER, NOTHING, Stack, distinct_plans, inside_body, plain_stack
@@ -25,13 +29,9 @@ def build_joined(
     start: float,
     end: float,
     reach: Reach | None = None,
-) -> dict:
-    """As _native.build_rock_masses for rock masses (RockInput) with structures.
+) -> BuiltCells:
+    """The cells of rock masses (RockInput) with structures, and their parts.
 
-    Blocks have the numbers of the surfaces above them, and those of bodies the numbers of their structures,
-    counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell,
-    `cell_own_block` (C,) int32 is its block with those of bodies as body_block numbers them,
-    `rock_of_own_block` (B,) int32 the rock mass of these, `own_block_divided` (S, B) as `acts` has it.
     Bodies that are not there yet divide nothing. reach: of the structures; None: it is made here.
     Raises InputRefused.
     """
@@ -44,19 +44,19 @@ def build_joined(
     reach = reach or Reach(work, structures, threads)
     begin = start + _BUILT * (end - start)
 
-    def built_in(own_work: Work, part: int, own_threads: int) -> dict | None:
+    def built_in(own_work: Work, part: int, own_threads: int) -> BuiltCells | None:
         with own_work.phase(0.0, 1.0, "intersecting and cutting"):
             return _part_model(own_work, inputs, structures, reach, part, cells, own_threads)
 
     with work.phase(start, begin, "intersecting and cutting"):
         made = work.each(built_in, range(len(structures.sides)), threads)
     for part, built in enumerate(made):
-        if built is not None and len(built["cell_block"]):
-            warnings |= dict.fromkeys((w[0], w[1], tuple(w[2]), w[3]) for w in built.pop("warnings"))
-            models.append((built, structures.sides[part].tolist()))
+        if built is not None and len(built.complex.cell_block):
+            warnings |= dict.fromkeys(built.warnings)
+            models.append((_native(built.complex, inputs, structures), structures.sides[part].tolist()))
             parts.append(part)
     if not models:
-        return _nothing(inputs, structures)
+        return _nothing(inputs, structures, cells)
     native = native_module()
     divides = acts(inputs, structures)
     with work.phase(begin, end, "joining the compartments"):
@@ -72,59 +72,61 @@ def build_joined(
             )
         except native.InputError as error:
             raise refused_structure(error, structures) from error
-    joined["cell_part"] = np.array(parts, np.int32)[joined["cell_part"]]
-    _merge_blocks_of_bodies(joined, inputs, structures, divides)
-    joined["warnings"] = list(warnings)
-    return joined
+    part = np.array(parts, np.int32)[joined["cell_part"]]
+    found = BuiltCells(CellComplex.of(joined, cells), joined["volumes"], list(warnings))
+    return _with_parts(found, part, inputs, structures, divides)
 
 
-def _renumbered(built: dict, there: np.ndarray, part: np.ndarray, count: int) -> dict:
-    """The arrays of a model of some structures, numbered as if all `count` of them had been given. there:
+def _native(own: CellComplex, inputs: list, structures: Structures) -> dict:
+    """The cells in one part of space as the native module takes them."""
+    surfaces = _first_surfaces(inputs)[-1]
+    return own.native(surfaces + len(inputs) * len(structures)) | {"surfaces": surfaces}
+
+
+def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: int) -> BuiltCells:
+    """The cells of a model of some structures, numbered as if all `count` of them had been given. there:
     their numbers; part: (P,) the parts that theirs are of."""
-    surfaces = len(built["volumes"]) - len(there)
+    surfaces = len(built.volumes) - len(there)
     number = np.append(np.arange(surfaces), surfaces + there).astype(np.int32)
     volumes = np.zeros(surfaces + count)
-    volumes[number] = built["volumes"]
-    face = built["face_surface"]
-    return {
-        **built,
-        "volumes": volumes,
-        "face_surface": np.where(face < 0, face, np.append(number, np.int32(-1))[face]).astype(np.int32),
-        "cell_block": number[built["cell_block"]],
-        "cell_part": part[built["cell_part"]],
-    }
+    volumes[number] = built.volumes
+    face = built.complex.face_surface
+    renumbered = replace(
+        built.complex,
+        face_surface=np.where(face < 0, face, np.append(number, np.int32(-1))[face]).astype(np.int32),
+        cell_block=number[built.complex.cell_block],
+    )
+    parts = built.parts and replace(built.parts, part=part[built.parts.part])
+    return replace(built, complex=renumbered, volumes=volumes, parts=parts)
 
 
-def _merge_blocks_of_bodies(joined: dict, inputs: list, structures: Structures, divides) -> None:
-    """Gives each body one block for all rock masses. divides: as `acts` has it."""
+def _with_parts(
+    built: BuiltCells, part: np.ndarray, inputs: list, structures: Structures, divides: np.ndarray
+) -> BuiltCells:
+    """The cells with each body as one block of all rock masses, and their parts. divides: as `acts`
+    has it."""
     first, count = _first_surfaces(inputs), len(structures)
-    own, surfaces = joined["cell_block"], first[-1]
+    own, surfaces = built.complex.cell_block, first[-1]
     rocks = np.arange(len(inputs), dtype=np.int32)
-    joined["cell_own_block"] = own
-    joined["own_block_divided"] = divides
-    joined["rock_of_own_block"] = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
+    rock = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
     body = own >= surfaces
-    joined["cell_block"] = np.where(body, surfaces + (own - surfaces) % max(1, count), own).astype(np.int32)
-    of_bodies = joined["volumes"][surfaces:].reshape(len(inputs), count).sum(axis=0)
-    joined["volumes"] = np.append(joined["volumes"][:surfaces], of_bodies)
+    blocks = np.where(body, surfaces + (own - surfaces) % max(1, count), own).astype(np.int32)
+    of_bodies = built.volumes[surfaces:].reshape(len(inputs), count).sum(axis=0)
+    return BuiltCells(
+        replace(built.complex, cell_block=blocks),
+        np.append(built.volumes[:surfaces], of_bodies),
+        built.warnings,
+        CellParts(part, own, rock, divides),
+    )
 
 
-def _nothing(inputs: list, structures: Structures) -> dict:
-    blocks = _first_surfaces(inputs)[-1] + len(structures)
-    return {
-        "vertices": np.empty((0, 3)),
-        "face_offsets": np.zeros(1, np.int64),
-        "face_vertices": np.empty(0, np.int32),
-        "face_cells": np.empty((0, 2), np.int32),
-        "face_surface": np.empty(0, np.int32),
-        "cell_block": np.empty(0, np.int32),
-        "cell_part": np.empty(0, np.int32),
-        "cell_own_block": np.empty(0, np.int32),
-        "rock_of_own_block": np.empty(0, np.int32),
-        "own_block_divided": np.empty((len(structures), 0), np.uint8),
-        "volumes": np.zeros(blocks),
-        "warnings": [],
-    }
+def _nothing(inputs: list, structures: Structures, cells: str) -> BuiltCells:
+    none = np.empty(0, np.int32)
+    return BuiltCells(
+        CellComplex.empty(cells),
+        np.zeros(_first_surfaces(inputs)[-1] + len(structures)),
+        parts=CellParts(none, none, none, np.empty((len(structures), 0), np.uint8)),
+    )
 
 
 def _first_surfaces(inputs: list) -> list[int]:
@@ -134,8 +136,8 @@ def _first_surfaces(inputs: list) -> list[int]:
 
 def _part_model(
     work: Work, inputs: list, structures: Structures, reach: Reach, part: int, cells: str, threads: int
-) -> dict | None:
-    """The arrays of all rock masses as they are in one part; None where there is nothing."""
+) -> BuiltCells | None:
+    """The cells of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
     native = native_module()
     stacks = [
@@ -170,7 +172,9 @@ def _part_model(
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
-        built = work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **more)
+        built = BuiltCells.of(
+            work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **more), cells
+        )
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):
             error.items = rows[error.surface][error.items].tolist()
@@ -179,28 +183,27 @@ def _part_model(
     blocks = np.array([block for n in taken for block in stacks[n].blocks], np.int32)
     # faces keep -1, a wall, and -2, the base; surfaces that only fill bodies are none
     numbers = np.array([*surfaces, -2, -1], np.int32)
-    model = {
-        "vertices": built["vertices"],
-        "face_offsets": built["face_offsets"],
-        "face_vertices": built["face_vertices"],
-        "face_cells": built["face_cells"],
-        "face_surface": numbers[built["face_surface"]],
-        "cell_block": blocks[built["cell_block"]],
-        "blocks": first[-1] + len(inputs) * len(structures),
-        "surfaces": first[-1],
-        "cell_kind": cells,
-    }
-    if (model["cell_block"] < 0).all():
+    own = replace(
+        built.complex,
+        face_surface=numbers[built.complex.face_surface],
+        cell_block=blocks[built.complex.cell_block],
+    )
+    nothing = own.cell_block < 0
+    if nothing.all():
         return None
-    if (model["cell_block"] < 0).any():
-        model |= without_cells(model, model["cell_block"] < 0)
+    if nothing.any():
+        own = own.without_cells(nothing)
     if cells != built_as or (cells == "blocks" and len(set(blocks.tolist())) < len(blocks)):
-        model |= one_cell_each(model)
+        own, _ = own.one_cell_each()
     warnings = [
-        (kind, surfaces[k], rows[k][items].tolist(), text) if k >= 0 else (kind, k, items, text)
-        for kind, k, items, text in built["warnings"]
+        each
+        if each.surface < 0
+        else each._replace(
+            surface=surfaces[each.surface], items=tuple(rows[each.surface][list(each.items)].tolist())
+        )
+        for each in built.warnings
     ]
-    return {**model, "warnings": warnings}
+    return BuiltCells(own, built.volumes, warnings)
 
 
 def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
@@ -288,53 +291,3 @@ def acts(inputs: list, structures: Structures) -> np.ndarray:
                 if rock in others and (others[rock], other) <= (after, body):
                     found[count + body, body_block(structures, first[-1], rock, other)] = 1
     return found
-
-
-def without_cells(model: dict, dropped: np.ndarray) -> dict:
-    """The arrays of a model without some cells, (C,) bool: those under a body, where nothing is, and slivers
-    on a floor."""
-    number = np.append(np.where(dropped, -1, np.cumsum(~dropped) - 1), -1).astype(np.int32)
-    cells = number[model["face_cells"]]
-    kept = np.flatnonzero((cells >= 0).any(axis=1))
-    size = np.diff(model["face_offsets"])[kept]
-    offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
-    face = np.repeat(np.arange(len(kept)), size)
-    at = np.arange(offsets[-1]) - offsets[face]
-    at = np.where(cells[kept, 0][face] >= 0, at, size[face] - 1 - at)  # seen from the cell that is left
-    used, corners = np.unique(
-        model["face_vertices"][model["face_offsets"][kept][face] + at], return_inverse=True
-    )
-    cells = cells[kept]
-    return {
-        "vertices": np.ascontiguousarray(model["vertices"][used]),
-        "face_offsets": offsets,
-        "face_vertices": corners.ravel().astype(np.int32),
-        "face_cells": np.ascontiguousarray(np.where(cells[:, :1] >= 0, cells, cells[:, ::-1])),
-        "face_surface": model["face_surface"][kept],
-        "cell_block": np.ascontiguousarray(model["cell_block"][~dropped]),
-    }
-
-
-def one_cell_each(model: dict, joins: np.ndarray | None = None) -> dict:
-    """The arrays of a model of blocks with each connected part of a block as one cell: without the faces
-    between cells of one block. joins: (F,) bool, the faces that connect; None: all. `cell`: (C,) int32 the
-    new cell of each."""
-    faces, block = model["face_cells"], model["cell_block"]
-    connecting = faces if joins is None else np.where(joins[:, None], faces, np.int32(-1))
-    part = native_module().cell_components(np.ascontiguousarray(connecting), block)
-    roots, cell = np.unique(part, return_inverse=True)
-    cell = cell.ravel().astype(np.int32)
-    cells = np.append(cell, np.int32(-1))[faces]
-    kept = np.flatnonzero(cells[:, 0] != cells[:, 1])
-    size = np.diff(model["face_offsets"])
-    corner = np.repeat(np.isin(np.arange(len(faces)), kept), size)
-    used, corners = np.unique(model["face_vertices"][corner], return_inverse=True)
-    return {
-        "vertices": np.ascontiguousarray(model["vertices"][used]),
-        "face_offsets": np.concatenate([[0], np.cumsum(size[kept])]).astype(np.int64),
-        "face_vertices": corners.ravel().astype(np.int32),
-        "face_cells": np.ascontiguousarray(cells[kept]),
-        "face_surface": model["face_surface"][kept],
-        "cell_block": np.ascontiguousarray(block[roots]),
-        "cell": cell,
-    }

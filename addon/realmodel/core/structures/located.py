@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..polygon_mesh import fanned
+from ..fans import fanned
 from .closed_form import PlanGrid, triangles_above
 
 OUTSIDE = -1

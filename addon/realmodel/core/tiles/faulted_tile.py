@@ -5,22 +5,23 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 
 import numpy as np
 
 from ..assembly import assemble
-from ..blocks import Block, count_blocks
+from ..blocks import Block
+from ..built_cells import BuiltCells, CellParts
+from ..cell_complex import CellComplex
 from ..model import Model
-from ..structures.joining import acts, body_block, build_joined, one_cell_each, without_cells
-from ..structures.labels import cell_compartments
+from ..model_data import ModelData, surface_arrays
+from ..structures.joining import acts, body_block, build_joined
+from ..structures.labels import compartments
 from ..structures.parts import Structures
 from ..structures.windows import Window
-from ..work import Work, native_module
+from ..work import Work
 from .owned_cells import Seam, owners, reach_of
 from .tile_model import Frame, Name
 
-_ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
 _WALL = -1  # face_surface
 
 
@@ -59,64 +60,65 @@ def build_faulted_tile(
         frame.project, rocks=[entry.rock for entry in inputs], faults=few.faults, bodies=few.bodies
     )
     timings = {"intersect": time.perf_counter() - began}
-    model = assemble(Model, work, project, inputs, built, "columns", threads, timings, 0.8, few)
+    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8, few))
     model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
-    owner = owners(model, frame.grid)
+    owner = owners(model.complex, frame.grid)
     mine = (owner == name).all(axis=1)
-    whole_numbers = _numbered_as_whole(model, whole, window)
-    arrays = without_cells(whole_numbers, ~mine)
+    as_whole = _numbered_as_whole(model, whole, window)
+    cells = as_whole.without_cells(~mine)
     labels = _labels(built, whole, window, mine)
     number = np.arange(int(mine.sum()))
     is_mine = np.append(mine, False)[model.face_cells]
-    is_one = _within_one_cell(
-        whole_numbers, built["cell_own_block"], len(whole.surface_names) - len(whole.structures)
-    )
+    is_one = _within_one_cell(as_whole, built, len(whole.surface_names) - len(whole.structures))
     if frame.cell_kind == "blocks":
-        arrays = one_cell_each(arrays, is_one[is_mine.any(axis=1)])
-        number = arrays["cell"]
-        first = np.full(len(arrays["cell_block"]), len(number), np.int64)
+        cells, number = cells.one_cell_each(is_one[is_mine.any(axis=1)])
+        cells = replace(cells, cell_kind=frame.cell_kind)
+        first = np.full(len(cells.cell_block), len(number), np.int64)
         np.minimum.at(first, number, np.arange(len(number)))
         labels = labels[0][first], *labels[1:]
     of_tile = np.full(len(mine), -1)
     of_tile[mine] = number
-    found = _model(frame, whole, window, arrays, labels)
+    found = _model(frame, whole, window, cells, labels)
     part = np.arange(len(found.cell_block)) if frame.cell_kind == "blocks" else found.cell_component
     both = np.column_stack([found.cell_component, part])
     between = np.flatnonzero((is_mine[:, 0] != is_mine[:, 1]) & (model.face_cells >= 0).all(axis=1))
     own = np.where(is_mine[between, 0], 0, 1)
     others = owner[model.face_cells[between, 1 - own]]
     parts = both[of_tile[model.face_cells[between, own]]]
-    seams, seen = {}, SimpleNamespace(**whole_numbers)
+    seams = {}
     for other in np.unique(others, axis=0).tolist():
         which = (others == other).all(axis=1)
-        seams[tuple(other)] = Seam.of(seen, between[which], own[which], parts[which], is_one[between[which]])
-    reach = reach_of(model, mine) if mine.any() else None
+        seams[tuple(other)] = Seam.of(
+            as_whole, between[which], own[which], parts[which], is_one[between[which]]
+        )
+    reach = reach_of(model.complex, mine) if mine.any() else None
     return FaultedTile(model, found, seams, reach, part)
 
 
-def _within_one_cell(model: dict, own_block: np.ndarray, layers: int) -> np.ndarray:
+def _within_one_cell(own: CellComplex, built: BuiltCells, layers: int) -> np.ndarray:
     """(F,) bool: the faces that lie within one cell of a model of blocks. Between cells of one block in one
     rock mass these are walls between columns, and in bodies also surfaces, the first `layers` of all: a body
-    has columns between older surfaces. own_block: (C,) of each rock mass by itself."""
-    surface, cells = model["face_surface"], model["face_cells"]
+    has columns between older surfaces."""
+    assert built.parts is not None
+    surface, cells, own_block = own.face_surface, own.face_cells, built.parts.own_block
     is_same = (cells >= 0).all(axis=1) & (own_block[cells[:, 0]] == own_block[cells[:, 1]])
     return is_same & ((surface == _WALL) | ((surface >= 0) & (surface < layers)))
 
 
-def _numbered_as_whole(model: Model, whole: Whole, window: Window) -> dict[str, np.ndarray]:
-    """The arrays of the model around a tile with surfaces and blocks numbered as in the whole."""
+def _numbered_as_whole(model: ModelData, whole: Whole, window: Window) -> CellComplex:
+    """The cells of the model around a tile with surfaces and blocks numbered as in the whole."""
     surfaces = sum(len(entry.surfaces) for entry in window.inputs)
     number = np.concatenate([np.arange(surfaces), surfaces + window.numbers, [-2, -1]]).astype(np.int32)
     of_surface = {block.surface: n for n, block in enumerate(whole.blocks)}
     blocks = np.array([of_surface[int(number[block.surface])] for block in model.blocks], np.int32)
-    return {
-        **{name: getattr(model, name) for name in _ARRAYS},
-        "face_surface": number[model.face_surface],
-        "cell_block": blocks[model.cell_block] if len(blocks) else model.cell_block,
-    }
+    return replace(
+        model.complex,
+        face_surface=number[model.face_surface],
+        cell_block=blocks[model.cell_block] if len(blocks) else model.cell_block,
+    )
 
 
-def _labels(built: dict, whole: Whole, window: Window, mine: np.ndarray):
+def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray):
     """What cell_compartments gives for the cells of the tile, by all faults of the whole."""
     inputs, few, structures = window.inputs, window.structures, whole.structures
     surfaces = sum(len(entry.surfaces) for entry in inputs)
@@ -127,28 +129,23 @@ def _labels(built: dict, whole: Whole, window: Window, mine: np.ndarray):
             own[body_block(few, surfaces, rock, body)] = body_block(structures, surfaces, rock, there)
     rocks = np.arange(len(inputs), dtype=np.int32)
     counts = [len(entry.surfaces) for entry in inputs]
-    as_whole = {
-        "cell_own_block": own[built["cell_own_block"]][mine],
-        "cell_part": window.part[built["cell_part"]][mine],
-        "rock_of_own_block": np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
-        "own_block_divided": acts(inputs, structures),
-    }
-    return cell_compartments(inputs, as_whole, structures)
-
-
-def _model(frame: Frame, whole: Whole, window: Window, arrays: dict, labels) -> Model:
-    native = native_module()
-    volume = native.cell_volumes(
-        *(arrays[name] for name in ("vertices", "face_offsets", "face_vertices", "face_cells")),
-        len(arrays["cell_block"]),
+    assert built.parts is not None
+    as_whole = CellParts(
+        window.part[built.parts.part][mine],
+        own[built.parts.own_block][mine],
+        np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
+        acts(inputs, structures),
     )
-    component = native.cell_components(arrays["face_cells"], arrays["cell_block"])
-    count = len(whole.blocks)
-    cells, components = count_blocks(arrays["cell_block"], component, count)
+    return compartments(inputs, as_whole, structures)
+
+
+def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels) -> Model:
+    volume = own.cell_volumes()
+    cells, components = own.count_blocks(len(whole.blocks))
     blocks = [
         replace(
             block,
-            volume=float(volume[arrays["cell_block"] == n].sum()),
+            volume=float(volume[own.cell_block == n].sum()),
             cells=int(cells[n]),
             components=int(components[n]),
         )
@@ -160,14 +157,10 @@ def _model(frame: Frame, whole: Whole, window: Window, arrays: dict, labels) -> 
         shapes[n] = shape
     shapes = [surface for entry in window.inputs for surface in entry.surfaces] + shapes
     labels_of_cells, names, sides = labels
-    model = Model(
-        **{name: arrays[name] for name in _ARRAYS},
-        surface_vertices=np.concatenate([vertices for vertices, _ in shapes]),
-        surface_triangles=np.concatenate([triangles for _, triangles in shapes]),
-        surface_vertex_offsets=np.cumsum([0, *(len(vertices) for vertices, _ in shapes)], dtype=np.int64),
-        surface_triangle_offsets=np.cumsum([0, *(len(each) for _, each in shapes)], dtype=np.int64),
-        cell_kind=frame.cell_kind,
-        blocks=blocks,
+    return Model(
+        own,
+        blocks,
+        **surface_arrays(shapes),
         surface_names=whole.surface_names,
         project=frame.project,
         rock_inputs=[replace(entry, structure=None) for entry in window.inputs],
@@ -177,5 +170,3 @@ def _model(frame: Frame, whole: Whole, window: Window, arrays: dict, labels) -> 
         compartment_names=names,
         compartment_sides=sides,
     )
-    model.cell_component = component
-    return model

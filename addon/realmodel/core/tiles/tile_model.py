@@ -16,6 +16,8 @@ from ..assembly import assemble
 from ..atomic import Outputs, explained
 from ..blocks import Block
 from ..build_warning import BuildWarning
+from ..built_cells import BuiltCells
+from ..cell_complex import CellComplex
 from ..errors import BuildFailed, OutputFailed
 from ..exporters.npz import model_arrays, write_arrays
 from ..local_heights import LocalHeights, PartHeights
@@ -354,17 +356,18 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     began = time.perf_counter()
     with work.phase(0.0, 0.8, "intersecting and cutting"):
         try:
-            built = work.native(native.build_tile, rocks, box, cells=frame.cell_kind, threads=threads)
+            arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind, threads=threads)
         except native.InputError as error:
             raise refused_stack(_NumberedError(error, numbers), inputs) from error
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
-    model = assemble(Model, work, project, inputs, built, frame.cell_kind, threads, timings, 0.8)
+    built = BuiltCells.of(arrays, frame.cell_kind)
+    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8))
     model.warnings = _warnings(inputs, built, numbers)
     wrong = _wrong_points(work, frame, parts, folder, threads)
     above = {(r, k - 1): each.above for (r, k), each in made.items() if each.above is not None}
     heights = {key: each.heights for key, each in made.items()}
-    return BuiltTile(model, BorderVertices.arrays_of(built), wrong, above, heights)
+    return BuiltTile(model, BorderVertices.arrays_of(arrays), wrong, above, heights)
 
 
 class _NumberedError(Exception):
@@ -378,14 +381,14 @@ class _NumberedError(Exception):
             self.items = [int(numbers[error.surface][item]) for item in error.items]
 
 
-def _warnings(inputs: list[RockInput], built: dict, numbers: list[np.ndarray]) -> list[BuildWarning]:
+def _warnings(inputs: list[RockInput], built: BuiltCells, numbers: list[np.ndarray]) -> list[BuildWarning]:
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
     found = []
-    for kind, surface, items, text in built["warnings"]:
+    for kind, surface, items, text in built.warnings:
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         if kind == "no_area":
-            items = [int(numbers[surface][item]) for item in items]
-        found.append(BuildWarning(text, kind, rock, named, tuple(int(item) for item in items)))
+            items = tuple(int(numbers[surface][item]) for item in items)
+        found.append(BuildWarning(text, kind, rock, named, items))
     return found
 
 
@@ -412,9 +415,7 @@ def read_model(project: Project, path: Path) -> Model:
 
 def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     """A tile's model from its arrays."""
-    names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
     of_surfaces = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
-    given = {name: arrays[name] for name in (*names, *(f"surface_{name}" for name in of_surfaces))}
     blocks = [
         Block(str(name), int(rock), int(surface), int(prop), float(volume), int(cells), int(components))
         for name, rock, surface, prop, volume, cells, components in zip(
@@ -426,9 +427,9 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
         )
     ]
     model = Model(
-        **given,
-        cell_kind=str(arrays["cell_kind"]),
-        blocks=blocks,
+        CellComplex.of(arrays, str(arrays["cell_kind"])),
+        blocks,
+        **{f"surface_{name}": arrays[f"surface_{name}"] for name in of_surfaces},
         surface_names=arrays["surface_names"].tolist(),
         project=project,
         is_cut="region_vertices_0" not in arrays,

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What sections hold: polygons of blocks on a cutter, each with its block and property."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from .section_faults import FaultTrace
+
+
+@dataclass(eq=False)
+class SectionData:
+    """Convex polygons on a cutter, counter-clockwise seen from above it (from outside of a closed one).
+
+    vertices: (V, 3) float64. Polygon k has the corners polygon_vertices[offsets[k] : offsets[k + 1]];
+    offsets (K + 1,) int64, polygon_vertices int32. cells: (K, 2) int32, the model's cells below and above
+    (inside and outside): the same where a cell is cut, two where the cutter runs between cells, -1 where
+    one side is outside of the model. blocks: (K, 2) int32, their blocks. block, property: (K,) int32, the
+    block below, or above where there is none below, and its library id; compartment: (K,) int32, its
+    compartment, of compartment_names. block_names: (B,) of the model's, from the oldest of each rock mass;
+    block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its lengths. plane: its point and
+    normal, where the cutter is one. faults: where they are on planes and fences.
+    """
+
+    vertices: np.ndarray
+    offsets: np.ndarray
+    polygon_vertices: np.ndarray
+    cells: np.ndarray
+    blocks: np.ndarray
+    block: np.ndarray
+    property: np.ndarray
+    block_names: list[str]
+    block_colors: np.ndarray = field(kw_only=True)
+    name: str = field(kw_only=True)
+    unit: str = field(kw_only=True)
+    plane: tuple | None = field(default=None, kw_only=True)
+    compartment: np.ndarray = field(kw_only=True)
+    compartment_names: list[str] = field(kw_only=True)
+    faults: list[FaultTrace] = field(default_factory=list, kw_only=True)
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+    def polygon(self, k: int) -> np.ndarray:
+        """(N, 3) corners of polygon k."""
+        return self.vertices[self.polygon_vertices[self.offsets[k] : self.offsets[k + 1]]]
+
+    @cached_property
+    def polygon_areas(self) -> np.ndarray:
+        """(K,) float64, model units squared."""
+        if not len(self):
+            return np.zeros(0)
+        first = np.repeat(self.offsets[:-1], np.diff(self.offsets))
+        following = np.arange(1, len(self.polygon_vertices) + 1)
+        following[self.offsets[1:] - 1] = self.offsets[:-1]
+        corners = self.vertices[self.polygon_vertices]
+        spokes = corners - corners[first]
+        doubled = np.add.reduceat(np.cross(spokes, spokes[following]), self.offsets[:-1], axis=0)
+        return np.linalg.norm(doubled, axis=1) / 2
+
+    @property
+    def area(self) -> float:
+        """The area of all polygons, model units squared."""
+        return float(self.polygon_areas.sum())
+
+    def area_by_block(self) -> np.ndarray:
+        """(B,) float64: the area that each block of the model has in the section."""
+        return np.bincount(self.block, weights=self.polygon_areas, minlength=len(self.block_names))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All arrays by name, as save writes them."""
+        names = ("vertices", "offsets", "polygon_vertices", "cells", "blocks", "block", "property")
+        arrays = {name: getattr(self, name) for name in (*names, "compartment")}
+        lists = ("block_names", "compartment_names")
+        return arrays | {name: np.array(getattr(self, name)) for name in lists}
+
+
+@dataclass(eq=False)
+class FenceData(SectionData):
+    """Vertical sections along a polyline in plan.
+
+    polyline: (N, 2) float64. panel: (K,) int32, the polyline's segment that each polygon stands on, from 0.
+    Above is to the right of the polyline: polygons turn counter-clockwise in the unrolled picture.
+    """
+
+    polyline: np.ndarray
+    panel: np.ndarray
+
+    def unrolled(self) -> np.ndarray:
+        """(V, 2) float64: distance along the polyline and height of each vertex, as fences are drawn."""
+        along = np.zeros(len(self.vertices))
+        along[self.polygon_vertices] = self.corner_distances()
+        return np.column_stack([along, self.vertices[:, 2]])
+
+    def corner_distances(self) -> np.ndarray:
+        """(len(polygon_vertices),) float64: distance along the polyline of each polygon's corners."""
+        panel = np.repeat(self.panel, np.diff(self.offsets))
+        return self.along_panels(self.vertices[self.polygon_vertices], panel)[:, 0]
+
+    def along_panels(self, points: np.ndarray, panel: np.ndarray) -> np.ndarray:
+        """(N, 2) float64: distance along the polyline and height of points (N, 3) on its panels."""
+        steps = np.diff(self.polyline, axis=0)
+        away = points[:, :2] - self.polyline[panel]
+        along = self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]
+        return np.column_stack([along, points[:, 2]])
+
+    @property
+    def bends(self) -> np.ndarray:
+        """(N,) float64: distance along the polyline of its points."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.polyline, axis=0).T))])
+
+    @property
+    def length(self) -> float:
+        return float(self.bends[-1])
