@@ -49,7 +49,8 @@ class _Pairs:
     """The lines of a file: group codes and values."""
 
     def __init__(self, drawing: Drawing):
-        self.drawing, self.lines = drawing, []
+        self.drawing = drawing
+        self.lines: list[str] = []
 
     def add(self, *pairs) -> None:
         self.lines += [f"{code}\n{value}\n" for code, value in pairs]

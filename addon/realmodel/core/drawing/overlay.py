@@ -108,10 +108,11 @@ def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) ->
 
 def legend_extent(key: ColorKey) -> tuple[float, float]:
     """Width and height of the background of a legend, in points."""
-    if key.colors is None:
+    if key.colors is None or key.limits is None:
         width, height = legend_size(key.title, key.entries, SIZE)
     else:
-        values = tick_texts(ticks(*key.limits, max(3, int(_BAR[1] / (2.5 * SIZE)))))
+        low, high = key.limits
+        values = tick_texts(ticks(low, high, max(3, int(_BAR[1] / (2.5 * SIZE)))))
         width, height = (
             _BAR[0] + 6 + max(text_width(text, SIZE) for text in values),
             _BAR[1] + (TITLE + 0.5) * SIZE,
@@ -130,7 +131,7 @@ def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
     width, height = legend_extent(key)
     _paper(drawing, left, _MARGIN, width, height)
     inner, top = left + _PAD, _MARGIN + height - _PAD
-    if key.colors is None:
+    if key.colors is None or key.limits is None:
         legend(drawing, inner, top, key.title, key.entries, SIZE)
     else:
         drawing.text(inner, top - SIZE, key.title, SIZE)
@@ -176,13 +177,15 @@ def _north_arrow(drawing: Drawing, eye: Eye, edge: float) -> None:
 
     radius = 22.0
     middle = np.array([edge - 1.7 * radius, _MARGIN + 1.7 * radius])
-    _paper(drawing, *(middle - 1.7 * radius), 3.4 * radius, 3.4 * radius)
+    west, south = middle - 1.7 * radius
+    _paper(drawing, west, south, 3.4 * radius, 3.4 * radius)
     tip, foot = (0.0, 1.0), (0.0, -0.55)
     for side, fill in ((-0.55, BLACK), (0.55, WHITE)):
         drawing.polygon(on_paper([tip, (side, -0.9), foot]), fill, BLACK, 0.7)
     x, y = on_paper([(0.0, 1.0)])[0] - middle
     away = (np.array([x, y]) / (np.hypot(x, y) or 1.0)) * 0.8 * SIZE + (x, y)
-    drawing.text(*(middle + away - (0.0, 0.36 * SIZE)), "N", SIZE, anchor="middle")
+    x, y = middle + away
+    drawing.text(x, y - 0.36 * SIZE, "N", SIZE, anchor="middle")
 
 
 def _axes(drawing: Drawing, eye: Eye, shown: Shown) -> None:

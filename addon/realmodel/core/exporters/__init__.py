@@ -211,7 +211,7 @@ def write_model(
     regular grids; contour_interval: of maps; cells: of formats with the model's cells, in place of the exact
     ones."""
     known = format_for(path)
-    more = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
+    more: list = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
     more += [cells] * known.has_cells
     known.write(model, path, outputs, step, *more)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def write_glb(parts: Sequence[Part], file: BinaryIO, step: Callable[[float], Non
     place = {number: at for at, number in enumerate(sorted(materials))}
     x, y, z = origin.tolist()
     root = {"name": "RealModel", "translation": [x, z, -y], "extras": {"origin": [x, y, z]}}
-    content = {
+    content: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "RealModel"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],

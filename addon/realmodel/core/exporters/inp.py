@@ -29,7 +29,7 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     step(0.3)
     names = solver_names(mesh.block_names)
     written, pyramids = 1, None
-    number = []  # of each element the one that it is written with; of pyramids the first of two
+    numbers = []  # of each element the one that it is written with; of pyramids the first of two
     for kind, elements in mesh.elements.items():
         rows, of, label = elements, mesh.element_block[kind], kind
         if kind == "pyramid":
@@ -39,11 +39,11 @@ def write_inp(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
             own = np.flatnonzero(of == block)
             file.write(f"*ELEMENT, TYPE={_TYPES[label]}, ELSET={names[block]}\n".encode())
             write_rows(file, "%d" + ", %d" * rows.shape[1], written + own, rows[own] + 1)
-        number.append(written + np.arange(len(elements)) * (len(rows) // max(len(elements), 1)))
+        numbers.append(written + np.arange(len(elements)) * (len(rows) // max(len(elements), 1)))
         written += len(rows)
     file.write(b"*ELSET, ELSET=all_elements, GENERATE\n1, %d, 1\n" % (written - 1))
     step(0.7)
-    number = np.concatenate([*number, np.empty(0, np.int64)])
+    number = np.concatenate([*numbers, np.empty(0, np.int64)])
     first_pyramid = 0
     for kind, elements in mesh.elements.items():
         if kind == "pyramid":

@@ -51,7 +51,10 @@ def _file(write: Callable) -> Callable:
 
 
 def _write_vtu(mesh: Mesh, file, step: Step) -> None:
-    (write_vtu if isinstance(mesh, PolyhedralMesh) else write_vtu_elements)(mesh, file, step)
+    if isinstance(mesh, PolyhedralMesh):
+        write_vtu(mesh, file, step)
+    else:
+        write_vtu_elements(mesh, file, step)
 
 
 def _write_openfoam(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) -> None:

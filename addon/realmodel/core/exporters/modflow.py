@@ -14,7 +14,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..errors import UsageError
-from ..simulation import CORNERS, PolyhedralMesh, VolumeMesh
+from ..simulation import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 from ..simulation.element_faces import OUTWARD
 from .text_rows import write_rows
 from .vtu import CellFaces
@@ -34,12 +34,12 @@ def write_disv(
     if plan is None:
         raise UsageError("DISV needs a mesh of layered columns; write a DISU grid (.disu), or another format")
     columns, layers = len(plan.triangles), plan.layers
-    cell, volume, block = [], [], []
+    cells, volumes, blocks_of = [], [], []
     for kind, elements in mesh.elements.items():
-        cell.append(plan.layer[kind].astype(np.int64) * columns + plan.column[kind])
-        volume.append(element_volumes(mesh.points, kind, elements))
-        block.append(mesh.element_block[kind])
-    cell, volume, block = (np.concatenate([*parts, np.empty(0)]) for parts in (cell, volume, block))
+        cells.append(plan.layer[kind].astype(np.int64) * columns + plan.column[kind])
+        volumes.append(element_volumes(mesh.points, kind, elements))
+        blocks_of.append(mesh.element_block[kind])
+    cell, volume, block = (np.concatenate([*parts, np.empty(0)]) for parts in (cells, volumes, blocks_of))
     cell = cell.astype(np.int64)
     corners = plan.vertices[plan.triangles]
     a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -48,7 +48,7 @@ def write_disv(
     order = np.lexsort((volume, cell))  # the largest element of a cell says its block
     of_cell = np.zeros(layers * columns, np.int64)
     of_cell[cell[order]] = block[order].astype(np.int64) + 1
-    top = _column_tops(mesh)
+    top = _column_tops(mesh, plan)
     bottom = top - np.cumsum(thickness, axis=0)
     domain = np.where(thickness > 0, 1, np.where(thickness.sum(axis=0) > 0, -1, 0))
     step(0.3)
@@ -70,18 +70,17 @@ def write_disv(
     step(1.0)
 
 
-def _column_tops(mesh: VolumeMesh) -> np.ndarray:
+def _column_tops(mesh: VolumeMesh, plan: PlanMesh) -> np.ndarray:
     """(T,) the height of the top of each column: the mean of the highest points over its corners."""
-    plan = mesh.plan
     _, place = np.unique(mesh.points[:, :2], axis=0, return_inverse=True)
-    columns, places, heights = [], [], []
+    parts: list[list[np.ndarray]] = [[], [], []]
     for kind, elements in mesh.elements.items():
-        columns.append(np.repeat(plan.column[kind], CORNERS[kind]))
-        places.append(place.ravel()[elements.ravel()])
-        heights.append(mesh.points[elements.ravel(), 2])
-    columns, places, heights = (np.concatenate([*p, np.empty(0)]) for p in (columns, places, heights))
+        parts[0].append(np.repeat(plan.column[kind], CORNERS[kind]))
+        parts[1].append(place.ravel()[elements.ravel()])
+        parts[2].append(mesh.points[elements.ravel(), 2])
+    columns, places, heights = (np.concatenate([*part, np.empty(0)]) for part in parts)
     order = np.lexsort((heights, places, columns))
-    columns, places, heights = columns[order].astype(np.int64), places[order], heights[order]
+    columns, places, heights = columns.astype(np.int64)[order], places[order], heights[order]
     is_last = np.append((columns[1:] != columns[:-1]) | (places[1:] != places[:-1]), True)[: len(columns)]
     count = len(plan.triangles)
     number = np.bincount(columns[is_last], minlength=count)
@@ -117,8 +116,7 @@ def write_disu(
     cells = mesh.cells
     normals, centers = _face_areas(mesh)
     owner, other = mesh.face_cells.T
-    volume, lever = np.zeros(cells), np.zeros((cells, 3))
-    plan = np.zeros(cells)
+    lever = np.zeros((cells, 3))
     faces = CellFaces(mesh)
     of_side = np.repeat(np.arange(cells), np.diff(faces.begin))
     outward = np.where(faces.turned[:, None], -normals[faces.face], normals[faces.face])

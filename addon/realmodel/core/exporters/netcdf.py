@@ -60,7 +60,7 @@ def _text(text: str) -> bytes:
     return _int(len(raw)) + raw + b"\0" * (-len(raw) % 4)
 
 
-def _attributes(attributes: dict[str, object]) -> bytes:
+def _attributes(attributes: dict[str, str | np.ndarray]) -> bytes:
     if not attributes:
         return _int(0, 0)
     body = _int(_ATTRIBUTE, len(attributes))

@@ -37,8 +37,8 @@ def write_block_table(model, path, outputs: Outputs, step: Callable[[float], Non
     with outputs.file(path) as file:
         file.write((",".join(map(_quoted, columns)) + "\n").encode())
         form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
-        columns = center, np.tile(cells.size, (len(center), 1)), largest, own.T
-        write_rows(file, form, *columns, step=lambda share: step(0.5 + 0.5 * share))
+        rows = center, np.tile(cells.size, (len(center), 1)), largest, own.T
+        write_rows(file, form, *rows, step=lambda share: step(0.5 + 0.5 * share))
     step(1.0)
 
 
@@ -132,13 +132,8 @@ def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], 
     for _ in range(2):  # BigTIFF: the second time with the places that the first one found
         directory, more = b"", b""
         for code, kind, values in tags:
-            raw = (
-                values
-                if kind == "s"
-                else np.array(
-                    values, {"H": "<u2", "I": "<u4"}.get(kind, f"<{'u8' if kind == 'Q' else 'f8'}")
-                ).tobytes()
-            )
+            form = {"s": "u1", "H": "<u2", "I": "<u4", "Q": "<u8"}.get(kind, "<f8")
+            raw = np.array(list(values), form).tobytes()
             entry = (
                 np.array([code, _TIFF_TYPES[kind]], "<u2").tobytes()
                 + np.array([len(values)], "<u8").tobytes()

@@ -20,6 +20,7 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
+from ..section_data import FenceData
 from ..section_drawing import draw_section
 from .endings import by_ending
 from .npz import write_arrays
@@ -64,7 +65,7 @@ def write_section_vtu(section, file: BinaryIO) -> None:
         ("CellData", "compartment", section.compartment.astype("<i4")),
         ("CellData", "cells", section.cells.astype("<i4")),
     ]
-    if hasattr(section, "panel"):
+    if isinstance(section, FenceData):
         arrays.append(("CellData", "panel", section.panel.astype("<i4")))
     write_grid(file, arrays)
 
@@ -92,7 +93,8 @@ def write_section_csv(section, file: BinaryIO) -> None:
     """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
     distance along it, so that distance and z draw the unrolled picture; of a model that faults divide also
     the name of the compartment."""
-    is_fence, is_divided = hasattr(section, "panel"), len(section.compartment_names) > 1
+    is_divided = len(section.compartment_names) > 1
+    is_fence = isinstance(section, FenceData)
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(
@@ -106,7 +108,7 @@ def write_section_csv(section, file: BinaryIO) -> None:
         common = [k, block, section.block_names[block], int(section.property[k])]
         for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
             place = section.vertices[section.polygon_vertices[corner]].tolist()
-            extra = [int(section.panel[k]), repr(float(along[corner]))] if is_fence else []
+            extra = [int(section.panel[k]), repr(float(along[corner]))] if along is not None else []
             extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
             rows.writerow([*common, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))

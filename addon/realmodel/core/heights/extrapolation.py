@@ -56,7 +56,9 @@ def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Res
         # Kriging from one point gives its height, with twice the semivariance as variance of the error.
         arguments = result.variogram.native(task.settings["anisotropy"])
         krige = native_module().krige
-        z[outside], variance[outside], _ = task.run(krige, task.points, nodes, **arguments, neighbours=1)
+        z[outside], deviation, _ = task.run(krige, task.points, nodes, **arguments, neighbours=1)
+        if variance is not None:
+            variance[outside] = deviation
     else:
         z[outside] = nearest_heights(task, nodes)
         if variance is not None:

@@ -70,5 +70,5 @@ class Result:
 
 def run_method(method: str, task: Task) -> Result:
     """Runs a method that is not "auto"."""
-    module, _, function = METHODS[method].run.rpartition(".")
+    module, _, function = str(METHODS[method].run).rpartition(".")
     return getattr(import_module(f".{module}", __package__), function)(task)

@@ -143,7 +143,7 @@ def find_grid(points: np.ndarray) -> RegularGrid:
     grid = RegularGrid(start, _axes(points), (0, 0))
     for _ in range(3):  # the axes are known by one cell at first; the whole grid makes them sharper
         grid = _fitted(points, start, grid)
-    far, worst, least, most = -1.0, 0, np.inf, -np.inf
+    far, worst, least, most = -1.0, 0, np.full(2, np.inf), np.full(2, -np.inf)
     for number, piece in enumerate(in_pieces(points)):
         at = grid.places(piece[:, :2])
         node = np.rint(at)
@@ -158,7 +158,7 @@ def find_grid(points: np.ndarray) -> RegularGrid:
             place=tuple(points[worst]),
             advice='use method = "tin" or "kriging" for scattered points',
         )
-    shape = tuple(int(count) for count in most - least + 1)
+    shape = int(most[0] - least[0]) + 1, int(most[1] - least[1]) + 1
     if min(shape) < 2:
         raise InputRefused(_ONE_ROW, item="points")
     if shape[0] * shape[1] > _MOST_EMPTY * len(points):
@@ -225,7 +225,7 @@ def _axes(points: np.ndarray) -> np.ndarray:
     """The shortest steps between points, and the shortest across them: [[x, y], [x, y]]."""
     numbers = np.linspace(0, len(points) - 1, min(len(points), _SAMPLE)).astype(np.int64)
     found = _steps(points, numbers)
-    steps = [found[number] for number in numbers.tolist() if found[number] is not None]
+    steps = [step for number in numbers.tolist() if (step := found[number]) is not None]
     if not steps:
         raise InputRefused(_ONE_ROW, item="points")
     # The commonest, by the lengths of both: cells with a missing neighbour show longer steps.

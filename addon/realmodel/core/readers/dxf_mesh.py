@@ -111,7 +111,8 @@ def _entities(file: Path, lines: _Lines, rows: MakeRows) -> Iterator[tuple[str, 
     """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has its
     VERTEX entities under "mesh"."""
     within, section, polyline = False, False, None
-    name, begin, codes = "", 0, {}
+    name, begin = "", 0
+    codes: dict = {}
     for at, code, value in lines.pairs():
         if not code.lstrip("-").isdecimal():
             raise InputRefused(f"'{code:.40}' is no group code", file=file, line=at)

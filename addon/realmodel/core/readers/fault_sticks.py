@@ -50,7 +50,8 @@ def read_fault_points(
 
 
 def _pol_sticks(file: Path, step: Step) -> list[np.ndarray]:
-    sticks, points = [], []
+    sticks: list[list[list[float]]] = []
+    points: list[list[float]] = []
     lines = read_text(file).split("\n")
     for number, line in enumerate(lines, 1):
         if number % LINES_AT_ONCE == 0:
@@ -71,10 +72,10 @@ def _pol_sticks(file: Path, step: Step) -> list[np.ndarray]:
             points = []
         else:
             points.append(point)
-    sticks = [np.array(stick) for stick in (*sticks, points) if stick]
-    if not sticks:
+    found = [np.array(stick) for stick in (*sticks, points) if stick]
+    if not found:
         raise InputRefused("there are no points in it", file=file)
-    return sticks
+    return found
 
 
 def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str | None:

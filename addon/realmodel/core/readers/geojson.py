@@ -49,12 +49,18 @@ def _parsed(text: str):
     """One JSON text; or several after each other, as one collection: one a line, or each behind a record
     separator (RFC 8142)."""
     decoder = json.JSONDecoder(parse_constant=_refuse_constant)
-    members, at = [], _BETWEEN.match(text).end()
+    members: list = []
+    at = _after_blanks(text, 0)
     while at < len(text) or not members:
         member, at = decoder.raw_decode(text, at)
         members.append(member)
-        at = _BETWEEN.match(text, at).end()
+        at = _after_blanks(text, at)
     return members[0] if len(members) == 1 else {"type": "FeatureCollection", "features": members}
+
+
+def _after_blanks(text: str, at: int) -> int:
+    found = _BETWEEN.match(text, at)
+    return found.end() if found else at
 
 
 class _NotANumber(ValueError):

@@ -209,8 +209,8 @@ def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:
 def _unpredicted(predictor: int, data: bytes, stored: np.dtype, wide: int) -> np.ndarray:
     """(rows, wide) numbers, of which the file may hold differences."""
     if predictor == 3:  # bytes of a row by weight, the heaviest first, each less the one before
-        planes = np.frombuffer(data, np.uint8).reshape(-1, stored.itemsize * wide)
-        planes = np.cumsum(planes, axis=1, dtype=np.uint8).reshape(-1, stored.itemsize, wide)
+        steps = np.frombuffer(data, np.uint8).reshape(-1, stored.itemsize * wide)
+        planes = np.cumsum(steps, axis=1, dtype=np.uint8).reshape(-1, stored.itemsize, wide)
         heavy_first = np.ascontiguousarray(planes.transpose(0, 2, 1))
         return heavy_first.view(stored.newbyteorder(">"))[:, :, 0]
     numbers = np.frombuffer(data, stored).reshape(-1, wide)
@@ -248,7 +248,7 @@ def _scaled(z: np.ndarray, metadata) -> np.ndarray:
 
 def _place(file: Path, tags: dict, keys: dict):
     """The position of the first height, and the steps to the next one across and down."""
-    matrix = None
+    matrix: tuple[float, ...] | None = None
     if _TRANSFORMATION in tags and len(tags[_TRANSFORMATION]) == 16:
         m = tags[_TRANSFORMATION]
         matrix = (m[0], m[1], m[3], m[4], m[5], m[7])

@@ -78,9 +78,9 @@ def read_msh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
         raise InputRefused("it has no nodes", file=file)
     pieces = [piece for some in corners for piece in in_pieces(some)]
     index, sizes, mesh = rows(np.empty(0, np.int64)), rows(np.empty(0, np.int64)), MeshRows(file, rows)
-    for at in _numbers(file, np.asarray(named), pieces):
-        index.add(at.ravel())
-        sizes.add(np.full(*at.shape))
+    for numbers in _numbers(file, np.asarray(named), pieces):
+        index.add(numbers.ravel())
+        sizes.add(np.full(*numbers.shape))
     share_vertices(index.array(), sizes.array(), mesh, rows, places.array())
     return mesh.mesh()
 
@@ -175,7 +175,7 @@ class _Bytes:
         row = _row(self._order, kinds)
         found = np.frombuffer(self._some(count * row.itemsize), row)
         self.at += found.nbytes
-        return np.stack([found[name].astype(np.float64) for name in row.names], axis=1)
+        return np.stack([found[name].astype(np.float64) for name in row.names or ()], axis=1)
 
     def line(self) -> int:
         """A number on a line of text."""

@@ -57,7 +57,8 @@ def read_irap_grid(
 def _text(file: Path, step: Step):
     raw = text_content(file)
     # the header is 19 numbers on lines of any length
-    at, numbers, line = 0, [], 0
+    at, line = 0, 0
+    numbers: list = []
     while len(numbers) < 19:
         end = raw.find(b"\n", at)
         if end < 0:

@@ -53,7 +53,8 @@ class _Surfaces:
         self.unit: str | None = None
         self.has_faces = False
         self._surface: str | None = None  # its name, while it lasts
-        self._numbers, self._others = VertexNumbers(), {}
+        self._numbers = VertexNumbers()
+        self._others: dict = {}
         self._name: str | None = None  # of the point whose text is read, or _FACE
         self._text: list[str] = []
 

@@ -66,7 +66,8 @@ class _SeveralKinds(Exception):
 def _places(given: PointFile, step: Step, kinds: list[str]) -> Iterator[np.ndarray]:
     """The positions (N, 3) of shapes of these kinds, some at a time. Raises _SeveralKinds."""
     waiting: dict[str, list[np.ndarray]] = {kind: [] for kind in kinds}
-    count, had = 0, set()
+    count = 0
+    had: set = set()
 
     def some() -> np.ndarray:
         had.update(kind for kind in kinds if waiting[kind])

@@ -60,7 +60,8 @@ class _Lines:
         self._pieces = text_lines(file)
         self._lines: list[tuple[int, str]] = []
         self._at = 0
-        self.taken, self.last = 0, None
+        self.taken = 0
+        self.last: int | None = None
 
     def some(self, most: int) -> tuple[list[str], list[int]]:
         """The next lines, not more than `most`, and their numbers; none at the end."""

@@ -117,7 +117,9 @@ class _Numbers(_Bytes):
 
 def _header(lines: list[str]):
     """("ascii" or a kind of binary, {element: (count, [(property, type of its length or None, type)])})."""
-    kind, order, elements, properties = "", "", {}, []
+    kind, order = "", ""
+    elements: dict[str, tuple] = {}
+    properties: list[tuple] = []
     for words in map(str.split, lines):
         if words[:1] == ["format"]:
             kind = words[1]
@@ -161,7 +163,7 @@ def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: 
 def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
     """The corners of this number of faces, and their end."""
     _, sizes, _ = _face(body, at, properties, key)
-    fields = []
+    fields: list[tuple] = []
     for (name, length, form), size in zip(properties, sizes, strict=True):
         fields += [(f"{name} size", length)] if length else []
         fields.append((name, form, (size,)))

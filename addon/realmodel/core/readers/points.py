@@ -95,7 +95,7 @@ def read_point_rows(
         guessed = () if columns is not None else _guessed_names(table)
         return replace(rows, taken_for_xyz=guessed)
     if rows.filtered:
-        raise _nothing_matches(table, where)
+        raise _nothing_matches(table, where or {})
     what = "none of its points has a value" if rows.missing else "there are no points in it"
     raise InputRefused(what, file=file)
 
@@ -159,7 +159,7 @@ def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[in
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
-    return [names.index(alias) for alias in found.values()]
+    return [names.index(alias) for alias in found.values() if alias]
 
 
 def _guessed_names(table: Table) -> tuple[str, ...]:
@@ -300,13 +300,15 @@ def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
         )
     name, entry = names[error.items[1]], _entry(table, error)
     if error.kind == "not_finite":
-        advice = "remove points without a value, or set nodata = nan"
         return InputRefused(
-            f"{name} is {entry}, not a finite number", file=table.file, line=line, advice=advice
+            f"{name} is {entry}, not a finite number",
+            file=table.file,
+            line=line,
+            advice="remove points without a value, or set nodata = nan",
         )
     if error.kind == "too_large":
         return InputRefused("a number is too large", file=table.file, line=line)
-    advice = None
+    advice: str | None = None
     if decimal == "." and "," in entry:
         advice = "write decimals with a point"
     elif decimal == "," and "." in entry:

@@ -4,8 +4,6 @@ by piece."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ..mapped_arrays import MakeRows, Rows, in_pieces
@@ -63,10 +61,11 @@ def _first(corners: np.ndarray) -> np.ndarray:
     return corners.reshape(len(corners), -1)[:, 0]
 
 
-def faces_of(index: np.ndarray, sizes: np.ndarray | None) -> tuple[Sequence, int]:
+def faces_of(index: np.ndarray, sizes: np.ndarray | None) -> tuple[np.ndarray | list, int]:
     """The faces that corners begin with, and how many corners these have."""
-    size = 3 if sizes is None or not len(sizes) else int(sizes[0])
-    if size and (sizes is None or (sizes == size).all()):
+    sizes = np.empty(0, np.int64) if sizes is None else sizes
+    size = int(sizes[0]) if len(sizes) else 3
+    if size and (sizes == size).all():
         whole = len(index) // size * size
         return index[:whole].reshape(-1, size), whole
     ends = np.cumsum(sizes)

@@ -48,7 +48,8 @@ def read_surfer_grid(
 
 def _text(file: Path, step: Step):
     raw = text_content(file)
-    lines, at = [], raw.find(b"\n") + 1
+    lines: list[str] = []
+    at = raw.find(b"\n") + 1
     for _ in range(4):
         end = raw.find(b"\n", at)
         if end < 0:
@@ -61,7 +62,8 @@ def _text(file: Path, step: Step):
     )
     x = header_numbers(file, lines[1], 3, 2, "the lowest and highest x")
     y = header_numbers(file, lines[2], 4, 2, "the lowest and highest y")
-    dx, dy = require_spacing(file, *x, columns, "x", 3), require_spacing(file, *y, rows, "y", 4)
+    dx = require_spacing(file, x[0], x[1], columns, "x", 3)
+    dy = require_spacing(file, y[0], y[1], rows, "y", 4)
     heights = grid_heights(file, raw, at, 6, rows * columns, f"{columns} columns and {rows} rows", step)
     return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
@@ -70,17 +72,18 @@ def _binary_6(file: Path, _step: Step):
     raw = FileBytes(file)
     if len(raw) < _HEAD_6.size:
         raise InputRefused(f"the header is cut off at byte {len(raw)}", file=file)
-    _, columns, rows, *ends, _, _ = _HEAD_6.unpack(raw[: _HEAD_6.size])
+    _, columns, rows, west, east, south, north, _, _ = _HEAD_6.unpack(raw[: _HEAD_6.size])
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
-    _finite(file, ends, 8)
-    spacing = require_spacing(file, *ends[:2], columns, "x"), require_spacing(file, *ends[2:], rows, "y")
+    _finite(file, [west, east, south, north], 8)
+    spacing = require_spacing(file, west, east, columns, "x"), require_spacing(file, south, north, rows, "y")
     heights = _values(file, raw, _HEAD_6.size, "<f4", columns, rows)
-    return heights, (rows, columns), [], (ends[0], ends[2]), spacing
+    return heights, (rows, columns), [], (west, south), spacing
 
 
 def _binary_7(file: Path, _step: Step):
     raw = FileBytes(file)
-    sections, at = {}, 0
+    sections: dict[bytes, tuple[int, int]] = {}
+    at = 0
     while at + 8 <= len(raw):
         size = int.from_bytes(raw[at + 4 : at + 8], "little")
         sections.setdefault(raw[at : at + 4], (at + 8, size))

@@ -147,7 +147,7 @@ class _Tree(ElementTree.TreeBuilder):
                 self._flush()
 
     def _flush(self) -> None:
-        if self._waiting:
+        if self._waiting and self._array is not None:
             text = "".join(self._waiting)
             if self._array.get("format", "ascii") != "ascii":
                 text = "".join(text.split())

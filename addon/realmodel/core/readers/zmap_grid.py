@@ -31,7 +31,8 @@ def read_zmap_grid(
     """A grid. Raises InputRefused naming the line."""
     file = Path(file)
     raw = text_content(file)
-    header, at, number = [], 0, 0  # (line, text) from the first @ to the second
+    header: list[tuple[int, str]] = []  # (line, text) from the first @ to the second
+    at, number = 0, 0
     while True:
         end = raw.find(b"\n", at)
         if end < 0:
