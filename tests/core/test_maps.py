@@ -16,6 +16,7 @@ from realmodel.core.geological_map import geological_map
 from realmodel.core.map_layer import MapLayer
 from realmodel.core.readers import read_shapes
 from realmodel.core.readers.geojson import read_geojson
+from realmodel.core.surface_arrays import SurfaceArrays
 from realmodel.core.work import native_module
 from stacks.generate import random_stack
 from stacks.model_view import built
@@ -106,14 +107,10 @@ def test_maps_of_samples(sample):
 
 def as_model(case, cells):
     arrays = built(case, cells=cells)
-    none, offsets = np.empty((0, 3)), np.zeros(1, np.int64)
     return Model(
         CellComplex.of(arrays, cells),
         [],
-        none,
-        none.astype(np.int32),
-        offsets,
-        offsets,
+        SurfaceArrays.of([]),
         [],
         None,
     )

@@ -46,10 +46,18 @@ def model(request):
     return build(crossing_project(), cells=request.param)
 
 
-def damaged(model, **arrays):
-    """A copy of a model with some arrays replaced."""
-    of_cells = {name: arrays.pop(name) for name in ARRAYS if name in arrays}
-    return dataclasses.replace(model, complex=dataclasses.replace(model.complex, **of_cells), **arrays)
+def damaged(model, **given):
+    """A copy of a model with some arrays, or other fields, replaced."""
+    of_cells = {name: given.pop(name) for name in ARRAYS if name in given}
+    of_surfaces = {
+        name: given.pop(f"surface_{name}") for name in ("vertices", "triangles") if f"surface_{name}" in given
+    }
+    return dataclasses.replace(
+        model,
+        complex=dataclasses.replace(model.complex, **of_cells),
+        surfaces=dataclasses.replace(model.surfaces, **of_surfaces),
+        **given,
+    )
 
 
 def failed(report):

@@ -8,15 +8,9 @@ from realmodel.core import Block, Model, Project, Rock, Surface
 from realmodel.core.cell_complex import CellComplex
 from realmodel.core.exporters.npz import write_npz
 from realmodel.core.rock_input import RockInput
+from realmodel.core.surface_arrays import SurfaceArrays
 from stacks import places
 from stacks.model_view import built, exported_arrays, rocks_of
-
-_OF_SURFACES = (
-    "surface_vertices",
-    "surface_triangles",
-    "surface_vertex_offsets",
-    "surface_triangle_offsets",
-)
 
 
 def as_model(case, cells="columns"):
@@ -39,7 +33,7 @@ def as_model(case, cells="columns"):
     return Model(
         CellComplex.of(arrays, cells),
         blocks,
-        **{name: arrays[name] for name in _OF_SURFACES},
+        SurfaceArrays.of_arrays(arrays),
         surface_names=[s.name for entry in inputs for s in entry.rock.surfaces],
         project=Project("stack", [entry.rock for entry in inputs]),
         rock_inputs=inputs,

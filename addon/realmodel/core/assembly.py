@@ -13,11 +13,12 @@ from .build_options import check_cells, check_stage
 from .build_warning import BuildWarning
 from .built_cells import BuiltCells
 from .cell_complex import CellComplex
-from .model_data import ModelData, surface_arrays
+from .model_data import ModelData
 from .rock_input import RockInput
 from .stack_refusals import refused_stack
 from .structures.joining import build_joined
 from .structures.labels import cell_compartments, warnings_where_rock_is
+from .surface_arrays import SurfaceArrays
 from .work import Cancel, Progress, Work, native_module, run
 
 _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
@@ -96,7 +97,7 @@ def assemble(
         model = ModelData(
             own,
             blocks,
-            **_surface_arrays(inputs, structures),
+            _surfaces(inputs, structures),
             surface_kind=np.array(kinds, np.int32),
             cell_compartment=compartment,
             compartment_names=compartment_names,
@@ -125,10 +126,10 @@ def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComp
     return replace(built.complex, cell_block=cell_block)
 
 
-def _surface_arrays(inputs: list[RockInput], structures) -> dict[str, np.ndarray]:
-    """The surfaces one after another, then the structures, by their names in docs/dev/geometry.md."""
+def _surfaces(inputs: list[RockInput], structures) -> SurfaceArrays:
+    """The surfaces, then the structures."""
     surfaces = [surface for entry in inputs for surface in entry.surfaces]
-    return surface_arrays(surfaces if structures is None else [*surfaces, *structures.shapes])
+    return SurfaceArrays.of(surfaces if structures is None else [*surfaces, *structures.shapes])
 
 
 def _first_block(entry: RockInput) -> int:
@@ -142,7 +143,8 @@ def list_blocks(inputs, volumes: np.ndarray, own: CellComplex, structures) -> li
     bodies = [] if structures is None else structures.blocks_of_bodies()
     total += len(bodies)
     cells, components = own.count_blocks(total)
-    blocks, first_surface = [], 0
+    blocks: list[Block] = []
+    first_surface = 0
     for number, entry in enumerate(inputs):
         for k in range(_first_block(entry), len(entry.surfaces)):
             surface = entry.rock.surfaces[k]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import colorsys
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -18,6 +17,7 @@ from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
 from .structures.parts import Structures
+from .surface_arrays import SurfaceArrays
 from .surface_set import triangle_sheets, vertex_attributes
 
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
@@ -27,7 +27,8 @@ _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come nea
 class ModelData:
     """The data of a Model, and what follows from them at once.
 
-    `complex` has the cells; its arrays are attributes here, too, under the names of docs/dev/geometry.md.
+    The arrays of `complex`, the cells, and of `surfaces`, the input surfaces, are attributes here, too, under
+    the names of docs/dev/geometry.md.
     `surface_names` go with the global indices of the surfaces. `project` holds the arrays that the model was
     built from, so that nothing is read again. `rock_inputs` are what the stack builder took, by rock mass.
     `timings` are seconds by phase. `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
@@ -35,10 +36,7 @@ class ModelData:
 
     complex: CellComplex = field(repr=False)
     blocks: list[Block]
-    surface_vertices: np.ndarray
-    surface_triangles: np.ndarray
-    surface_vertex_offsets: np.ndarray
-    surface_triangle_offsets: np.ndarray
+    surfaces: SurfaceArrays = field(repr=False)
     surface_names: list[str]
     project: Project
     rock_inputs: list[RockInput] = field(default_factory=list, repr=False)
@@ -90,6 +88,22 @@ class ModelData:
     def cell_kind(self) -> str:
         """ "columns" or "blocks"."""
         return self.complex.cell_kind
+
+    @property
+    def surface_vertices(self) -> np.ndarray:
+        return self.surfaces.vertices
+
+    @property
+    def surface_triangles(self) -> np.ndarray:
+        return self.surfaces.triangles
+
+    @property
+    def surface_vertex_offsets(self) -> np.ndarray:
+        return self.surfaces.vertex_offsets
+
+    @property
+    def surface_triangle_offsets(self) -> np.ndarray:
+        return self.surfaces.triangle_offsets
 
     @property
     def face_blocks(self) -> np.ndarray:
@@ -155,11 +169,7 @@ class ModelData:
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""
-        v, t = self.surface_vertex_offsets, self.surface_triangle_offsets
-        return (
-            self.surface_vertices[v[number] : v[number + 1]],
-            self.surface_triangles[t[number] : t[number + 1]],
-        )
+        return self.surfaces.surface(number)
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
@@ -175,13 +185,3 @@ class ModelData:
         begin, end = self.surface_triangle_offsets[number : number + 2]
         sheet = self.surface_triangle_sheet[begin:end]
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
-
-
-def surface_arrays(shapes: Sequence[tuple[np.ndarray, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Surfaces one after another, by the names that they have in ModelData."""
-    offsets = (np.cumsum([0, *(len(shape[part]) for shape in shapes)], dtype=np.int64) for part in (0, 1))
-    return {
-        "surface_vertices": np.concatenate([vertices for vertices, _ in shapes]),
-        "surface_triangles": np.concatenate([triangles for _, triangles in shapes]),
-        **dict(zip(("surface_vertex_offsets", "surface_triangle_offsets"), offsets, strict=True)),
-    }

@@ -13,11 +13,12 @@ from ..blocks import Block
 from ..built_cells import BuiltCells, CellParts
 from ..cell_complex import CellComplex
 from ..model import Model
-from ..model_data import ModelData, surface_arrays
+from ..model_data import ModelData
 from ..structures.joining import acts, body_block, build_joined
 from ..structures.labels import compartments
 from ..structures.parts import Structures
 from ..structures.windows import Window
+from ..surface_arrays import SurfaceArrays
 from ..work import Work
 from .owned_cells import Seam, owners, reach_of
 from .tile_model import Frame, Name
@@ -160,7 +161,7 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels)
     return Model(
         own,
         blocks,
-        **surface_arrays(shapes),
+        SurfaceArrays.of(shapes),
         surface_names=whole.surface_names,
         project=frame.project,
         rock_inputs=[replace(entry, structure=None) for entry in window.inputs],

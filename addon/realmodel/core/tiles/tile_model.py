@@ -27,6 +27,7 @@ from ..project import Project, Rock, Surface
 from ..rock_input import RockInput
 from ..stack_refusals import refused_stack
 from ..structures.entries import Body, Fault
+from ..surface_arrays import SurfaceArrays
 from ..surface_heights import Triangulation, raise_to
 from ..work import Work, native_module, run
 from ..wrong_sides import WrongPoints, below_older, heights_at
@@ -188,7 +189,7 @@ def write_own_points(
             begin += len(piece)
         for name in own.tiles:
             rows = own.of(name)
-            arrays = {key: np.ascontiguousarray(rows[key]) for key in row_of.names}
+            arrays = {key: np.ascontiguousarray(rows[key]) for key in row_of.names or ()}
             _write(arrays, folder_of(name) / part)
 
 
@@ -415,7 +416,6 @@ def read_model(project: Project, path: Path) -> Model:
 
 def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     """A tile's model from its arrays."""
-    of_surfaces = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
     blocks = [
         Block(str(name), int(rock), int(surface), int(prop), float(volume), int(cells), int(components))
         for name, rock, surface, prop, volume, cells, components in zip(
@@ -429,7 +429,7 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     model = Model(
         CellComplex.of(arrays, str(arrays["cell_kind"])),
         blocks,
-        **{f"surface_{name}": arrays[f"surface_{name}"] for name in of_surfaces},
+        SurfaceArrays.of_arrays(arrays),
         surface_names=arrays["surface_names"].tolist(),
         project=project,
         is_cut="region_vertices_0" not in arrays,
