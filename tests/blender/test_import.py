@@ -207,6 +207,7 @@ class Data(Imported):
         self.assertLess(np.abs(places - np.array(expected)).max(), 1e-3)
         edges = {tuple(edge.vertices) for edge in paths.data.edges}
         self.assertEqual(edges, {(3 * n + k, 3 * n + k + 1) for n in range(5) for k in range(2)})
+        self.assertTrue(all(edge.is_loose for edge in paths.data.edges), "others are not drawn")
         self.assertGreater(rock.edge_length, 0.0)
         self.assertGreater(self.model.origin[0], 3e6)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core import InputRefused, PointFile, RealModelError
 from ..core.readers import read_point_file, read_region
-from . import borehole_picks, display, project_settings, reading_text, settings, stored_arrays
+from . import borehole_picks, display, meshes, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
@@ -176,14 +176,7 @@ def _new(scene, stamp, name, coordinates, edges):
     if ORIGIN_KEY not in scene:
         begin(scene, coordinates)
     origin = project_settings.model_origin(scene)
-    mesh = bpy.data.meshes.new(name)
-    mesh.vertices.add(len(coordinates))
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(coordinates - origin, np.float32).ravel())
-    if len(edges):
-        mesh.edges.add(len(edges))
-        mesh.edges.foreach_set("vertices", np.ascontiguousarray(edges, np.int32).ravel())
-    mesh.update()
-    item = bpy.data.objects.new(name, mesh)
+    item = bpy.data.objects.new(name, meshes.line_mesh(name, coordinates - origin, edges))
     item[KEY], item[_ORIGIN] = stamp, [float(value) for value in origin]
     item.hide_select = item.hide_render = True
     collection = _collection(scene)
