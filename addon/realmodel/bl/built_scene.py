@@ -201,10 +201,9 @@ def put(current, prepared, composed, in_place=False):
     except BaseException:
         bpy.data.batch_remove(created)
         raise
-    group, last = current.realmodel, settings.last_stage(current)
+    group = current.realmodel
+    settings.follow_youngest(current)
     with settings.filling():
-        if group.stage >= last or not len(group.results):
-            group.stage = last
         _settle_edited(current, composed)
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)

@@ -342,7 +342,7 @@ def fill(scene, project):
         for rock in project.rocks:
             add_rock(group, rock)
         structure_settings.fill(scene, project)
-        group.stage = settings.last_stage(scene)
+    settings.follow_youngest(scene)
     names.know(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)

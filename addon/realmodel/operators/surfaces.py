@@ -24,7 +24,6 @@ class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
             built_scene.release_surface(scene, row)
             rock.surfaces.remove(number)
             rock.active_surface = max(0, min(number, len(rock.surfaces) - 1))
-            scene.realmodel.stage = min(scene.realmodel.stage, settings.last_stage(scene))
         data_objects.update(scene)
         live.touch(scene)
 
