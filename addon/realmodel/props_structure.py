@@ -70,14 +70,15 @@ class RealModelFaultRock(bpy.types.PropertyGroup):
     )
 
 
-_FITTED = ("stick", "extend", "dies_out")  # what the surface through points depends on
 _FAULT = {key: setting for key, setting in FAULT.items() if key not in READING}
 _BODY = {key: setting for key, setting in BODY.items() if key not in READING}
 _MESH_READING = {key: setting for key, setting in BODY.items() if key in READING}
 
 
 class RealModelFault(
-    settings_of(_FAULT, name=changes.name, **dict.fromkeys(_FITTED, changes.fitted)),
+    settings_of(
+        _FAULT, name=changes.name, extend=changes.extended, stick=changes.fitted, dies_out=changes.fitted
+    ),
     settings_of(READING, changes.reading),
     _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE)),
     bpy.types.PropertyGroup,

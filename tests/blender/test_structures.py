@@ -246,6 +246,95 @@ class Lists(StructureCase):
         self.assertEqual(len(compartments.names(self.scene)), 2)
 
 
+class Sticks(StructureCase):
+    """A fault from a file of sticks that end within the rock, so that it has to be extended."""
+
+    def setUp(self):
+        super().setUp()
+        self.pol = self.folder / "sticks.pol"
+        sticks = [[(60.0, y, h) for h in (20, 0, -20)] for y in (20, 50, 80)]
+        self.pol.write_text(
+            "".join("".join(f"{x} {y} {z}\n" for x, y, z in s) + "999 999 999\n" for s in sticks)
+        )
+        select(*(sheet(f"S{n}", 10.0 * n) for n in range(2)))
+        ops.from_selected()
+        ops.fault_body_add(filepath=str(self.pol))
+        self.fault = self.model.faults[0]
+
+    def extent(self):
+        """The lowest and the highest corner of the fault in the scene."""
+        return np.array(self.fault.interface.bound_box)[[0, 6]].round(3).tolist()
+
+    def test_extended_once_however_often_it_is_built(self):
+        self.fault.extend = 40.0
+        ops.build()
+        before, volumes = self.extent(), self.volumes()
+        self.assertEqual(before, [[60.0, -20.0, -60.0], [60.0, 120.0, 60.0]])
+        for _ in range(2):
+            ops.build()
+            self.assertEqual((self.extent(), self.volumes()), (before, volumes))
+        self.pol.write_text(self.pol.read_text() + "\n")  # it is read again
+        ops.build()
+        self.assertEqual(self.extent(), before)
+        saved = self.folder / "p.toml"
+        ops.save_project(filepath=str(saved))
+        model = load_project(saved)
+        self.assertEqual((model.faults[0].extend, model.faults[0].stick), (0.0, None))
+        self.pol.unlink()
+        self.save_and_open()
+        self.fault = self.model.faults[0]
+        ops.build()
+        self.assertEqual((self.extent(), self.fault.extend), (before, 40.0))
+
+    def test_an_edit_is_followed_live_and_extended_no_more(self):
+        self.fault.extend = 40.0
+        ops.build()
+        self.model.live = True
+        self.live_is_done()
+        before = self.extent()
+        for vertex in self.fault.interface.data.vertices:
+            vertex.co.x -= 10.0
+        self.fault.interface.data.update()
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
+        self.assertEqual(self.fault.source, "MESH_OBJECT")
+        self.assertEqual(self.fault.extend, 0.0, "the mesh has it already")
+        found = compartments.read(self.scene)["volumes"]["S1 block"]
+        self.assertEqual([round(volume, 3) for volume in found], [5e4, 5e4])
+        ops.build()
+        self.assertEqual(self.extent(), [[50.0, *low[1:]] for low in before])
+
+    def test_the_surface_as_a_mesh_object_is_extended_no_more(self):
+        self.fault.extend = 40.0
+        ops.build()
+        before = self.extent()
+        self.fault.source = "MESH_OBJECT"
+        self.assertEqual(self.fault.extend, 0.0)
+        ops.build()
+        self.assertEqual(self.extent(), before)
+
+    def test_another_extension_reads_the_file_again(self):
+        self.fault.extend = 40.0
+        ops.build()
+        self.fault.extend = 60.0
+        ops.build()
+        self.assertEqual(self.extent(), [[60.0, -40.0, -80.0], [60.0, 140.0, 80.0]])
+
+    def test_the_column_of_sticks(self):
+        table = self.folder / "sticks.csv"
+        rows = [(30, y, h) for y in (-10, 50, 110) for h in (-60, 0, 60)]
+        table.write_text("x,y,z,s\n" + "\n".join(f"{x},{y},{h},{y}" for x, y, h in rows))
+        ops.fault_body_remove()
+        ops.fault_body_add(filepath=str(table))
+        self.fault = self.model.faults[0]
+        self.fault.stick = "s"
+        ops.build()
+        before = self.volumes()
+        ops.build()
+        self.assertEqual(self.volumes(), before)
+
+
 class Built(StructureCase):
     def test_volumes_and_objects(self):
         self.faulted(box("tunnel", (20, -10, 2), (30, 110, 6)), box("ore", (60, 20, -2), (70, 30, 2)))

@@ -300,6 +300,7 @@ def _settle_edited(current, composed):
         row.object = row.interface
         row.source = "MESH_OBJECT"
         row.interface_digest = ""
+        structure_settings.forget_extension(row)
 
 
 def _new_blocks(current, prepared, created, in_place):

@@ -14,6 +14,7 @@ from . import (
     reading_text,
     region_size,
     settings,
+    structure_settings,
     surface_figures,
     units,
     viewports,
@@ -97,6 +98,8 @@ def source(surface, context):
     discarded."""
     if settings.is_filling():
         return
+    if surface.interface_digest and _keeps_shape(surface):
+        structure_settings.forget_extension(surface)
     surface.interface_digest = ""
     with settings.filling():
         reading_text.fill(surface, {})
@@ -106,6 +109,13 @@ def source(surface, context):
             project_settings.forget_shape(surface)
     data_objects.update(surface.id_data)
     setting(surface, context)
+
+
+def _keeps_shape(surface):
+    """Whether a new source gives the shape that was made from the file before."""
+    if surface.source == "MESH_OBJECT":
+        return surface.object == surface.interface
+    return not surface.filepath
 
 
 def reading(row, context):
@@ -120,9 +130,14 @@ def reading(row, context):
     setting(surface, context)
 
 
+def extended(fault, context):
+    """The extension of a fault: what is made from its file depends on it."""
+    (setting if fault.source == "MESH_OBJECT" else reading)(fault, context)
+
+
 def fitted(fault, context):
-    """A setting that the surface through the points of a fault depends on."""
-    (reading if fault.source == "POINTS_FILE" else setting)(fault, context)
+    """A setting that the surface through the points of a fault depends on, and where it is extended."""
+    (extended if fault.source == "POINTS_FILE" or fault.extend > 0.0 else setting)(fault, context)
 
 
 def fit_variogram(surface, context):

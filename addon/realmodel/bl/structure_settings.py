@@ -26,6 +26,19 @@ def entry_of(place, row):
     return fault
 
 
+def is_extended(entry):
+    """The mesh of a fault was made from its file, as its settings say: they are not to be applied again."""
+    if isinstance(entry, Fault):
+        entry.extend, entry.stick = 0.0, None
+
+
+def forget_extension(row):
+    """The mesh that a fault's row has from now on was extended when it was made."""
+    if settings.kind_of(row) == "fault":
+        with settings.filling():
+            method_settings.set_value(row, "extend", FAULT, 0.0)
+
+
 def item_of(entry):
     """The name of a fault or a body in messages."""
     return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
@@ -66,6 +79,7 @@ def _fill_shape(row, entry, units):
         return
     if entry.vertices is None:  # points from a script
         entry = work.run(lambda task: _read_fault(task, entry, units))
+        forget_extension(row)
     row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
 
 

@@ -70,6 +70,7 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
 def _draw_fault(layout, fault):
     setting_rows.draw(layout, fault, "youngest", FAULT)
     setting_rows.draw(layout, fault, "dies_out", FAULT)
+    setting_rows.draw(layout, fault, "extend", FAULT)
     _draw_names(layout, fault, "ends_at", "Ends At")
     _draw_names(layout, fault, "rocks", "Rock Masses")
 
@@ -112,8 +113,7 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
             for key in MESH_READING:
                 setting_rows.draw(layout, entry, key, READING)
             return
-        for key in ("extend", "stick"):
-            setting_rows.draw(layout, entry, key, FAULT)
+        setting_rows.draw(layout, entry, "stick", FAULT)
         for key in READING:
             if key == "where":
                 draw_filters(layout, entry, of_fault=True)
