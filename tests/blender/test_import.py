@@ -372,6 +372,30 @@ class Opened(Imported):
         self.assertFalse(ops.dismiss.poll())
 
 
+    def test_settings_are_called_as_in_the_panel(self):
+        for text, wanted in (
+            (
+                "fault 'F': it ends inside the rock; extend it beyond the rock, set 'dies_out' or 'ends_at', "
+                "or choose an older 'youngest'",
+                "fault 'F': it ends inside the rock; extend it beyond the rock, set Dies Out or Ends At, or "
+                "choose an older Youngest",
+            ),
+            ("a closed surface is a body: write [[body]]", "a closed surface is a body: add it as a body"),
+            ("use a shorter edge_length", "use a shorter Edge Length"),
+            ("one and a base_elevation", "one and a Base Elevation"),
+            ('or give extrapolate = "nearest"', "or set Extrapolation to Nearest Point"),
+            (
+                "surface 'after': 'to' names 'name', which depends on this surface",
+                "surface 'after': Parallel To names 'name', which depends on this surface",
+            ),
+            (
+                "'ends_at' names fault 'extend', which does not exist",
+                "Ends At names fault 'extend', which does not exist",
+            ),
+        ):
+            self.assertEqual(notices.in_panel_words(text), wanted)
+
+
 class Palette(PanelCase):
     def test_colors_differ_for_everybody(self):
         """In ordinary sight and in three simulated kinds of color blindness (Machado et al., 2009)."""

@@ -11,6 +11,7 @@ from panel_case import PanelCase, ops, raise_by, select, sheet
 from realmodel.bl import (
     choices,
     compartments,
+    data_objects,
     meshes,
     project_settings,
     settings,
@@ -320,6 +321,47 @@ class Sticks(StructureCase):
         self.fault.extend = 60.0
         ops.build()
         self.assertEqual(self.extent(), [[60.0, -40.0, -80.0], [60.0, 140.0, 80.0]])
+
+    def shown(self):
+        """The data of the fault in the viewport."""
+        return {item.name: item for item in data_objects.objects(self.scene)}
+
+    def test_the_place_of_a_refusal_before_there_is_a_surface(self):
+        self.refused(ops.build, "fault 'sticks'.*ends inside the rock")
+        self.assertFalse(ops.show_problem.poll())  # a script gets the error itself
+        self.model.live = True
+        self.live_is_done()
+        activity = bpy.context.window_manager.realmodel
+        self.assertIn("set Dies Out or Ends At, or choose an older Youngest", activity.problem)
+        self.assertNotIn("_", activity.problem)
+        ops.show_problem()
+        x, y, z = self.scene.cursor.location
+        self.assertAlmostEqual(x, 60.0, delta=0.1)
+        self.assertTrue(0.0 <= y <= 20.0 or 80.0 <= y <= 100.0, "beyond the sticks, in the rock")
+        self.assertTrue(0.0 <= z <= 10.0, z)
+        self.model.live = False
+        self.fault.extend = 40.0
+        ops.build()
+        self.assertEqual(len(compartments.names(self.scene)), 2)
+
+    def test_sticks_are_shown_as_lines_when_their_file_is_chosen(self):
+        item = self.shown()["sticks sticks"]
+        places = np.array([item.matrix_world @ vertex.co for vertex in item.data.vertices])
+        self.assertEqual(places.round(3).tolist()[:3], [[60, 20, 20], [60, 20, 0], [60, 20, -20]])
+        self.assertEqual(
+            [tuple(edge.vertices) for edge in item.data.edges],
+            [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (7, 8)],
+        )
+        self.assertTrue(all(edge.is_loose for edge in item.data.edges))
+        table = self.folder / "picks.csv"
+        table.write_text("x,y,z,s\n" + "".join(f"{x},{x % 3},{x % 5},{x % 2}\n" for x in range(8)))
+        self.model.show_data = False
+        self.fault.filepath = str(table)
+        self.assertEqual(len(self.shown()["sticks sticks"].data.edges), 0, "they are scattered")
+        self.fault.stick = "s"
+        self.assertEqual(len(self.shown()["sticks sticks"].data.edges), 6)
+        ops.fault_body_remove()
+        self.assertEqual(self.shown(), {})
 
     def test_the_column_of_sticks(self):
         table = self.folder / "sticks.csv"

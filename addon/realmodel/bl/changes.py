@@ -103,6 +103,8 @@ def source(surface, context):
     surface.interface_digest = ""
     with settings.filling():
         reading_text.fill(surface, {})
+        if surface.source == "POINTS_FILE" and surface.filepath:
+            surface.id_data.realmodel.show_data = True
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
         if surface.filepath and settings.kind_of(surface) != "surface":

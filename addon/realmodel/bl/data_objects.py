@@ -13,6 +13,7 @@ import numpy as np
 
 from ..core import InputRefused, PointFile, RealModelError
 from ..core.readers import read_point_file, read_region
+from ..core.readers.fault_sticks import read_fault_points
 from . import borehole_picks, display, meshes, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
@@ -127,16 +128,28 @@ def _wanted(scene, read):
                 lambda rock=rock: _paths(rock),
             )
         for row in rock.surfaces:
-            if row.source == "POINTS_FILE" and (row.filepath or row.stored):
-                try:
-                    key = file_key(row)
-                except RealModelError:  # only some of the columns are set yet
-                    continue
+            if (key := _points_key(row)) is not None:
                 found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),
                 )
+    for row in scene.realmodel.faults:
+        if key := _points_key(row):
+            found[f"sticks {row.name} {row.stick} {key}"] = (
+                f"{row.name} sticks",
+                lambda row=row: _sticks(scene, row),
+            )
     return found
+
+
+def _points_key(row):
+    """`file_key` of a row that is made from points; None where there are none yet."""
+    if row.source != "POINTS_FILE" or not (row.filepath or getattr(row, "stored", "")):
+        return None
+    try:
+        return file_key(row)
+    except RealModelError:  # only some of the columns are set yet
+        return None
 
 
 def _checksum(text):
@@ -154,9 +167,22 @@ def _paths(rock):
         [*([] if collar is None else [collar]), *(place for _, place in picks)]
         for collar, picks in borehole_picks.of_rock(rock).values()
     ]
-    starts = np.cumsum([0, *map(len, holes)])
+    return _chains(holes)
+
+
+def _sticks(scene, row):
+    """The sticks of a fault, or its scattered points."""
+    given = PointFile(project_settings.absolute(row.filepath), **reading_text.options(row))
+    stick = reading_text.column(row.stick) if row.stick.strip() else None
+    found, _ = read_fault_points(given, stick, scene.realmodel.units)
+    return (found, np.empty((0, 2), np.int32)) if isinstance(found, np.ndarray) else _chains(found)
+
+
+def _chains(lines):
+    """The points of lines (N, 3) each, and the edges (E, 2) that join those of each line."""
+    starts = np.cumsum([0, *map(len, lines)])
     first = np.setdiff1d(np.arange(starts[-1]), starts[1:] - 1)
-    return np.concatenate(holes), np.stack([first, first + 1], 1).astype(np.int32)
+    return np.concatenate(lines), np.stack([first, first + 1], 1).astype(np.int32)
 
 
 def _outline(scene, rock):

@@ -279,19 +279,22 @@ def _draw_preview(box, preview):
 
 
 def arrived(context, rock, places, read=None):
-    """Updates the scene for new data of a rock mass: the origin if there is none, an edge length, the display
-    and the view. places: arrays (N, 3) in model coordinates. read: as for data_objects.update."""
+    """Updates the scene for new data of a rock mass (None: of a fault): the origin if there is none, an edge
+    length, the display and the view. places: arrays (N, 3) in model coordinates. read: as for
+    data_objects.update."""
     scene = context.scene
     if places:
         points = np.concatenate(places)
         data_objects.begin(scene, points)
-        plan_mesh.propose_edge_length(rock, points)
+        if rock is not None:
+            plan_mesh.propose_edge_length(rock, points)
     with settings.filling():
         scene.realmodel.show_data = scene.realmodel.show_data or bool(places)
     data_objects.update(scene, read)
     if places and not len(scene.realmodel.results):
         context.view_layer.update()
-        viewports.frame_items(data_objects.objects(scene), viewports.spaces(context))
+        shown = data_objects.objects(scene) + project_settings.user_objects(scene)
+        viewports.frame_items(shown, viewports.spaces(context))
     live.touch(scene)
 
 

@@ -14,6 +14,7 @@ from ..core.point_file import PointFile
 from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.structures.triangles import open_edges
+from .imports import arrived
 from .reporting import (
     Reporting,
     a_body,
@@ -168,7 +169,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             row = _add(scene, kind, path.stem, source)
             with settings.filling():
                 row.filepath = str(path)
-        live.touch(scene)
+        arrived(context, None, [places for _, source, _, places in found if source == "POINTS_FILE"])
         self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
 
     def _paths(self):
@@ -213,6 +214,7 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
             built_scene.release_surface(scene, row)
             rows.remove(number)
             setattr(scene.realmodel, f"active_{kind}", max(0, min(number, len(rows) - 1)))
+        data_objects.update(scene)
         live.touch(scene)
 
 
