@@ -11,8 +11,8 @@ from itertools import pairwise
 import bpy
 import numpy as np
 
-from ..core import InputRefused, PointFile, RealModelError
-from ..core.readers import read_point_file, read_region
+from ..core import InputRefused, PointFile, RealModelError, Surface
+from ..core.readers import read_mesh, read_point_file, read_region
 from ..core.readers.fault_sticks import read_fault_points
 from . import borehole_picks, display, meshes, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
@@ -74,7 +74,7 @@ def begin(scene, points):
 def points_of(scene, rock, depsgraph):
     """(P, 3) float64 of all points of a rock mass's surfaces, in model coordinates; the vertices of ready
     meshes count where there are no points. Raises InputRefused."""
-    found = [_row_points(scene, row, depsgraph) for row in rock.surfaces]
+    found = [row_points(scene, row, depsgraph) for row in rock.surfaces]
     found = [points for points in found if points is not None and len(points)]
     if not found:
         raise InputRefused(
@@ -83,14 +83,21 @@ def points_of(scene, rock, depsgraph):
     return np.concatenate(found)
 
 
-def _row_points(scene, row, depsgraph):
+def row_points(scene, row, depsgraph):
+    """(P, 3) float64 in model coordinates: the points of a surface, or the vertices of its ready mesh; None
+    where there are none yet. Raises InputRefused."""
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT") and row.object is not None:
         return project_settings.shapes.points(row.object, depsgraph) + project_settings.model_origin(scene)
     if row.source == "POINTS_FILE":
         return _read_points(scene, row)
     if row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)["vertices"]
-    return None
+    path = project_settings.absolute(row.filepath)
+    if row.source != "MESH_FILE" or path is None:
+        return None
+    given = Surface(row.name)
+    project_settings.name_file(given, row, path)
+    return read_mesh(path).in_model(given.mesh, scene.realmodel.units)[0]
 
 
 def _read_points(scene, row):

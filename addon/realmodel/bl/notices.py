@@ -20,9 +20,7 @@ _GIVEN = re.compile(
 _QUOTED = re.compile(
     r"((?:surface|fault|body|rock|mass|block|column|object|layer|method|names) )?" + rf"'({_KEY})'"
 )
-_PLAIN = re.compile(
-    r"(?<![\w'/.-])(" + "|".join(key for key in _LABELS if "_" in key) + r")(?![\w'/-]|\.\w)"
-)
+_PLAIN = re.compile(r"(?<![\w'/.-])(" + "|".join(key for key in _LABELS if "_" in key) + r")(?![\w'/-]|\.\w)")
 _BODY = re.compile(r"write \[\[body\]\]")
 _PATH = re.compile(r"(?<!\S)/(?:[^\s:]+/)+([^\s:/]+\.\w+)")
 

@@ -93,7 +93,8 @@ def compose(scene, depsgraph, whole=True):
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     for number, row in enumerate(group.rocks):
-        rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
+        base = method_settings.value(row, "base_elevation", ROCK)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=borehole_picks.of_rock(row))
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(composed, number, rock, row, depsgraph, whole)
         composed.project.rocks.append(rock)

@@ -159,8 +159,8 @@ def last_stage(scene):
 
 
 def follow_youngest(scene):
-    """The stage goes with the youngest surface, where it was there before rows were added or removed, or there
-    is no model yet."""
+    """The stage goes with the youngest surface, where it was there before rows were added or removed, or
+    there is no model yet."""
     group, last = scene.realmodel, last_stage(scene)
     before = last if group.known_last < 0 else group.known_last
     with filling():

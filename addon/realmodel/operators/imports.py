@@ -23,6 +23,7 @@ from ..bl import (
     viewports,
 )
 from ..core import InputRefused, MeshFile, PointFile
+from ..core.age_order import age_order
 from ..core.errors import HeightsMissing
 from ..core.point_file import ReadingRefused
 from ..core.readers import (
@@ -194,7 +195,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                         yield preview_table(path)
 
     def _given(self, context):
-        """The surfaces to add, the lowest first, and warnings about them. Raises InputRefused."""
+        """The surfaces to add, the oldest first, and warnings about them. Raises InputRefused."""
         if self.use_object:
             item = context.active_object
             if item is None or item.type != "MESH":
@@ -212,9 +213,11 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                 found.append(surface)
         if len(found) == 1:
             found[0].name = self.name.strip() or found[0].name
-        elif all(surface.places is not None for surface in found):
-            found.sort(key=lambda surface: float(surface.places[:, 2].mean()))
-        return found, warnings
+            return found, warnings
+        names = [surface.name for surface in found]
+        order = age_order(names, [surface.places for surface in found])
+        against = order.warning(names)
+        return [found[number] for number in order.order], warnings + [against] * (against is not None)
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
