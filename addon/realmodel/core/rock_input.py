@@ -283,7 +283,7 @@ def interpolate_rock(
         plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
         for number in flat:
             entry.surfaces[number] = plan
-    if not flat:
+    if not flat and entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
