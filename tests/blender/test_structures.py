@@ -322,6 +322,30 @@ class Sticks(StructureCase):
         ops.build()
         self.assertEqual(self.extent(), [[60.0, -40.0, -80.0], [60.0, 140.0, 80.0]])
 
+    def test_a_mesh_that_was_made_from_its_file_is_extended_no_more(self):
+        off = self.folder / "wall.off"
+        off.write_text("OFF\n4 2 0\n50 -9 -60\n50 109 -60\n50 109 60\n50 -9 60\n3 0 1 2\n3 0 2 3\n")
+        ops.fault_body_remove()
+        ops.fault_body_add(filepath=str(off))
+        fault = self.model.faults[0]
+
+        def composed():
+            depsgraph = viewports.updated_layer(self.scene).depsgraph
+            return project_settings.compose(self.scene, depsgraph).project.faults[0]
+
+        fault.extend = 5.0
+        self.assertEqual((composed().extend, composed().vertices), (5.0, None), "the file is to be read")
+        fault.extend = 0.0
+        ops.build()
+        with settings.filling():
+            fault.extend = 5.0  # as it was when the stored mesh was made
+        self.assertEqual((composed().extend, len(composed().vertices)), (0.0, 4))
+        fault.filepath = ""
+        self.assertEqual((fault.extend, len(composed().vertices)), (0.0, 4), "the .blend keeps the mesh")
+        fault.source, fault.object = "MESH_OBJECT", wall("own", 50.0)
+        fault.extend = 5.0
+        self.assertEqual(composed().extend, 5.0)
+
     def shown(self):
         """The data of the fault in the viewport."""
         return {item.name: item for item in data_objects.objects(self.scene)}

@@ -216,8 +216,8 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
             return found, warnings
         names = [surface.name for surface in found]
         order = age_order(names, [surface.places for surface in found])
-        against = order.warning(names)
-        return [found[number] for number in order.order], warnings + [against] * (against is not None)
+        warnings += [text] if (text := order.warning(names)) else []
+        return [found[number] for number in order.order], warnings
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
