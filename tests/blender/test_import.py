@@ -280,10 +280,11 @@ class Data(Imported):
         ops.region_around()
         for row in rock.surfaces:
             row.method = "plane"
-        for _ in range(2):  # from the stored picks, too
+        for name in ("clay", "marl"):
+            rock.surfaces[1].name = name
             ops.build()
             (text,) = [t for t in notices.read(self.model.warnings) if "at the same place" in t]
-            self.assertIn("sand: 3 of its 6 points lie above those of 'clay'", text)
+            self.assertIn(f"sand: 3 of its 6 points lie above those of '{name}'", text)
             self.assertIn("; holes B3, B4 and B5;", text)
 
 
