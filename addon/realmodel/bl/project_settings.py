@@ -184,7 +184,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
                     setattr(surface, key, None)
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
-            structure_settings.is_extended(surface)
+            structure_settings.clear_extension(surface)
             return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
@@ -193,7 +193,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
     elif stored:
         _take_stored(surface, stored)
         if path is not None or row.source == "POINTS_FILE":
-            structure_settings.is_extended(surface)
+            structure_settings.clear_extension(surface)
     else:
         kind = "points" if row.source == "POINTS_FILE" else "mesh"
         raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")

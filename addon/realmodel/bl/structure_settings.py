@@ -26,7 +26,7 @@ def entry_of(place, row):
     return fault
 
 
-def is_extended(entry):
+def clear_extension(entry):
     """The mesh of a fault was made from its file, as its settings say: they are not to be applied again."""
     if isinstance(entry, Fault):
         entry.extend, entry.stick = 0.0, None
