@@ -208,6 +208,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         min=0,
         update=changes.stage,
     )
+    known_last: IntProperty(default=-1, options={"HIDDEN"})  # settings.last_stage; -1: not known yet
     stage_slider: PointerProperty(type=props_stage.RealModelStage)
     display: EnumProperty(
         name="Display",

@@ -225,6 +225,35 @@ class Surfaces(PanelCase):
         ops.build()
         self.assertAlmostEqual(self.volumes()["S1 block"], 1e5, places=5)
 
+    def test_the_stage_follows_the_youngest_surface(self):
+        stack(0.0, 10.0)
+        ops.build()
+        select(sheet("pit", 5.0))
+        ops.surface_add(use_object=True)
+        self.assertEqual(self.model.stage, 2)
+        ops.build()
+        self.assertEqual(self.model.stage, 2)
+        self.assertAlmostEqual(volume(bpy.data.objects["S1 block"].data), 5e4, places=3)
+        ops.surface_copy()
+        self.assertEqual(self.model.stage, 3)
+        ops.surface_remove()
+        self.assertEqual(self.model.stage, 2)
+        row = self.rock().surfaces.add()  # as a script does
+        row.name, row.source, row.object = "late", "MESH_OBJECT", sheet("late", 20.0)
+        ops.build()
+        self.assertEqual(self.model.stage, 3)
+
+    def test_a_stage_that_was_chosen_stays_when_a_surface_is_added(self):
+        stack(0.0, 10.0, 20.0)
+        ops.build()
+        self.model.stage = 1
+        select(sheet("late", 30.0))
+        ops.surface_add(use_object=True)
+        ops.build()
+        self.assertEqual(self.model.stage, 1)
+        ops.rock_remove()
+        self.assertEqual(self.model.stage, 0)
+
     def test_hide(self):
         stack(0.0, 10.0)
         ops.build()

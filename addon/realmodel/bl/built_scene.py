@@ -201,10 +201,9 @@ def put(current, prepared, composed, in_place=False):
     except BaseException:
         bpy.data.batch_remove(created)
         raise
-    group, last = current.realmodel, settings.last_stage(current)
+    group = current.realmodel
+    settings.follow_youngest(current)
     with settings.filling():
-        if group.stage >= last or not len(group.results):
-            group.stage = last
         _settle_edited(current, composed)
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
@@ -301,6 +300,7 @@ def _settle_edited(current, composed):
         row.object = row.interface
         row.source = "MESH_OBJECT"
         row.interface_digest = ""
+        structure_settings.forget_extension(row)
 
 
 def _new_blocks(current, prepared, created, in_place):

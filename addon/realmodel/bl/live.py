@@ -25,6 +25,7 @@ measured = caches.new()  # by the name of a scene: seconds from the last change 
 def touch(scene):
     """Reports that input of a scene's model was changed."""
     names.know(scene)
+    settings.follow_youngest(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)
 

@@ -89,7 +89,8 @@ def compose(scene, depsgraph, whole=True):
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     for number, row in enumerate(group.rocks):
-        rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
+        base = method_settings.value(row, "base_elevation", ROCK)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=borehole_picks.of_rock(row))
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(composed, number, rock, row, depsgraph, whole)
         composed.project.rocks.append(rock)
@@ -179,6 +180,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
                     setattr(surface, key, None)
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
+            structure_settings.clear_extension(surface)
             return
     if row.source == "TRACE_OBJECT":
         _trace_of_object(composed, surface, row, depsgraph)
@@ -189,6 +191,8 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored, row)
+        if row.source == "POINTS_FILE" or (path is not None and row.source != "TRACE_FILE"):
+            structure_settings.clear_extension(surface)
     else:
         kind = {"POINTS_FILE": "points", "TRACE_FILE": "trace"}.get(row.source, "mesh")
         raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
@@ -359,7 +363,7 @@ def fill(scene, project):
         for rock in project.rocks:
             add_rock(group, rock)
         structure_settings.fill(scene, project)
-        group.stage = settings.last_stage(scene)
+    settings.follow_youngest(scene)
     names.know(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import method_settings, notices, settings
+from ..bl import method_settings, notices, problems, settings
 from .panel import OfAModel, TabPanel, hint, letters, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
@@ -64,12 +64,12 @@ def _draw_missing(layout, group):
 def _draw_problem(box, activity):
     box.alert = True
     row = box.row()
-    lines = wrapped(notices.in_panel_words(activity.problem), taken=_ICON)
+    lines = wrapped(activity.problem, taken=_ICON)
     column = row.column(align=True)
     for line in lines:
         column.label(text=line)
     row.operator("realmodel.dismiss", text="", icon="X", emboss=False)
-    if activity.problem_object:
+    if problems.has_place(bpy.context):
         box.operator("realmodel.show_problem", icon="VIEWZOOM")
 
 
