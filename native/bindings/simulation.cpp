@@ -137,6 +137,7 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     made["plan_triangles"] = to_array(std::move(mesh.plan.triangles));
     made["layers"] = mesh.layers;
     made["volumes"] = to_array(std::move(mesh.volumes));
+    made["skewed"] = py::make_tuple(mesh.skewed.faces, mesh.skewed.most, mesh.skewed.place);
     return made;
 }
 

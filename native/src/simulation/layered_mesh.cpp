@@ -34,8 +34,9 @@ constexpr double kMostFailing = 0.01;  ///< heights given up, a share of element
 constexpr double kMostMended = 0.002;  ///< how much blocks may change for that, of all volumes
 constexpr double kFarthest = 8;  ///< minimum thicknesses: how far heights move at what still fails
 
-/// What is mended: thin ends of layers, then steep faces, then what checkMesh would fail.
-enum class Stage { kWeak, kSteep, kFailing, kDone };
+/// What is mended: thin ends of layers, then steep faces, then what checkMesh fails with all its
+/// options, at last what it fails without any.
+enum class Stage { kWeak, kSteep, kFailing, kSkewed };
 
 /// Fills the columns of all triangles from the bottom up. A front, one height at each corner, moves
 /// up step by step; what lies between two fronts is an element. All three corners move by one
@@ -479,10 +480,14 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
             }
             if (best && (!failing.empty() || changed > kMostMended * total)) {
                 levels = *best;
-                stage = Stage::kDone;
+                stage = Stage::kSkewed;
                 continue;
             }
         }
+        stage = Stage::kSkewed;
+        auto skewed = quality.skewed();
+        if (levels.remove(plan, skewed.removals, true) > 0) continue;
+        made.skewed = {skewed.faces, skewed.most, skewed.place};
         filler.finish_steps(VerticalFaults(model, lines.steps));
         break;
     }

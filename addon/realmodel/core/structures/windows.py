@@ -361,7 +361,7 @@ def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:
 
 
 def _mesh_alone(entry: Fault | Body, **more) -> Fault | Body:
-    """A fault or body whose shape is its arrays, without the files that they were read from but in messages."""
+    """A fault or body with its arrays alone, and the file that they are from for messages."""
     return replace(entry, mesh=None, source=None, shape_file=entry.shape_source()[0], **more)
 
 

@@ -80,6 +80,13 @@ struct LayeredMesh {
     meshing::PlanarMesh plan;
     std::int32_t layers = 0;      ///< of the rock mass that has most
     std::vector<double> volumes;  ///< of each block
+    /// Faces that the line between the centers of their elements crosses too far from their center:
+    /// how many have a skewness above 4, as OpenFOAM's checkMesh measures it, the largest, and where.
+    struct {
+        std::size_t faces = 0;
+        double most = 0;
+        std::array<double, 3> place{};
+    } skewed;
 };
 
 /// @param plan  a mesh of the region that contains the segments of `lines`
