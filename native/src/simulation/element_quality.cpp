@@ -17,8 +17,8 @@ constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit i
 constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
 constexpr double kSkewnessLimit = 4;
 constexpr double kMostSkewness = 3.8;
-constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
-constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
+constexpr double kLeastWeight = 0.052;  ///< its limit is 0.05
+constexpr double kLeastShare = 0.0105;  ///< of a neighbor's volume; its limit is 0.01
 
 constexpr double kSteepFace = 0.5;       ///< cosine: of 60 degrees
 constexpr double kNoDeterminant = 1e-8;  ///< inner faces in two directions only
@@ -212,8 +212,7 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
 /// The neighbor within takes the volume, but what stands out of the top goes.
 bool ElementQuality::gives_upward(std::size_t t, std::size_t element) const {
     const std::size_t first = columns_.offset[t], count = columns_.elements(t);
-    return count > 1 &&
-           (element == first || (element + 1 == first + count && is_tall(t, element)));
+    return count > 1 && (element == first || (element + 1 == first + count && is_tall(t, element)));
 }
 
 /// Gives up an element: its upper heights, or its lower ones.
@@ -269,8 +268,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
                 const Face face = side_face(
                     plan_.mesh().vertices[index(nodes[i])], plan_.mesh().vertices[index(nodes[j])],
                     {a[index(low[i])], b[index(low[j])]}, {a[index(high[i])], b[index(high[j])]});
-                visit(face, Place{t, e},
-                      is_shared ? Place{index(n), beyond} : Place{t, kNone});
+                visit(face, Place{t, e}, is_shared ? Place{index(n), beyond} : Place{t, kNone});
             });
         }
     }
@@ -313,31 +311,83 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     return found;
 }
 
-ElementQuality::Skewed ElementQuality::skewed() const {
-    const std::vector<Body> bodies = this->bodies();
+ElementQuality::Skewed ElementQuality::skewed(bool divided) const {
     Skewed found;
-    for_faces([&](const Face& face, const Place& own, const Place& other) {
-        const bool is_outer = other.element == kNone;
-        const Body& a = bodies[own.element];
-        const double skewness =
-            is_outer ? outer_skewness(face, a.center)
-                     : inner_skewness(face, a.center, bodies[other.element].center);
+    if (!divided) {
+        find_skewed(*this, {}, found);
+    } else {
+        std::vector<std::size_t> whole;
+        const ColumnFronts parts = tetrahedra(whole);
+        find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, found);
+    }
+    std::sort(found.tall.begin(), found.tall.end());
+    found.tall.erase(std::unique(found.tall.begin(), found.tall.end()), found.tall.end());
+    return found;
+}
+
+/// The elements divided by the diagonals at the lower ends of their sides with the lesser node (as
+/// divided() of addon/realmodel/core/simulation/tetrahedra.py): the corner with the greatest node
+/// moves first. `whole`: the element that each is a part of.
+ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
+    ColumnFronts made;
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        const auto& nodes = plan_.mesh().triangles[t];
+        std::array<std::size_t, 3> order{0, 1, 2};
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return nodes[a] > nodes[b]; });
+        for (std::size_t e = columns_.offset[t]; e < columns_.offset[t + 1]; ++e) {
+            Front front = columns_.fronts[e];
+            made.fronts.push_back(front);
+            made.blocks.push_back(columns_.blocks[e]);
+            whole.push_back(e);
+            if (e + 1 == columns_.offset[t + 1]) continue;
+            const Front& high = columns_.fronts[e + 1];
+            for (const std::size_t corner : order) {
+                if (front[corner] == high[corner]) continue;
+                front[corner] = high[corner];
+                if (front == high) continue;
+                made.fronts.push_back(front);
+                made.blocks.push_back(columns_.blocks[e]);
+                whole.push_back(e);
+            }
+        }
+        made.offset.push_back(made.fronts.size());
+    }
+    return made;
+}
+
+/// @param parts  the faces of these elements are looked at; of which `whole` each is a part, if it
+/// is not one itself
+void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
+                                 Skewed& found) const {
+    const std::vector<Body> bodies = this->bodies(),
+                            of_parts = whole.empty() ? bodies : parts.bodies();
+    const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
+    parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
+        const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
+        const Point& center = of_parts[own.element].center;
+        const double skewness = is_outer
+                                    ? outer_skewness(face, center)
+                                    : inner_skewness(face, center, of_parts[other.element].center);
         if (!(skewness > kMostSkewness)) return;
-        if (skewness > kSkewnessLimit) ++found.faces;
+        const std::size_t e = whole_of(own.element);
+        if (skewness > kSkewnessLimit) {
+            ++found.faces;
+            if (is_outer && !is_side) found.tall.push_back(columns_.blocks[e]);
+        }
         if (skewness > found.most) {
             found.most = skewness;
             found.place = face.center;
         }
-        if (!is_outer && own.triangle == other.triangle) {
-            const bool is_own = a.volume < bodies[other.element].volume;
-            give_up(own.triangle, is_own ? own.element : other.element, is_own, found.removals);
-        } else if (face.area[2] == 0) {
-            const bool is_own = is_outer || a.volume < bodies[other.element].volume;
-            const auto [t, e] = is_own ? own : other;
-            if (columns_.elements(t) > 1) give_up(t, e, joins_upward(t, e, bodies), found.removals);
-        }
+        if (is_outer && !is_side) return;  // too tall rather than too thin
+        const std::size_t next = is_outer ? e : whole_of(other.element);
+        const bool is_own = e == next || bodies[e].volume < bodies[next].volume;
+        const std::size_t t = is_own ? own.triangle : other.triangle, smaller = is_own ? e : next;
+        if (columns_.elements(t) == 1) return;
+        const bool upper = is_side || e == next ? joins_upward(t, smaller, bodies) : is_own;
+        give_up(t, smaller, upper, found.removals);
     });
-    return found;
 }
 
 /// Whether an element that has to get thicker joins the next above it, not that below: one of its

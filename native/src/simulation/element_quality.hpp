@@ -44,16 +44,19 @@ public:
     /// center, or at more than 70 degrees from the direction across, or if one is much smaller.
     Removals failing(std::span<const std::uint8_t> is_narrow) const;
 
-    /// Faces between elements and outside that are crossed farther from their centers than checkMesh
-    /// allows, the worst of them, and the heights of elements that are too thin for how steep they
-    /// are there: they become one with the next in their columns.
+    /// Faces between elements and outside that are crossed farther from their centers than
+    /// checkMesh allows, and the worst of them. Elements that are too thin for how steep they are
+    /// there become one with the next in their columns (`removals`). At top and base they are too
+    /// tall instead: `tall` has the blocks of these.
     struct Skewed {
         std::size_t faces = 0;
         double most = 0;
         std::array<double, 3> place{};
+        std::vector<std::int32_t> tall;
         Removals removals;
     };
-    Skewed skewed() const;
+    /// @param divided  whether elements are divided into tetrahedra
+    Skewed skewed(bool divided) const;
 
     /// Of each steep face that the line between the centers of its elements crosses at too small an
     /// angle: by how much its corners would move to make it less steep.
@@ -85,6 +88,9 @@ private:
     /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
     template <class Visit>
     void for_faces(const Visit& visit) const;
+    ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
+    void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
+                     Skewed& found) const;
     bool leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const;
     double determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
                        unsigned open_sides) const;
