@@ -66,9 +66,10 @@ def simulation_mesh(
     blocks and rock masses.
 
     layers: how many each block is divided into: one number, one for each block, or {block name: number}
-    (1 where none is given). Where nothing is said about layers a block is one, or more if it is so thick that
-    solvers could not use its elements at a steep top or base; a warning says how many. layer_thickness: instead into layers no thicker than this; `layers` then bounds
-    their number. elements: "prisms", or "tetrahedra": the same mesh with every element divided.
+    (1 where none is given). layer_thickness: instead into layers no thicker than this; `layers` then bounds
+    their number. Where neither is given a block is one layer, or more where it is so thick that solvers could
+    not use its elements at a steep top or base; a warning says how many. elements: "prisms", or
+    "tetrahedra": the same mesh with every element divided.
     size: where edges are shorter, as of mesh_region; "outline" and "constraints" mean all lines.
     mesher: of the planar mesh.
 
@@ -257,7 +258,7 @@ def _skewed_faces(model, count: int, most: float, place: tuple, tall: list[int])
     """A warning about faces whose skewness is above the limit of OpenFOAM's checkMesh."""
     if not count:
         return []
-    advice = "use a larger minimum thickness, or a base_elevation farther below"
+    advice = "use a shorter edge length, or a base_elevation farther below"
     if tall:
         blocks = ", ".join(f"'{model.blocks[number].name}'" for number in tall)
         advice = f"use thinner layers in {blocks}"
