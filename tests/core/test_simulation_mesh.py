@@ -245,7 +245,7 @@ def test_division_into_layers():
 def test_thick_blocks_with_a_steep_top_are_divided():
     """Unless layers are given: then they are as asked, and faces that are too skew are told."""
     model = build(
-        Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", [80, 160, 160, 80])])])
+        Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", [40, 340, 340, 40])])])
     )
     mesh = checked(model.simulation_mesh(5.0, 0.5))
     layers = mesh.plan.layers
@@ -261,7 +261,7 @@ def test_thick_blocks_with_a_steep_top_are_divided():
         assert re.match(r"\d+ faces have a skewness above 4, up to [0-9.]+ near \(", warning.text)
         assert warning.text.endswith("checkMesh fails them; use thinner layers in 's1 block'")
     thin = checked(model.simulation_mesh(5.0, 0.5, layer_thickness=8.0))
-    assert not thin.warnings and thin.plan.layers == 20
+    assert not thin.warnings and thin.plan.layers == 43
     level = build(Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", 160)])]))
     assert level.simulation_mesh(5.0, 0.5).plan.layers == 1
 
