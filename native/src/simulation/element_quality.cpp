@@ -15,10 +15,10 @@ namespace {
 // checkMesh's limits, or a little within them
 constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
 constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
-constexpr double kSkewnessLimit = 4;
-constexpr double kMostSkewness = 3.8;
-constexpr double kLeastWeight = 0.052;  ///< its limit is 0.05
-constexpr double kLeastShare = 0.0105;  ///< of a neighbor's volume; its limit is 0.01
+constexpr double kSkewnessLimit = 4;         ///< without any option
+constexpr double kMostSkewness = 3.8;        ///< what is mended
+constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
+constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
 
 constexpr double kSteepFace = 0.5;       ///< cosine: of 60 degrees
 constexpr double kNoDeterminant = 1e-8;  ///< inner faces in two directions only
