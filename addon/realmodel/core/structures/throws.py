@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The throw of a fault as the surfaces show it that are known on both sides, by which the sheet of another
+one is shifted from one side to the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..algebra import dot, principal_axes
+from ..work import Work
+from ..wrong_sides import Triangulation, heights_at
+from .displacement import throws_between
+from .families import Family
+from .rock_structure import RockStructure
+
+OWN, FEW, TAKEN, UNKNOWN = range(4)  # what a sheet is made of: enough points, few, or no data; the worse last
+_STRETCHES = 8  # of a fault along its strike at most, in each of which the median counts
+_IN_EACH = 5  # places at least
+_CORRECTIONS = 4  # of a shift, until the throw that it gives is the one that is wanted
+_EXACT = 1e-9  # of the throw
+
+Sheets = dict[tuple[int, ...], Triangulation]  # of a family, by the sides of faults that die out
+
+
+class Profile:
+    """Values along a fault: between the middles of its stretches linear, beyond them constant."""
+
+    def __init__(self, plan: np.ndarray, values: np.ndarray):
+        """plan: (N, 2), values: (N,)."""
+        self.origin, self.axis = plan.mean(axis=0), principal_axes(plan)[1][0]
+        along = self._along(plan)
+        order = np.argsort(along, kind="stable")
+        parts = np.array_split(order, min(max(len(plan) // _IN_EACH, 1), _STRETCHES))
+        self.along = np.array([along[part].mean() for part in parts])
+        self.middles = np.array([plan[part].mean(axis=0) for part in parts])
+        self.values = np.array([np.median(values[part]) for part in parts])
+
+    def _along(self, plan: np.ndarray) -> np.ndarray:
+        return dot(plan - self.origin, self.axis)
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) at places (N, 2): the same bytes on every system, as those of np.interp are not."""
+        along = np.clip(self._along(plan), self.along[0], self.along[-1])
+        after = np.clip(np.searchsorted(self.along, along), 1, max(len(self.along) - 1, 1))
+        if len(self.along) == 1:
+            return np.full(len(plan), self.values[0])
+        low, high = self.along[after - 1], self.along[after]
+        share = (along - low) / np.where(high > low, high - low, 1.0)
+        return (1.0 - share) * self.values[after - 1] + share * self.values[after]
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A sum of profiles, each with a factor: heights to be added to a sheet. surfaces: the numbers of those
+    whose throw it is; rank: what their sheets are made of."""
+
+    terms: tuple[tuple[float, Profile], ...]
+    surfaces: tuple[int, ...]
+    rank: int
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        total = np.zeros(len(plan))
+        for factor, profile in self.terms:
+            total = total + factor * profile.at(plan)
+        return total
+
+    def of(self, sheets: Sheets) -> Sheets:
+        """Sheets shifted; those that were one object stay so."""
+        moved: dict[int, Triangulation] = {}
+        for vertices, triangles in sheets.values():
+            if id(vertices) not in moved:
+                z = vertices[:, 2] + self.at(vertices[:, :2])
+                moved[id(vertices)] = np.column_stack([vertices[:, :2], z]), triangles
+        return {sides: moved[id(sheet[0])] for sides, sheet in sheets.items()}
+
+    @property
+    def middles(self) -> np.ndarray:
+        """(N, 2) of the stretches in which it was measured."""
+        return np.concatenate([profile.middles for _, profile in self.terms])
+
+
+class Throws:
+    """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
+    to it. few: the surfaces of those that are there which few points show."""
+
+    def __init__(self, work: Work, structure: RockStructure, few: set[int], threads: int):
+        self.work, self.threads = work, threads
+        self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
+        rank = [
+            [UNKNOWN if sheet is None else FEW if number in few else OWN for number, sheet in enumerate(sheets)]
+            for sheets in structure.sheets
+        ]
+        self.rank = np.array(rank)
+        self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
+
+    def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
+        """The sheets of a surface in a family."""
+        for compartment, sides in family.members.items():
+            self.structure.sheets[compartment][number] = sheets[sides]
+            self.rank[compartment, number] = rank
+
+    def fault_between(self, one: Family, other: Family) -> int | None:
+        """The fault on whose two sides two families are, each on one side of every other fault that is on
+        both sides of it; None where there is none, or several."""
+        apart = [fault for fault, (a, b) in enumerate(zip(one.key, other.key, strict=True)) if a * b == -1]
+        return apart[0] if len(apart) == 1 else None
+
+    def shift(self, number: int, fault: int, source: Family, family: Family) -> Shift | None:
+        """The throw of a surface from one family to another one across a fault: that of the surfaces next in
+        age, older and younger, on which it is known. Between these two it is as the surface lies between them,
+        by thickness. None where it is known on none."""
+        pairs = self._pairs(fault, source, family)
+        for limit in (OWN, FEW, TAKEN):
+            youngest = self.structure.faults.youngest[fault]
+            older = self._first(range(number - 1, -1, -1), fault, pairs, limit)
+            younger = self._first(range(number + 1, youngest + 1), fault, pairs, limit)
+            if older is not None or younger is not None:
+                break
+        else:
+            return None
+        down = float(source.key[fault])  # throw is how much lower the upper side lies
+        found = [each for each in (older, younger) if each is not None]
+        shares = [1.0]
+        if len(found) == 2:
+            share = self._share(source, number, *found)
+            shares = [1.0 - share, share]
+        profiles = [Profile(places[:, :2], throw) for _, places, throw in found]
+        terms = tuple((down * share, each) for share, each in zip(shares, profiles, strict=True))
+        return Shift(terms, tuple(each[0] for each in found), limit)
+
+    def corrected(
+        self, wanted: Shift, number: int, fault: int, source: Family, family: Family, sheets: Sheets
+    ) -> Shift:
+        """A shift of the sheets of a family's neighbor whose throw is the wanted one: on a fault that is not
+        vertical a sloping sheet meets it elsewhere when it is shifted, and the throw differs by the slope
+        times the heave."""
+        down, pairs = float(source.key[fault]), self._pairs(fault, source, family)
+        shift, off = wanted, np.inf
+        for _ in range(_CORRECTIONS):
+            self.tell(number, family, shift.of(sheets), UNKNOWN)
+            found = self._measured(number, fault, pairs)
+            if found is None:
+                break
+            profile = Profile(found[0][:, :2], found[1])
+            target = down * wanted.at(profile.middles)
+            profile.values = target - profile.values
+            before, off = off, float(np.abs(profile.values).max())
+            if off <= _EXACT * float(np.abs(target).max()):
+                break
+            if off >= before:  # it is nearly parallel to the fault
+                return replace(shift, terms=shift.terms[:-1])
+            shift = replace(shift, terms=(*shift.terms, (down, profile)))
+        return shift
+
+    def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
+        """Compartments of two families below and above a fault, and on one side of each other that is on both
+        sides of it."""
+        rows, pairs = self.structure.compartments, []
+        for pair in ((a, b) for a in one.members for b in other.members):
+            a, b = rows[list(pair)]
+            same = (a == b) | (a == 0) | (b == 0)
+            same[fault] = a[fault] * b[fault] < 0
+            if same.all():
+                pairs.append(pair if a[fault] < 0 else pair[::-1])
+        return pairs
+
+    def _first(self, numbers: Iterable[int], fault: int, pairs, limit: int):
+        """The number of the first of some surfaces on which a throw is known, and that: places (N, 3) and
+        throw (N,). At most one of the two sheets is taken over."""
+        for number in numbers:
+            usable = []
+            for below, above in pairs:
+                ranks = sorted(self.rank[[below, above], number].tolist())
+                if ranks[1] <= limit and ranks != [TAKEN, TAKEN]:
+                    usable.append((below, above))
+            key = number, fault, tuple(usable)
+            if key not in self._known:
+                self._known[key] = self._measured(number, fault, usable)
+            if self._known[key] is not None:
+                return number, *self._known[key]
+        return None
+
+    def _measured(self, number: int, fault: int, pairs) -> tuple[np.ndarray, np.ndarray] | None:
+        """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
+        different = {}
+        for pair in pairs:
+            different.setdefault(tuple(id(self.structure.sheets[each][number]) for each in pair), pair)
+        parts = [
+            throws_between(self.work, self.structure, fault, number, *pair, self.threads)
+            for pair in different.values()
+        ]
+        parts = [part for part in parts if len(part[0])]
+        if not parts:
+            return None
+        places, throw = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return places, throw
+
+    def _share(self, family: Family, number: int, older, younger) -> float:
+        """Where a surface lies between two others along a fault in a family, by thickness: 0 at the older
+        one, 1 at the younger one."""
+        plan = np.concatenate([older[1], younger[1]])[:, :2]
+        for compartment in family.members:
+            sheets = [self.structure.sheets[compartment][each] for each in (older[0], number, younger[0])]
+            if all(sheet is not None for sheet in sheets):
+                low, own, high = (heights_at(self.work, sheet, plan, self.threads) for sheet in sheets)
+                there = (high > low) & np.isfinite(own)  # not where one of them has no height
+                if there.any():
+                    share = (own[there] - low[there]) / (high[there] - low[there])
+                    return float(np.clip(np.median(share), 0.0, 1.0))
+        return 0.5
