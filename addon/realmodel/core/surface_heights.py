@@ -94,8 +94,8 @@ def _vertex_attributes(
 
 
 def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | None = None) -> None:
-    """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and keeps
-    it above the older one where it has a minimum thickness."""
+    """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
+    keeps it above the older one where it has a minimum thickness."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     nodes, triangles = entry.region
     method, settings = surface.method_options()

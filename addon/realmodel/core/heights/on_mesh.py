@@ -11,6 +11,7 @@ from .interpolation import Result, Task
 from .surface_reference import heights_of
 
 _ARGUMENTS = {"border": "equal", "above": "least", "below": "most"}  # of native code, by options
+BOUNDS = tuple(_ARGUMENTS)
 
 
 def dsi(task: Task) -> Result:

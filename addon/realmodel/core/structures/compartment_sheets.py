@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sheets of a surface in all compartments: from its own data where these are enough, else from the sheet of
-a neighbor, shifted by the throw of the fault between them."""
+"""The sheets of a surface in all compartments: from its own data where these are enough, else from the sheet
+of a neighbor, shifted by the throw of the fault between them."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..build_warning import BuildWarning
 from ..errors import InputRefused
 from ..project import Rock, surface_item
 from ..surface_heights import named_surfaces, needed_surfaces
+from .borrowed import between_faults
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
@@ -71,44 +72,63 @@ class CompartmentSheets:
                     self.waited.add(family.key)
                     throws.tell(self.number, family, free.sheets(family), self._rank(family))
 
-    def neighbors(self, family: Family, throws: Throws) -> list[Borrowing]:
-        """From which families across one fault one without enough data may take its sheets now."""
+    def neighbors(self, family: Family, throws: Throws) -> list[Source]:
+        """From which families across one fault one without enough data may take its sheets now: those where
+        the throw is known best; where it is not known the one with most data."""
         if family in self.own or not self._is_ready():
             return []
         found = []
-        for source in self.every:
+        for source in sorted(self.every, key=self._amount, reverse=True):
             fault = throws.fault_between(source, family) if source.key in self.made else None
             if fault is not None:
-                shift = throws.shift(self.number, fault, source, family)
-                found.append(Borrowing(self, family, source, fault, shift))
-        return found
+                found.append(Source(source, fault, throws.shift(self.number, fault, source, family)))
+        best = min((source.rank for source in found), default=UNKNOWN)
+        return [source for source in found if source.rank == best][: 1 if best == UNKNOWN else None]
 
-    def borrow(self, borrowing: Borrowing, throws: Throws) -> None:
-        """Makes the sheets of a family from those of another one."""
-        family, source, shift = borrowing.family, borrowing.source, borrowing.shift
-        sheets = self.made[source.key]
+    def borrow(self, family: Family, sources: list[Source], throws: Throws) -> None:
+        """Makes the sheets of a family from those of others, the first of which has most data."""
+        taken = [self._from(source, family, throws) for source in sources]
+        trends = taken[0]
+        if len(taken) > 1:
+            shapes = self.entry.structure.faults.shapes
+            faults = [(s.shift.places, shapes[s.fault], s.family.key[s.fault]) for s in sources]
+            trends = {
+                sides: between_faults(throws.work, [each[sides] for each in taken], faults, throws.threads)
+                for sides in trends
+            }
+            self.surface.adopt(trends, taken[0])
+        trends = _drawn_together(self.surface, family, trends)
+        self.made[family.key] = self.surface.sheets(family, trends)
+        self.entry.structure.warnings.append((list(family.members), self._warning(family, sources)))
+
+    def _from(self, source: Source, family: Family, throws: Throws) -> Sheets:
+        """The sheets of another family by the sides of this one, whose faults that die out may differ."""
+        sheets = self.made[source.family.key]
         first = next(iter(sheets.values()))
         taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
-        if shift is not None:
-            shift = throws.corrected(shift, self.number, borrowing.fault, source, family, taken)
-            taken = self.surface.shifted(taken, shift)
-        trends = _drawn_together(self.surface, family, taken)
-        self.made[family.key] = self.surface.sheets(family, trends)
-        self.entry.structure.warnings.append((list(family.members), borrowing.warning()))
+        if source.fault is not None:
+            given, taken = taken, self.surface.continued(taken, family, source)
+            self.surface.adopt(taken, given)
+        if source.shift is None:
+            return taken
+        shift = throws.corrected(source.shift, self.number, source.fault, source.family, family, taken)
+        moved = shift.of(taken)
+        self.surface.adopt(moved, taken)
+        return moved
 
     def make_last(self, throws: Throws) -> None:
         """Makes the sheets of families that are across one fault from none with sheets: from the few points,
         or as the family with most data."""
         if not self._is_ready():
             return
-        most = max((family for family in self.every if family.key in self.made), key=self.amount)
+        most = max((family for family in self.every if family.key in self.made), key=self._amount)
         for family in self.waiting:
             if family.key in self.few:
                 self.made[family.key] = self.surface.sheets(family)
             else:
-                self.borrow(Borrowing(self, family, most), throws)
+                self.borrow(family, [Source(most)], throws)
 
-    def amount(self, family: Family) -> tuple:
+    def _amount(self, family: Family) -> tuple:
         """By which families are compared: how many data they have."""
         return self.surface.count(family), family.key
 
@@ -142,45 +162,43 @@ class CompartmentSheets:
             return FEW
         return OWN if family in self.own else TAKEN
 
+    def _warning(self, family: Family, sources: list[Source]) -> BuildWarning:
+        structure, rock = self.entry.structure, self.entry.rock
+        names = [structure.names[next(iter(each.members))] for each in (family, *(s.family for s in sources))]
+        here, *there = (f"'{name}'" for name in names)
+        if family.key in self.few:
+            count = self.surface.count(family)
+            text = (
+                f"its {count} point{'s' if count > 1 else ''} in compartment {here}, too few or on one line, "
+            )
+            text += f"are interpolated on the sheet of compartment {' and '.join(there)}"
+        else:
+            text = f"it has no {self.surface.data} in compartment {here}: there it goes on as in compartment "
+            text += " and ".join(there)
+        for source in sources:
+            fault = "" if source.fault is None else f"fault '{structure.faults.names[source.fault]}'"
+            if source.shift is not None:
+                others = " and ".join(f"'{rock.surfaces[each].name}'" for each in source.shift.surfaces)
+                text += f", shifted {_moved(source.shift)}, the throw of {fault} in {others}"
+            elif fault:
+                text += f", shifted by 0, as no other surface shows the throw of {fault} there"
+            else:
+                text += ", shifted by 0, as no single fault is between them"
+        return BuildWarning(text, "compartment", rock.name, rock.surfaces[self.number].name)
+
 
 @dataclass(frozen=True)
-class Borrowing:
-    """Sheets of a family that are to be made from those of another one, `source`, across a fault; shift: by
-    its throw, None where that is not known."""
+class Source:
+    """A family whose sheets another one takes over, across a fault; shift: by its throw, None where that is
+    not known."""
 
-    of: CompartmentSheets
     family: Family
-    source: Family
     fault: int | None = None
     shift: Shift | None = None
 
     @property
     def rank(self) -> int:
         return UNKNOWN if self.shift is None else self.shift.rank
-
-    def warning(self) -> BuildWarning:
-        structure, rock = self.of.entry.structure, self.of.entry.rock
-        surfaces, own = rock.surfaces, self.of.surface
-        here, there = (structure.names[next(iter(each.members))] for each in (self.family, self.source))
-        if self.family.key in self.of.few:
-            count = own.count(self.family)
-            text = (
-                f"its {count} points in compartment '{here}' do not show its shape there" if count > 1 else
-                f"its point in compartment '{here}' does not show its shape there"
-            )
-            text += f": they are interpolated on the sheet of compartment '{there}'"
-        else:
-            text = f"it has no {own.data} in compartment '{here}': there it goes on as in compartment '{there}'"
-        if self.shift is not None:
-            names = " and ".join(f"'{surfaces[each].name}'" for each in self.shift.surfaces)
-            text += f", shifted {_moved(self.shift)}, by the throw of fault "
-            text += f"'{structure.faults.names[self.fault]}' in {names}"
-        elif self.fault is not None:
-            text += f", shifted by 0: no other surface shows the throw of fault "
-            text += f"'{structure.faults.names[self.fault]}' there"
-        else:
-            text += ", shifted by 0: no single fault is between them"
-        return BuildWarning(text, "compartment", rock.name, surfaces[self.of.number].name)
 
 
 def make_borrowed(
@@ -193,12 +211,16 @@ def make_borrowed(
         for each in unfinished:
             each.tell(throws)
         if not own:
-            found = [_best(each, family, throws) for each in unfinished for family in each.waiting]
-            found = [borrowing for borrowing in found if borrowing is not None]
-            least = min((borrowing.rank for borrowing in found), default=UNKNOWN)
-            for borrowing in found:
-                if borrowing.rank == least:
-                    borrowing.of.borrow(borrowing, throws)
+            found = [
+                (each, family, each.neighbors(family, throws))
+                for each in unfinished
+                for family in each.waiting
+            ]
+            found = [(each, family, sources) for each, family, sources in found if sources]
+            best = min((sources[0].rank for _, _, sources in found), default=UNKNOWN)
+            for each, family, sources in found:
+                if sources[0].rank == best:
+                    each.borrow(family, sources, throws)
             if not found:
                 for each in unfinished:
                     each.make_last(throws)
@@ -207,15 +229,6 @@ def make_borrowed(
                 each.tell(throws)
                 finish(each)
         unfinished = [each for each in unfinished if each.waiting]
-
-
-def _best(of: CompartmentSheets, family: Family, throws: Throws) -> Borrowing | None:
-    """Of a family's neighbors across one fault those where the throw is known best, and of these the one with
-    most data."""
-    neighbors = of.neighbors(family, throws)
-    least = min((each.rank for each in neighbors), default=UNKNOWN)
-    known = [each for each in neighbors if each.rank == least]
-    return max(known, key=lambda each: of.amount(each.source), default=None)
 
 
 @contextmanager
@@ -233,11 +246,13 @@ def named(rock: Rock, number: int):
 
 def _moved(shift: Shift) -> str:
     """By how much a sheet is shifted along a fault."""
-    along = shift.at(shift.middles)
+    along = shift.at(shift.middles) + 0.0  # no -0
     low, high = float(along.min()), float(along.max())
+    if low == high == 0:
+        return "by 0"
     if low < 0 < high:
         return f"by {low:.4g} to {high:.4g}"
-    way, low, high = ("up", low, high) if high > 0 else ("down", -high, -low)
+    way, low, high = ("up", low, high) if high > 0 else ("down", abs(high), -low)
     amounts = dict.fromkeys((f"{low:.4g}", f"{high:.4g}"))
     return f"{way} by {' to '.join(amounts)}"
 

@@ -9,7 +9,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ..algebra import dot, principal_axes
-from ..heights import Interpolation
 from ..methods import METHODS
 from ..project import Surface
 
@@ -42,16 +41,7 @@ def are_few(
     return bool(inside.any()) and width < float(np.ptp(share[inside]))
 
 
-def of_residuals(surface: Surface, found: Interpolation) -> tuple[str, dict]:
-    """The method, and its options, by which what few points differ from a trend is interpolated: kriging with
-    the variogram of the trend, where it has one. A plane stays one. found: of the points of the trend.
-
-    Other methods would go on beyond the points with slopes that so few do not show.
-    """
-    if surface.method == "plane":
-        return "constant", {}
-    method = "idw" if found.variogram is None else "kriging"
-    options = {name: value for name, value in surface.options.items() if name in METHODS[method].options}
-    if found.variogram is not None:
-        options |= {"variogram": found.variogram.settings(), "neighbours": found.neighbours}
-    return method, {**options, "extrapolate": "method"}
+def of_residuals(surface: Surface) -> tuple[str, dict]:
+    """The method, and its options, by which what few points differ from a trend is interpolated: inverse
+    distance. Others would go on beyond the points with slopes that so few do not show. A plane stays one."""
+    return ("constant", {}) if surface.method == "plane" else ("idw", {"extrapolate": "method"})

@@ -10,18 +10,20 @@ import numpy as np
 
 from ..build_warning import BuildWarning
 from ..errors import place_text
+from ..heights.on_mesh import BOUNDS
 from ..methods import METHODS
 from ..mis_ties import contradictions, mean_heights
 from ..surface_heights import Trend, give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
+from .borrowed import as_at_fault, runs_away
 from .families import Family, keys_of
 from .few_points import are_few, of_residuals
 from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
-from .sides import sides_of
-from .throws import Sheets, Shift
+from .sides import fault_sides, sides_of
+from .throws import Sheets
 from .tips import shared, trace_of, with_equal_ends
 from .triangles import edges_of
 from .within import Within
@@ -110,12 +112,41 @@ class InterpolatedSurface:
         other.entry = replace(self.entry, rock=replace(self.entry.rock, surfaces=surfaces))
         return other
 
-    def shifted(self, sheets: Sheets, shift: Shift) -> Sheets:
-        """Sheets that were made here, shifted."""
-        found = shift.of(sheets)
-        for sides, sheet in found.items():
-            self.made[id(sheet)] = (*self.made[id(sheets[sides])][:2], sheet)
-        return found
+    def continued(self, sheets: Sheets, family: Family, source) -> Sheets:
+        """Sheets of another family, across the fault of a source, for this one: as its method continues them,
+        or with the heights that they have at the fault, where they would run away, or the points of this
+        family agree better with that."""
+        shape, side = self.entry.structure.faults.shapes[source.fault], source.family.key[source.fault]
+        within, points = self._within(family), self.points[self.own(family) & self.counts]
+        found: dict[int, Triangulation] = {}
+        for sheet in sheets.values():
+            if id(sheet) in found:
+                continue
+            found[id(sheet)] = sheet
+            level = as_at_fault(self.work, sheet, shape, side, self.threads)
+            if level is None:
+                continue
+            if len(points):
+                off = [self._spread(points, each) for each in (sheet, level)]
+                is_level = off[1] < off[0]
+            else:
+                shift = 0.0 if source.shift is None else source.shift.at(sheet[0][:, :2])
+                known = fault_sides(self.work, sheet[0], shape, self.threads) == side
+                is_level = runs_away(sheet, known, within, shift)
+            if is_level:
+                found[id(sheet)] = level
+        return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
+
+    def _spread(self, points: np.ndarray, sheet: Triangulation) -> float:
+        """How different the heights of points (P, 3) above a sheet are."""
+        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
+        off = off[np.isfinite(off)]
+        return float(off.std()) if len(off) else 0.0
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own, for which what is known of these holds, too."""
+        for sides, sheet in sheets.items():
+            self.made[id(sheet)] = (*self.made[id(others[sides])][:2], sheet)
 
     def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
         """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
@@ -168,11 +199,13 @@ class InterpolatedSurface:
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
-        """Sheets without points, on the right side of the surfaces that this one needs."""
-        if not needed_surfaces(self.entry.rock, self.number):
+        """Sheets without points, within the bounds of the surface."""
+        settings = self.surface.method_options()[1]
+        is_bounded = any(settings.get(option) is not None for option in BOUNDS)
+        if self.surface.minimum_thickness is None and not is_bounded:
             return trends
         none = np.zeros(len(self.points), bool)
-        return shared({sides: self._interpolated(family, sides, none, trend=trends[sides]) for sides in trends})
+        return shared({s: self._interpolated(family, s, none, trend=trend) for s, trend in trends.items()})
 
     def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
@@ -253,7 +286,7 @@ class InterpolatedSurface:
 
     def _trend(self, sheet: Triangulation) -> Trend:
         interpolation, attributes, _ = self.made[id(sheet)]
-        by = of_residuals(self.surface, interpolation)
+        by = of_residuals(self.surface)
         return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
     def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from .families import Family, around_tips, families
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
-from .throws import Sheets, Shift
+from .throws import Sheets
 from .tips import hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
 from .triangles import meet, overlapping_pairs, welded
 from .within import Within
@@ -71,12 +71,16 @@ class ReadyMesh:
         """Never: triangles show a slope."""
         return False
 
-    def shifted(self, sheets: Sheets, shift: Shift) -> Sheets:
-        return shift.of(sheets)
+    def continued(self, sheets: Sheets, family: Family, source) -> Sheets:
+        """Sheets of another family as they are: they go on by heights of their vertices."""
+        return sheets
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own; nothing more is known of these."""
 
     def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
-        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where it has
-        no triangles."""
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where there
+        are no triangles."""
         if trends is not None:
             return trends
         own = self.own(family)

@@ -30,6 +30,7 @@ class Profile:
 
     def __init__(self, plan: np.ndarray, values: np.ndarray):
         """plan: (N, 2), values: (N,)."""
+        self.plan = plan
         self.origin, self.axis = plan.mean(axis=0), principal_axes(plan)[1][0]
         along = self._along(plan)
         order = np.argsort(along, kind="stable")
@@ -77,6 +78,11 @@ class Shift:
         return {sides: moved[id(sheet[0])] for sides, sheet in sheets.items()}
 
     @property
+    def places(self) -> np.ndarray:
+        """(N, 2) along the fault, at which it was measured."""
+        return np.concatenate([profile.plan for _, profile in self.terms])
+
+    @property
     def middles(self) -> np.ndarray:
         """(N, 2) of the stretches in which it was measured."""
         return np.concatenate([profile.middles for _, profile in self.terms])
@@ -89,11 +95,9 @@ class Throws:
     def __init__(self, work: Work, structure: RockStructure, few: set[int], threads: int):
         self.work, self.threads = work, threads
         self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
-        rank = [
-            [UNKNOWN if sheet is None else FEW if number in few else OWN for number, sheet in enumerate(sheets)]
-            for sheets in structure.sheets
-        ]
-        self.rank = np.array(rank)
+        known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
+        self.rank = np.where(known, OWN, UNKNOWN)
+        self.rank[:, sorted(few)] = FEW
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
 
     def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
@@ -109,9 +113,9 @@ class Throws:
         return apart[0] if len(apart) == 1 else None
 
     def shift(self, number: int, fault: int, source: Family, family: Family) -> Shift | None:
-        """The throw of a surface from one family to another one across a fault: that of the surfaces next in
-        age, older and younger, on which it is known. Between these two it is as the surface lies between them,
-        by thickness. None where it is known on none."""
+        """The shift of a surface from one family to another one across a fault, by the throw of the surfaces
+        next in age, older and younger, on which it is known. Between these two it is as the surface lies
+        between them, by thickness. None where it is known on none."""
         pairs = self._pairs(fault, source, family)
         for limit in (OWN, FEW, TAKEN):
             youngest = self.structure.faults.youngest[fault]
