@@ -91,7 +91,7 @@ class InterpolatedSurface:
         return (self.keys == family.key).all(axis=1)
 
     def count(self, family: Family) -> int:
-        return int(self.own(family).sum())
+        return int(self._certain(family).sum())
 
     def has_data(self, family: Family) -> bool:
         return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
@@ -100,8 +100,13 @@ class InterpolatedSurface:
         """Whether its points do not show its shape there."""
         if not self.surface.needs_points:
             return False
-        points = self.points[self.own(family) & self.counts]
-        return are_few(self.surface, points, self.entry.region[0], self._within(family))
+        points = self.points[self._certain(family)]
+        return len(points) == 0 or are_few(self.surface, points, self.entry.region[0], self._within(family))
+
+    def _certain(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
+        points of the other side are theirs."""
+        return self.own(family) & self.counts & ~self.placed.moved.any(axis=1)
 
     def without_thickness(self) -> InterpolatedSurface:
         """The same surface without its minimum thickness, for which the older one need not be known."""
@@ -117,7 +122,7 @@ class InterpolatedSurface:
         or with the heights that they have at the fault, where they would run away, or the points of this
         family agree better with that."""
         shape, side = self.entry.structure.faults.shapes[source.fault], source.family.key[source.fault]
-        within, points = self._within(family), self.points[self.own(family) & self.counts]
+        within, points = self._within(family), self.points[self._certain(family)]
         found: dict[int, Triangulation] = {}
         for sheet in sheets.values():
             if id(sheet) in found:
@@ -151,11 +156,9 @@ class InterpolatedSurface:
     def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
         """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
         points are few or none."""
-        own = self.own(family)
-        if trends is not None:
-            own &= self.counts
-            if not own.any():
-                return self._within_bounds(family, trends)
+        own = self.own(family) if trends is None else self._certain(family)
+        if trends is not None and not own.any():
+            return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
         common = self._interpolated(family, first, own, trend=trends and trends[first])
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
