@@ -58,13 +58,11 @@ def _nearest_heights(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
     return found
 
 
-def runs_away(
-    sheet: Triangulation, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray], shift: np.ndarray
-) -> bool:
-    """Whether a sheet, shifted by (V,), goes far beyond the heights that it has where it is known, (V,) bool,
-    in the compartment in which points `within` lie."""
+def runs_away(sheet: Triangulation, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]) -> bool:
+    """Whether a sheet goes far beyond the heights that it has where it is known, (V,) bool, in the
+    compartment in which points `within` lie."""
     vertices = sheet[0]
-    inside = within(np.column_stack([vertices[:, :2], vertices[:, 2] + shift])) & ~known
+    inside = within(vertices) & ~known
     if not inside.any() or not known.any():
         return False
     low, high = vertices[known, 2].min(), vertices[known, 2].max()

@@ -106,15 +106,14 @@ class CompartmentSheets:
         sheets = self.made[source.family.key]
         first = next(iter(sheets.values()))
         taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
-        if source.fault is not None:
-            given, taken = taken, self.surface.continued(taken, family, source)
-            self.surface.adopt(taken, given)
-        if source.shift is None:
+        if source.shift is not None:
+            found = throws.by_thickness(self.number, source.shift, source.fault, source.family, family, taken)
+        elif source.fault is not None:
+            found = self.surface.continued(taken, family, source.family, source.fault)
+        else:
             return taken
-        shift = throws.corrected(source.shift, self.number, source.fault, source.family, family, taken)
-        moved = shift.of(taken)
-        self.surface.adopt(moved, taken)
-        return moved
+        self.surface.adopt(found, taken)
+        return found
 
     def make_last(self, throws: Throws) -> None:
         """Makes the sheets of families that are across one fault from none with sheets: from the few points,

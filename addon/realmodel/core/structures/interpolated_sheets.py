@@ -117,11 +117,11 @@ class InterpolatedSurface:
         other.entry = replace(self.entry, rock=replace(self.entry.rock, surfaces=surfaces))
         return other
 
-    def continued(self, sheets: Sheets, family: Family, source) -> Sheets:
-        """Sheets of another family, across the fault of a source, for this one: as its method continues them,
-        or with the heights that they have at the fault, where they would run away, or the points of this
-        family agree better with that."""
-        shape, side = self.entry.structure.faults.shapes[source.fault], source.family.key[source.fault]
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family, across a fault, for this one: as its method continues them, or with the
+        heights that they have at the fault, where they would run away, or the points of this family agree
+        better with that."""
+        shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
         within, points = self._within(family), self.points[self._certain(family)]
         found: dict[int, Triangulation] = {}
         for sheet in sheets.values():
@@ -132,12 +132,10 @@ class InterpolatedSurface:
             if level is None:
                 continue
             if len(points):
-                off = [self._spread(points, each) for each in (sheet, level)]
-                is_level = off[1] < off[0]
+                is_level = self._spread(points, level) < self._spread(points, sheet)
             else:
-                shift = 0.0 if source.shift is None else source.shift.at(sheet[0][:, :2])
                 known = fault_sides(self.work, sheet[0], shape, self.threads) == side
-                is_level = runs_away(sheet, known, within, shift)
+                is_level = runs_away(sheet, known, within)
             if is_level:
                 found[id(sheet)] = level
         return {sides: found[id(sheet)] for sides, sheet in sheets.items()}

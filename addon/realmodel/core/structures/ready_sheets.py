@@ -71,7 +71,7 @@ class ReadyMesh:
         """Never: triangles show a slope."""
         return False
 
-    def continued(self, sheets: Sheets, family: Family, source) -> Sheets:
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
         """Sheets of another family as they are: they go on by heights of their vertices."""
         return sheets
 

@@ -15,12 +15,13 @@ from ..wrong_sides import Triangulation, heights_at
 from .displacement import throws_between
 from .families import Family
 from .rock_structure import RockStructure
+from .tips import shared
+from .within import Within
 
 OWN, FEW, TAKEN, UNKNOWN = range(4)  # what a sheet is made of: enough points, few, or no data; the worse last
 _STRETCHES = 8  # of a fault along its strike at most, in each of which the median counts
 _IN_EACH = 5  # places at least
-_CORRECTIONS = 4  # of a shift, until the throw that it gives is the one that is wanted
-_EXACT = 1e-9  # of the throw
+_OUTLIERS = 0.05  # of values, at either end, that do not count
 
 Sheets = dict[tuple[int, ...], Triangulation]  # of a family, by the sides of faults that die out
 
@@ -67,15 +68,6 @@ class Shift:
         for factor, profile in self.terms:
             total = total + factor * profile.at(plan)
         return total
-
-    def of(self, sheets: Sheets) -> Sheets:
-        """Sheets shifted; those that were one object stay so."""
-        moved: dict[int, Triangulation] = {}
-        for vertices, triangles in sheets.values():
-            if id(vertices) not in moved:
-                z = vertices[:, 2] + self.at(vertices[:, :2])
-                moved[id(vertices)] = np.column_stack([vertices[:, :2], z]), triangles
-        return {sides: moved[id(sheet[0])] for sides, sheet in sheets.items()}
 
     @property
     def places(self) -> np.ndarray:
@@ -135,29 +127,42 @@ class Throws:
         terms = tuple((down * share, each) for share, each in zip(shares, profiles, strict=True))
         return Shift(terms, tuple(each[0] for each in found), limit)
 
-    def corrected(
-        self, wanted: Shift, number: int, fault: int, source: Family, family: Family, sheets: Sheets
-    ) -> Shift:
-        """A shift of the sheets of a family's neighbor whose throw is the wanted one: on a fault that is not
-        vertical a sloping sheet meets it elsewhere when it is shifted, and the throw differs by the slope
-        times the heave."""
-        down, pairs = float(source.key[fault]), self._pairs(fault, source, family)
-        shift, off = wanted, np.inf
-        for _ in range(_CORRECTIONS):
-            self.tell(number, family, shift.of(sheets), UNKNOWN)
-            found = self._measured(number, fault, pairs)
-            if found is None:
-                break
-            profile = Profile(found[0][:, :2], found[1])
-            target = down * wanted.at(profile.middles)
-            profile.values = target - profile.values
-            before, off = off, float(np.abs(profile.values).max())
-            if off <= _EXACT * float(np.abs(target).max()):
-                break
-            if off >= before:  # it is nearly parallel to the fault
-                return replace(shift, terms=shift.terms[:-1])
-            shift = replace(shift, terms=(*shift.terms, (down, profile)))
-        return shift
+    def by_thickness(
+        self, number: int, shift: Shift, fault: int, source: Family, family: Family, sheets: Sheets
+    ) -> Sheets:
+        """Sheets of a surface, as they are in `source`, shifted to be those of a family across a fault: by
+        what the surfaces of the shift differ in height on its two sides, everywhere.
+
+        So its thickness from one of these is that of the source; between two it is the share of theirs.
+        """
+        pairs = self._pairs(fault, source, family)
+        partner = {each: other for pair in pairs for each, other in (pair, pair[::-1])}
+        within = Within(self.work, self, number, source, self.threads)
+        laid: Sheets = {}
+        for compartment, sides in family.members.items():
+            if sides in laid:
+                continue
+            here = compartment if compartment in partner else next(c for c in family.members if c in partner)
+            vertices, triangles = sheets[sides]
+            plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
+            there, own = (
+                [
+                    heights_at(self.work, self.structure.sheets[each][n], plan, self.threads)
+                    for n in shift.surfaces
+                ]
+                for each in (partner[here], here)
+            )
+            known = within(vertices)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                if len(own) == 1:
+                    found = own[0] + _tamed(z - there[0], known)
+                else:
+                    share = (z - there[0]) / (there[1] - there[0])
+                    share = np.clip(_tamed(np.where(there[1] > there[0], share, np.nan), known), 0.0, 1.0)
+                    found = own[0] + share * (own[1] - own[0])
+            found = np.where(np.isfinite(found), found, z + shift.at(plan))
+            laid[sides] = np.column_stack([plan, found]), triangles
+        return shared(laid)
 
     def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
         """Compartments of two families below and above a fault, and on one side of each other that is on both
@@ -215,3 +220,14 @@ class Throws:
                     share = (own[there] - low[there]) / (high[there] - low[there])
                     return float(np.clip(np.median(share), 0.0, 1.0))
         return 0.5
+
+
+def _tamed(values: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """(V,) values, no farther beyond those that most have where they are known, (V,) bool, than these are
+    apart: methods may run away beyond their points."""
+    order = np.sort(values[known & np.isfinite(values)])
+    if not len(order):
+        return values
+    low, high = order[int(_OUTLIERS * len(order))], order[-1 - int(_OUTLIERS * len(order))]
+    values = np.where(np.isfinite(values), values, order[len(order) // 2])
+    return np.clip(values, low - (high - low), high + (high - low))
