@@ -135,34 +135,43 @@ class Throws:
 
         So its thickness from one of these is that of the source; between two it is the share of theirs.
         """
-        pairs = self._pairs(fault, source, family)
-        partner = {each: other for pair in pairs for each, other in (pair, pair[::-1])}
         within = Within(self.work, self, number, source, self.threads)
+        pairs = [
+            pair if pair[0] in family.members else pair[::-1] for pair in self._pairs(fault, source, family)
+        ]
+        pairs = [pair for pair in pairs if all(self._has(pair, other) for other in shift.surfaces)]
         laid: Sheets = {}
         for compartment, sides in family.members.items():
-            if sides in laid:
-                continue
-            here = compartment if compartment in partner else next(c for c in family.members if c in partner)
-            vertices, triangles = sheets[sides]
-            plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
-            there, own = (
-                [
-                    heights_at(self.work, self.structure.sheets[each][n], plan, self.threads)
-                    for n in shift.surfaces
-                ]
-                for each in (partner[here], here)
-            )
-            known = within(vertices)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                if len(own) == 1:
-                    found = own[0] + _tamed(z - there[0], known)
-                else:
-                    share = (z - there[0]) / (there[1] - there[0])
-                    share = np.clip(_tamed(np.where(there[1] > there[0], share, np.nan), known), 0.0, 1.0)
-                    found = own[0] + share * (own[1] - own[0])
-            found = np.where(np.isfinite(found), found, z + shift.at(plan))
-            laid[sides] = np.column_stack([plan, found]), triangles
+            if sides not in laid:
+                vertices, triangles = sheets[sides]
+                z = vertices[:, 2] + shift.at(vertices[:, :2])
+                if pairs:
+                    here, there = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
+                    laid_on = self._laid(vertices, within(vertices), shift.surfaces, here, there)
+                    z = np.where(np.isfinite(laid_on), laid_on, z)
+                laid[sides] = np.column_stack([vertices[:, :2], z]), triangles
         return shared(laid)
+
+    def _has(self, pair: tuple[int, int], number: int) -> bool:
+        """Whether a surface has sheets in two compartments."""
+        return all(self.structure.sheets[each][number] is not None for each in pair)
+
+    def _laid(
+        self, vertices: np.ndarray, known: np.ndarray, surfaces: tuple[int, ...], here: int, there: int
+    ) -> np.ndarray:
+        """(V,) the heights of a sheet of compartment `there`, with vertices (V, 3) that are known, (V,) bool, as
+        one in compartment `here` that lies likewise on, or between, other surfaces; NaN where these have
+        none."""
+        plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
+        from_there, own = (
+            [heights_at(self.work, self.structure.sheets[each][n], plan, self.threads) for n in surfaces]
+            for each in (there, here)
+        )
+        if len(own) == 1:
+            return own[0] + _tamed(z - from_there[0], known)
+        thickness = from_there[1] - from_there[0]
+        share = (z - from_there[0]) / np.where(thickness > 0, thickness, np.nan)
+        return own[0] + np.clip(_tamed(share, known), 0.0, 1.0) * (own[1] - own[0])
 
     def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
         """Compartments of two families below and above a fault, and on one side of each other that is on both
