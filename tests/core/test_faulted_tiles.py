@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import structure_cases
 from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
 from realmodel.core.mapped_arrays import MappedArrays
@@ -22,7 +23,6 @@ from realmodel.distributed import build as build_tiles
 from realmodel.distributed import faulted_folder, tile_folder
 from realmodel.distributed.workers import Workers
 from sample_scripts import SAMPLES
-from structure_cases import SQUARE, plane_fault
 
 
 class NoWorkers(Workers):
@@ -116,8 +116,11 @@ def test_sheets_of_neighbors_do_not_depend_on_where_tiles_end(tmp_path):
     high = low[plan[:, 0] < 3] + np.array([0.0, 0.0, 2.0])
     few = low[plan[:, 0] > 7][:2] + np.array([0.0, 0.0, 2.1])
     surfaces = [Surface("S0", points=low), Surface("S1", points=np.concatenate([high, few]))]
-    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-4.0)
-    faults = [Fault(name, *plane_fault(x, lean)) for name, x, lean in (("F", 3.0, 0.2), ("G", 7.0, -0.1))]
+    rock = Rock("r", surfaces, region=structure_cases.SQUARE, edge_length=1.0, base_elevation=-4.0)
+    faults = [
+        Fault(name, *structure_cases.plane_fault(x, lean))
+        for name, x, lean in (("F", 3.0, 0.2), ("G", 7.0, -0.1))
+    ]
     project = Project("p", [rock], faults=faults)
     whole = build(project)
     texts = {warning.text for warning in whole.warnings}

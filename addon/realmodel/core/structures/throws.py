@@ -159,9 +159,8 @@ class Throws:
     def _laid(
         self, vertices: np.ndarray, known: np.ndarray, surfaces: tuple[int, ...], here: int, there: int
     ) -> np.ndarray:
-        """(V,) the heights of a sheet of compartment `there`, with vertices (V, 3) that are known, (V,) bool, as
-        one in compartment `here` that lies likewise on, or between, other surfaces; NaN where these have
-        none."""
+        """(V,) the heights of a sheet of compartment `there`, with vertices (V, 3) that are known, (V,) bool,
+        in compartment `here`, where it lies likewise on or between others; NaN where these have none."""
         plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
         from_there, own = (
             [heights_at(self.work, self.structure.sheets[each][n], plan, self.threads) for n in surfaces]
