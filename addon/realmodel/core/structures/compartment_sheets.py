@@ -55,7 +55,8 @@ class CompartmentSheets:
         own = [family for family in self.own if family.key not in self.made]
         if not own or not self._is_ready():
             return False
-        self.made |= {family.key: self.surface.sheets(family) for family in own}
+        with named(self.entry.rock, self.number):
+            self.made |= {family.key: self.surface.sheets(family) for family in own}
         return True
 
     def tell(self, throws: Throws) -> None:
@@ -97,8 +98,9 @@ class CompartmentSheets:
                 for sides in trends
             }
             self.surface.adopt(trends, taken[0])
-        trends = _drawn_together(self.surface, family, trends)
-        self.made[family.key] = self.surface.sheets(family, trends)
+        with named(self.entry.rock, self.number):
+            trends = _drawn_together(self.surface, family, trends)
+            self.made[family.key] = self.surface.sheets(family, trends)
         self.entry.structure.warnings.append((list(family.members), self._warning(family, sources)))
 
     def _from(self, source: Source, family: Family, throws: Throws) -> Sheets:

@@ -47,7 +47,7 @@ def make_sheets(
         kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
         with named(rock, number):
             sheets = CompartmentSheets(entry, number, kind(part, entry, number, own_threads))
-            sheets.make_own()
+        sheets.make_own()
         if sheets.waiting:
             return [sheets]
         if sheets.few:

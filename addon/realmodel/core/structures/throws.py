@@ -98,7 +98,8 @@ class Throws:
             self.structure.sheets[compartment][number] = sheets[sides]
             self.rank[compartment, number] = rank
 
-    def fault_between(self, one: Family, other: Family) -> int | None:
+    @staticmethod
+    def fault_between(one: Family, other: Family) -> int | None:
         """The fault on whose two sides two families are, each on one side of every other fault that is on
         both sides of it; None where there is none, or several."""
         apart = [fault for fault, (a, b) in enumerate(zip(one.key, other.key, strict=True)) if a * b == -1]
