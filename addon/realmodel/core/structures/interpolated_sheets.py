@@ -3,22 +3,27 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 
 from ..build_warning import BuildWarning
 from ..errors import place_text
+from ..heights.on_mesh import BOUNDS
 from ..methods import METHODS
 from ..mis_ties import contradictions, mean_heights
-from ..surface_heights import give_heights, needed_surfaces, where_known
+from ..surface_heights import Trend, give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
+from .borrowed import as_at_fault, runs_away
 from .families import Family, keys_of
+from .few_points import are_few, of_residuals
 from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
-from .sides import sides_of
+from .sides import fault_sides, sides_of
+from .throws import Sheets
 from .tips import shared, trace_of, with_equal_ends
 from .triangles import edges_of
 from .within import Within
@@ -86,16 +91,74 @@ class InterpolatedSurface:
         return (self.keys == family.key).all(axis=1)
 
     def count(self, family: Family) -> int:
-        return int(self.own(family).sum())
+        return int(self._certain(family).sum())
 
     def has_data(self, family: Family) -> bool:
         return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
 
-    def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
-        """The sheet on each side of the faults that die out here, by sides."""
-        own = self.own(family)
+    def has_few_data(self, family: Family) -> bool:
+        """Whether its points do not show its shape there."""
+        if not self.surface.needs_points:
+            return False
+        points = self.points[self._certain(family)]
+        return len(points) == 0 or are_few(self.surface, points, self.entry.region[0], self._within(family))
+
+    def _certain(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
+        points of the other side are theirs."""
+        return self.own(family) & self.counts & ~self.placed.moved.any(axis=1)
+
+    def without_thickness(self) -> InterpolatedSurface:
+        """The same surface without its minimum thickness, for which the older one need not be known."""
+        other = copy(self)
+        other.surface = replace(self.surface, minimum_thickness=None)
+        surfaces = list(self.entry.rock.surfaces)
+        surfaces[self.number] = other.surface
+        other.entry = replace(self.entry, rock=replace(self.entry.rock, surfaces=surfaces))
+        return other
+
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family, across a fault, for this one: as its method continues them, or with the
+        heights that they have at the fault, where they would run away, or the points of this family agree
+        better with that."""
+        shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
+        within, points = self._within(family), self.points[self._certain(family)]
+        found: dict[int, Triangulation] = {}
+        for sheet in sheets.values():
+            if id(sheet) in found:
+                continue
+            found[id(sheet)] = sheet
+            level = as_at_fault(self.work, sheet, shape, side, self.threads)
+            if level is None:
+                continue
+            if len(points):
+                is_level = self._spread(points, level) < self._spread(points, sheet)
+            else:
+                known = fault_sides(self.work, sheet[0], shape, self.threads) == side
+                is_level = runs_away(sheet, known, within)
+            if is_level:
+                found[id(sheet)] = level
+        return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
+
+    def _spread(self, points: np.ndarray, sheet: Triangulation) -> float:
+        """How different the heights of points (P, 3) above a sheet are."""
+        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
+        off = off[np.isfinite(off)]
+        return float(off.std()) if len(off) else 0.0
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own, for which what is known of these holds, too."""
+        for sides, sheet in sheets.items():
+            self.made[id(sheet)] = (*self.made[id(others[sides])][:2], sheet)
+
+    def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
+        points are few or none."""
+        own = self.own(family) if trends is None else self._certain(family)
+        if trends is not None and not own.any():
+            return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
-        common = self._interpolated(family, first, own)
+        common = self._interpolated(family, first, own, trend=trends and trends[first])
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
@@ -120,7 +183,8 @@ class InterpolatedSurface:
         }
         seen, attributes = {}, {}
         settled = _settled(self.surface, self.made[id(common)][0])
-        for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
+        of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
+        for sides, row in sorted(of_members.items()):
             away = np.zeros(len(own), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
@@ -130,12 +194,21 @@ class InterpolatedSurface:
                 whole[number] = side
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            sheet = self._interpolated(family, tuple(whole), visible, settled)
+            sheet = self._interpolated(family, tuple(whole), visible, settled, trends and trends[row])
             seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
         found = self._with_equal_ends(family, met, seen, attributes, meshed)
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
-    def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
+    def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
+        """Sheets without points, within the bounds of the surface."""
+        settings = self.surface.method_options()[1]
+        is_bounded = any(settings.get(option) is not None for option in BOUNDS)
+        if self.surface.minimum_thickness is None and not is_bounded:
+            return trends
+        none = np.zeros(len(self.points), bool)
+        return shared({s: self._interpolated(family, s, none, trend=trend) for s, trend in trends.items()})
+
+    def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
         if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets
@@ -176,13 +249,16 @@ class InterpolatedSurface:
         sides: tuple[int, ...],
         own: np.ndarray,
         surface=None,
+        trend: Triangulation | None = None,
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. Of heights on several sides of faults that die out, at one place, the mean counts."""
+        other options. Of heights on several sides of faults that die out, at one place, the mean counts.
+        trend: a sheet that was made here, on which the points are interpolated."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
-        points = np.concatenate([points, self._beyond(family, own)])
+        if trend is None:
+            points = np.concatenate([points, self._beyond(family, own)])
         surfaces[self.number] = replace(surface or self.surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
@@ -198,16 +274,21 @@ class InterpolatedSurface:
             attributes={},
             structure=None,
         )
-        give_heights(self.work, one, self.number, self.threads)
+        give_heights(self.work, one, self.number, self.threads, trend and self._trend(trend))
         sheet = one.surfaces[self.number]
         result = one.interpolations[self.number]
         # the sheet itself is kept, too: so no other gets its id
         self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
-        if own.sum() > self.most[0]:
+        if trend is None and own.sum() > self.most[0]:
             self.most = (int(own.sum()), result)
         for warning in one.warnings:
             entry.structure.warn(list(family.members), warning)
         return sheet
+
+    def _trend(self, sheet: Triangulation) -> Trend:
+        interpolation, attributes, _ = self.made[id(sheet)]
+        by = of_residuals(self.surface)
+        return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
     def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
         """(K, 3) points beyond the faults that part the family, for a method that needs them."""
