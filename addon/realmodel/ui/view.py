@@ -4,7 +4,7 @@
 import bpy
 
 from .. import props_stage
-from ..bl import compartments, library_rows, settings, units
+from ..bl import compartments, library_rows, project_settings, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing, residuals
 from .panel import OfABuiltModel, TabPanel, hint, wrapped
 
@@ -128,7 +128,13 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
             )
         else:
             layout.prop(view, "use_section")
-            layout.prop(plane, "location")
+            column = layout.column(align=True)
+            if project_settings.model_origin(scene).any():
+                for name in ("plane_x", "plane_y", "plane_z"):
+                    column.prop(view, name)
+                column.prop(plane, "location", text="From Origin")
+            else:
+                column.prop(plane, "location")
             layout.prop(plane, "rotation_euler", text="Rotation")
             row = layout.row(align=True)
             row.operator_menu_enum("realmodel.section_plane", "axis", text="Turn To")
