@@ -59,7 +59,9 @@ def _draw_plane(operator, context):
         column.label(text="Normal {:.3f}, {:.3f}, {:.3f}".format(*normal))
 
 
-_PLACE = place_property("A point of the plane, in the coordinates of the scene: those of the model less its origin")
+_PLACE = place_property(
+    "A point of the plane, in the coordinates of the scene: those of the model less its origin"
+)
 _NORMAL = FloatVectorProperty(
     name="Normal",
     description="Normal of the plane",

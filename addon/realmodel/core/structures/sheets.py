@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..build_warning import BuildWarning
+from ..doubtful_heights import Compartment, doubtful_heights
 from ..errors import InputRefused
 from ..mapped_arrays import Keep, as_it_is
 from ..project import surface_item
@@ -20,6 +21,7 @@ from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .points_at_faults import point_sides
 from .ready_sheets import ReadyMesh
+from .sides import sides_of
 
 
 def make_sheets(
@@ -54,7 +56,7 @@ def make_sheets(
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
             entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads, keep)
     for number in sorted(interpolated):
-        _warn_of_points_too_low(work, entry, number, threads)
+        _warn_of_doubts(work, entry, number, threads)
 
 
 def _make_named(kind, work: Work, entry, number: int, threads: int, keep: Keep) -> list:
@@ -91,15 +93,13 @@ def _keep(entry, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Adds the warnings of points_too_low, compartment by compartment."""
+def _warn_of_doubts(work: Work, entry, number: int, threads: int) -> None:
+    """Adds the warnings of points_too_low and doubtful_heights, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = point_sides(work, points, structure, number, threads).sides
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
-        if not own.any():
-            continue
         its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
         one = replace(
             entry,
@@ -108,7 +108,15 @@ def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             warnings=[],
             structure=None,
         )
-        for warning in points_too_low(work, one, [number], threads):
+
+        def holds(places: np.ndarray, row=row) -> np.ndarray:
+            return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
+
+        of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
+        for warning in (
+            *points_too_low(work, one, [number], threads),
+            *doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds)),
+        ):
             structure.warn([compartment], warning)
 
 
