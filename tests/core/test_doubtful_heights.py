@@ -3,8 +3,7 @@
 
 import numpy as np
 import pytest
-
-from realmodel.core import Fault, Project, Rock, Surface, build
+from realmodel.core import Boreholes, Fault, Project, Rock, Surface, build
 
 SIZE = 1000.0
 REGION = np.array([[0, 0], [SIZE, 0], [SIZE, SIZE], [0, SIZE]], float)
@@ -47,7 +46,7 @@ def test_a_point_that_a_nugget_lets_the_surface_miss_is_named():
     (found,) = warnings(surfaces, "residual")
     assert found.surface == "S1" and found.items == (7,)
     assert f"point 7 at ({point[0]:.9g}, {point[1]:.9g}, {point[2]:.9g})" in found.text
-    assert "above it" in found.text and "nugget 0 (now 1000)" in found.text
+    assert "above it" in found.text and "the nugget of its variogram (1000;" in found.text
 
 
 def test_below_too():
@@ -67,7 +66,7 @@ def test_a_miss_larger_than_the_layers_is_no_matter_of_how_the_others_fit():
     bent = of(on(plan, np.where(plan[:, 0] < 500, 0.0, 60.0)), method="plane")
     surfaces = [of(bent.points - (0, 0, 5.0), "S0", method="plane"), bent]
     found = warnings(surfaces, "residual")
-    assert len(found) == 2 and "the neighboring surfaces 5: check it, the method, and" in found[0].text
+    assert len(found) == 2 and "the neighboring surfaces 5: check it, its method, and" in found[0].text
 
 
 def test_the_base_is_a_neighbor():
@@ -87,8 +86,6 @@ def test_the_borehole_is_named(tmp_path):
         "hole,depth,surface\n"
         + "".join(f"W-{n},{1000 - z!r},S1\n" for n, z in enumerate(points[:, 2].tolist()))
     )
-    from realmodel.core import Boreholes
-
     surfaces[1] = Surface(name="S1", method="kriging", options={"variogram": NUGGET})
     holes = Boreholes(collars=tmp_path / "collars.csv", picks=tmp_path / "picks.csv")
     (found,) = warnings(surfaces, "residual", boreholes=holes)

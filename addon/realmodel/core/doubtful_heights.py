@@ -132,12 +132,9 @@ def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
 
 
 def _remedy(result) -> str:
-    if result is not None and result.variogram is not None and result.variogram.nugget > 0:
-        return (
-            f"check it, or set a variogram with nugget 0 (now {result.variogram.nugget:.4g}), which "
-            "honors every point"
-        )
-    return "check it, the method, and the edge length"
+    nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
+    cause = f"the nugget of its variogram ({nugget:.4g}; 0 honors all points)" if nugget else "its method"
+    return f"check it, {cause}, and the edge length"
 
 
 class _Reach:

@@ -4,7 +4,6 @@
 import json
 
 import numpy as np
-
 from mathutils.kdtree import KDTree
 
 from ...core import layer_values
