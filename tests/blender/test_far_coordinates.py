@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 from blender_state import coordinates
 from panel_case import PanelCase, ops
-from realmodel.bl import project_settings
+from realmodel.bl import batch, library_rows, materials, project_settings
+from realmodel.core import build, load_project
 
 PROJECT = """
 format = 1
@@ -61,3 +62,21 @@ class FarCoordinates(PanelCase):
             np.testing.assert_allclose(found, 3920000.25, atol=0.01)
             ops.section_remove()
             self.assertEqual(view.plane_x, "")
+
+    def test_without_a_library_layers_are_colored_as_imported_points_are(self):
+        imported = list(library_rows.PALETTE[:2])
+        self.assertEqual([row.name for row in self.model.library], ["S0", "S1"])
+        self.assertEqual([library_rows.hex_color(row.color) for row in self.model.library], imported)
+        block = self.model.results[0]
+        self.assertEqual((block.property_id, block.object["realmodel_property"]), (2, 2))
+        color = block.object.data.materials[0].diffuse_color[:3]
+        np.testing.assert_allclose(color, materials.linear_color(imported[1]), atol=1e-6)
+
+    def test_so_is_what_batch_writes_while_its_exports_keep_what_the_file_says(self):
+        model = build(load_project(self.folder / "project.toml"))
+        batch.write_scene(model)
+        self.assertEqual([row.property_id for row in self.model.results], [2])
+        self.assertEqual([row.name for row in self.model.library], ["S0", "S1"])
+        self.assertEqual([block.property for block in model.blocks], [0])
+        ops.build()
+        self.assertEqual([row.property_id for row in self.model.results], [2])
