@@ -46,7 +46,7 @@ def test_a_point_that_a_nugget_lets_the_surface_miss_is_named():
     (found,) = warnings(surfaces, "residual")
     assert found.surface == "S1" and found.items == (7,)
     assert f"point 7 at ({point[0]:.9g}, {point[1]:.9g}, {point[2]:.9g})" in found.text
-    assert "above it" in found.text and "the nugget of its variogram (1000;" in found.text
+    assert "above it" in found.text and "the nugget of its variogram (1,000;" in found.text
 
 
 def test_below_too():

@@ -13,6 +13,7 @@ from .errors import number_list, place_text
 from .methods import SURFACE_OPTIONS
 from .project import Rock
 from .rules import RULES
+from .units import number_text
 from .work import Work, native_module
 from .wrong_sides import heights_at
 
@@ -75,8 +76,8 @@ def _missed(
         return None
     place, hole = place_text(points[worst].tolist()), _hole(rock, number, points[worst])
     text = (
-        f"{f'point {worst}' if are_all else 'the point'} at {place}{hole} lies {sizes[worst]:.4g} "
-        f"{'above' if points[worst, 2] > z[worst] else 'below'} it, the neighboring surfaces {apart:.4g}: "
+        f"{f'point {worst}' if are_all else 'the point'} at {place}{hole} lies {number_text(sizes[worst])} "
+        f"{'above' if points[worst, 2] > z[worst] else 'below'} it, the neighboring surfaces {number_text(apart)}: "
         f"{_remedy(entry.interpolations[number])}"
     )
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
@@ -133,7 +134,7 @@ def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
 
 def _remedy(result) -> str:
     nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
-    cause = f"the nugget of its variogram ({nugget:.4g}; 0 honors all points)" if nugget else "its method"
+    cause = f"the nugget of its variogram ({number_text(nugget)}; 0 honors all points)" if nugget else "its method"
     return f"check it, {cause}, and the edge length"
 
 
@@ -185,7 +186,7 @@ class _Reach:
         text = (
             f"beyond its points, on {100 * beyond[there].sum() / whole:.2g} % of its area, it cuts "
             f"{number_list(names)}, which it does not cut where they are; deepest by "
-            f"{self.blocks.top[deepest] - z[deepest]:.4g} at {place_text(self.plan[deepest].tolist())}: "
+            f"{number_text(self.blocks.top[deepest] - z[deepest])} at {place_text(self.plan[deepest].tolist())}: "
             'add a point there, or set extrapolate = "nearest"'
         )
         return BuildWarning(text, "extrapolation", rock.name, surface.name)
