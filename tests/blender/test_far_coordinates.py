@@ -7,6 +7,7 @@ from blender_state import coordinates
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, library_rows, materials, project_settings
 from realmodel.core import build, load_project
+from realmodel.core.automatic_library import PALETTE
 
 PROJECT = """
 format = 1
@@ -64,7 +65,7 @@ class FarCoordinates(PanelCase):
             self.assertEqual(view.plane_x, "")
 
     def test_without_a_library_layers_are_colored_as_imported_points_are(self):
-        imported = list(library_rows.PALETTE[:2])
+        imported = list(PALETTE[:2])
         self.assertEqual([row.name for row in self.model.library], ["S0", "S1"])
         self.assertEqual([library_rows.hex_color(row.color) for row in self.model.library], imported)
         block = self.model.results[0]

@@ -226,6 +226,7 @@ def put(current, prepared, composed, in_place=False):
         before = group.built_stamp if in_place else None
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
+        group.is_outdated = False
     display.built(current, prepared.bounds, prepared.stage)
     looks.follow(current)
     weathering.follow(current)
@@ -471,6 +472,7 @@ def _clear(current):
         current.realmodel.results.clear()
         current.realmodel.built_stamp = ""
         current.realmodel.warnings = ""
+        current.realmodel.is_outdated = False
         current.realmodel.view.compartments = ""
     scene.remove_objects(objects)
     display.cleared(current)

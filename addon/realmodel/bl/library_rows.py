@@ -4,7 +4,7 @@
 import bpy
 
 from ..core import Library, Property
-from ..core.automatic_library import PALETTE
+from ..core.automatic_library import palette
 from . import materials, settings
 
 _TEXTS = ("rock", "age", "structure", "description")
@@ -65,7 +65,7 @@ def add(scene, entry):
 def next_color(scene):
     """An "#rrggbb" of the palette for one more property: the first of those that are used least."""
     used = [hex_color(row.color) for row in scene.realmodel.library]
-    return min(PALETTE, key=used.count)
+    return min(palette(), key=used.count)
 
 
 def for_surface(scene, name):

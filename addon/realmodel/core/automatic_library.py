@@ -5,6 +5,7 @@ body."""
 from __future__ import annotations
 
 import copy
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -23,6 +24,15 @@ PALETTE = (
 )
 
 
+def palette() -> Iterator[str]:
+    """The colors of PALETTE, then mixed with white, then with black: no two are equal."""
+    yield from PALETTE
+    for other in (255, 0):
+        for color in PALETTE:
+            channels = (int(color[at : at + 2], 16) for at in (1, 3, 5))
+            yield "#" + "".join(f"{round(0.6 * channel + 0.4 * other):02x}" for channel in channels)
+
+
 def with_library(project: Project) -> Project:
     """The project with a library. Where it has none, an entry for each property that it names, and one, by
     its name, for each surface or body without a property."""
@@ -31,6 +41,7 @@ def with_library(project: Project) -> Project:
     owners = list(_owners(project))
     free = max([0, *(int(owner.property) for owner in owners)]) + 1
     entries: dict[int, Property] = {}
+    colors = itertools.cycle(palette())
     by_name: dict[str, int] = {}
     for owner in owners:
         number = int(owner.property)
@@ -38,7 +49,7 @@ def with_library(project: Project) -> Project:
         if not number:
             number, name = by_name.setdefault(owner.name.casefold(), free + len(by_name)), owner.name
         if number not in entries:
-            entries[number] = Property(number, name, color=PALETTE[len(entries) % len(PALETTE)])
+            entries[number] = Property(number, name, color=next(colors))
     rocks = [replace(rock, surfaces=_given(rock.surfaces, by_name)) for rock in project.rocks]
     bodies = _given(project.bodies, by_name)
     return replace(project, library=Library(list(entries.values())), rocks=rocks, bodies=bodies)

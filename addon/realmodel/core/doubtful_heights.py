@@ -134,7 +134,11 @@ def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
 
 def _remedy(result) -> str:
     nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
-    cause = f"the nugget of its variogram ({number_text(nugget)}; 0 honors all points)" if nugget else "its method"
+    cause = (
+        f"the nugget of its variogram ({number_text(nugget)}; 0 honors all points)"
+        if nugget
+        else "its method"
+    )
     return f"check it, {cause}, and the edge length"
 
 

@@ -10,7 +10,7 @@ from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
 from .. import caches, exaggeration, meshes, viewports
-from . import bodies, modes
+from . import bodies, cuts, modes
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -101,10 +101,12 @@ def _remember(space):
     _at = len(_history) - 1
 
 
-def model_points(scene):
-    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world."""
+def model_points(scene, cut=False):
+    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world. cut:
+    around what a section plane has left of the blocks."""
     group = scene.realmodel
-    items = [_framed(scene, row) for row in group.results]
+    framed = modes.body_of if cut and cuts.is_shown(scene) else _framed
+    items = [framed(scene, row) for row in group.results]
     if not len(items):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
