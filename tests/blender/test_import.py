@@ -358,6 +358,7 @@ class Opened(Imported):
         text = 'the range, {}, is large; give method = "universal_kriging", or say nodata = -9999'
         model.warnings = [BuildWarning(text.format(n), "points", "r", f"S{n}") for n in (1, 2)]
         model.warnings.append(BuildWarning("/data/of mine/picks.csv: 2 picks", "points", "r"))
+        model.warnings.append(BuildWarning("corners merged: 2; no action is needed", "joined"))
         kept = notices.of_model(model)
         first, second = notices.read(kept)
         self.assertTrue(first.startswith("S1 and S2: the range, 1, is large; set Method to "), first)

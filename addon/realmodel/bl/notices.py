@@ -25,6 +25,7 @@ _SETTING = re.compile(
     + r') = (".*?"|\[.*?\]|\{.*?\}|[^\s,;]+)'
     + r'(?: or (".*?"))?'
 )
+_NO_ACTION = "joined"  # the kind of a warning after which nothing is to be done
 _PATH = re.compile(r"(?<!\S)/(?:[^\s:]+/)+([^\s:/]+\.\w+)")
 
 
@@ -34,6 +35,8 @@ def of_model(model):
     alike = {}
     several = len(model.project.rocks) > 1
     for warning in model.warnings:
+        if warning.kind == _NO_ACTION:
+            continue
         alike.setdefault(re.sub(r"\d[\d.,e+-]*", "0", warning.text), []).append(warning)
     lines = []
     for group in alike.values():

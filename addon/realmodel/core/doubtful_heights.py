@@ -75,16 +75,18 @@ def _missed(
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
         return None
     place, hole = place_text(points[worst].tolist()), _hole(rock, number, points[worst])
+    named = f"point {worst}" if are_all else "the point"
+    side = "above" if points[worst, 2] > z[worst] else "below"
     text = (
-        f"{f'point {worst}' if are_all else 'the point'} at {place}{hole} lies {number_text(sizes[worst])} "
-        f"{'above' if points[worst, 2] > z[worst] else 'below'} it, the neighboring surfaces {number_text(apart)}: "
-        f"{_remedy(entry.interpolations[number])}"
+        f"it misses {named} at {place}{hole}, which lies {number_text(sizes[worst])} {side} it; the "
+        f"neighboring surfaces are {number_text(apart)} away: {_remedy(entry.interpolations[number])}"
     )
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
 
 
 def _unresolved(work: Work, entry, shape, points: np.ndarray, threads: int) -> np.ndarray:
-    """(N,) what the mesh may not show of a surface at points: how much it bends within an edge."""
+    """(N,) what the mesh may not show of a surface at points: half of its second difference over an edge,
+    about twice the error of linear interpolation at a peak between nodes."""
     nodes, triangles = entry.region
     plan = np.ascontiguousarray(points[:, :2])
     # edges of equilateral triangles as large as the mean one
@@ -92,7 +94,7 @@ def _unresolved(work: Work, entry, shape, points: np.ndarray, threads: int) -> n
     middle, found = heights_at(work, shape, plan, threads), np.zeros(len(plan))
     for offset in ((edge, 0.0), (0.0, edge)):
         before, after = (heights_at(work, shape, plan + np.array(offset) * sign, threads) for sign in (-1, 1))
-        found = np.fmax(found, np.abs(before + after - 2.0 * middle))  # without those at the border
+        found = np.fmax(found, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
     return found
 
 
@@ -134,12 +136,8 @@ def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
 
 def _remedy(result) -> str:
     nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
-    cause = (
-        f"the nugget of its variogram ({number_text(nugget)}; 0 honors all points)"
-        if nugget
-        else "its method"
-    )
-    return f"check it, {cause}, and the edge length"
+    cause = f"nugget ({number_text(nugget)}; 0 honors every point)" if nugget else "method"
+    return f"check the point, the {cause}, and the edge length"
 
 
 class _Reach:
@@ -185,12 +183,13 @@ class _Reach:
         if not is_new.any():
             return None
         there = cut[is_new].any(axis=0) & (beyond > 0)
-        deepest = int(np.where(there, self.blocks.top - z, -np.inf).argmax())
+        depth = np.where(there, self.blocks.top - z, -np.inf)
+        place = place_text(self.plan[depth.argmax()].tolist())
         names = [self._name(block) for block in np.flatnonzero(is_new).tolist()]
         text = (
             f"beyond its points, on {100 * beyond[there].sum() / whole:.2g} % of its area, it cuts "
-            f"{number_list(names)}, which it does not cut where they are; deepest by "
-            f"{number_text(self.blocks.top[deepest] - z[deepest])} at {place_text(self.plan[deepest].tolist())}: "
+            f"{number_list(names)}, which it does not cut near them; deepest by "
+            f"{number_text(float(depth.max()))} at {place}: "
             'add a point there, or set extrapolate = "nearest"'
         )
         return BuildWarning(text, "extrapolation", rock.name, surface.name)

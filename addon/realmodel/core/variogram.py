@@ -169,8 +169,8 @@ def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = Fal
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the range of the fitted variogram, {number_text(variogram.range)}, far exceeds the extent of the "
-            f"points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; the heights "
-            "may follow a trend: try universal kriging"
+            f"the range of the fitted variogram, {number_text(variogram.range)}, far exceeds the extent of "
+            f"the points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; "
+            "the heights may follow a trend: try universal kriging"
         )
     return warnings

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
@@ -102,8 +103,8 @@ def _remember(space):
 
 
 def model_points(scene, cut=False):
-    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world. cut:
-    around what a section plane has left of the blocks."""
+    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world.
+    cut: around what a section plane has left of the blocks."""
     group = scene.realmodel
     framed = modes.body_of if cut and cuts.is_shown(scene) else _framed
     items = [framed(scene, row) for row in group.results]
@@ -122,6 +123,17 @@ def model_points(scene, cut=False):
         matrix = np.array(exaggeration.world_matrix(item), np.float64)
         found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     return np.concatenate(found) if found else np.empty((0, 3))
+
+
+def camera_sees(scene):
+    """Whether the camera of a scene has a corner or the middle of the model in its frame."""
+    points = model_points(scene, cut=True)
+    if scene.camera is None or not len(points):
+        return False
+    box = np.stack([points.min(axis=0), points.max(axis=0)])
+    places = [[*box.mean(axis=0)], *([box[i, 0], box[j, 1], box[k, 2]] for i, j, k in np.ndindex(2, 2, 2))]
+    seen = (world_to_camera_view(scene, scene.camera, Vector(place)) for place in places)
+    return any(0.0 <= at.x <= 1.0 and 0.0 <= at.y <= 1.0 and at.z > 0.0 for at in seen)
 
 
 def _framed(scene, row):
