@@ -95,7 +95,7 @@ def residuals_as_balls(walk):
 def a_section_plane(walk):
     """By F3, so that Blender shows the panel of the last operator; the legend stands above it."""
     bpy.utils.register_class(OnTop)
-    yield from walk.command("section plane")
+    yield from walk.command("plane south")
     yield lambda: model().view.plane is not None and bool(model().view.cut)
     yield walk.redrawn(4)
     assert (model().view.plane_x, model().view.plane_y) == ("300000.000", "3942000.000")

@@ -136,7 +136,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
             if project_settings.model_origin(scene).any():
                 for name in ("plane_x", "plane_y", "plane_z"):
                     column.prop(view, name)
-                column.prop(plane, "location", text="From Origin")
+                column.prop(plane, "location", text="Offset")
             else:
                 column.prop(plane, "location")
             layout.prop(plane, "rotation_euler", text="Rotation")
