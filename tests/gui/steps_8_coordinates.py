@@ -8,6 +8,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from realmodel.bl.overlay import viewport
+from realmodel.operators import sections
 from realmodel.ui import view
 from realmodel.ui.panel import TabPanel
 from steps_1_panel import idle, model, open_the_tab
@@ -29,11 +30,12 @@ def wells(folder):
     """A project without a library: five tops of sixty wells, one of them picked 900 m too high in one."""
     chance = np.random.default_rng(4)
     plan = chance.uniform(0.05, 0.95, (60, 2)) * SIZE
+    east, north = EAST + SIZE, NORTH + SIZE
     text = f"""format = 1
 name = "wells"
 [[rock]]
 name = "basin"
-region = [[{EAST}, {NORTH}], [{EAST + SIZE}, {NORTH}], [{EAST + SIZE}, {NORTH + SIZE}], [{EAST}, {NORTH + SIZE}]]
+region = [[{EAST}, {NORTH}], [{east}, {NORTH}], [{east}, {north}], [{EAST}, {north}]]
 edge_length = 3000
 base_elevation = -3500
 """
@@ -107,6 +109,22 @@ def a_section_plane(walk):
     yield walk.redrawn(3)
     walk.shot("section_moved")
     bpy.utils.unregister_class(OnTop)
+    drawn, draw = [], sections.REALMODEL_OT_save_section.draw
+
+    def watched(self, context):
+        draw(self, context)
+        drawn.append(self)
+
+    sections.REALMODEL_OT_save_section.draw = watched
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.save_section("INVOKE_DEFAULT", along="PLANE")
+    yield lambda: drawn
+    yield walk.redrawn()
+    walk.shot("save_section")
+    walk.over_viewport()
+    walk.key("ESC")
+    yield lambda: walk.region("UI").width > 50
+    sections.REALMODEL_OT_save_section.draw = draw
 
 
 def the_table_with_tabs(walk):

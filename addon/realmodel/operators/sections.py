@@ -55,8 +55,10 @@ def _draw_plane(operator, context):
     elif cuts.plane_of(scene) is not None:
         point, normal = cuts.plane_in_model(scene)
         column = layout.column(align=True)
-        column.label(text="Section plane at x {:.3f}, y {:.3f}, height {:.3f}".format(*point))
-        column.label(text="Normal {:.3f}, {:.3f}, {:.3f}".format(*normal))
+        column.label(text="Section plane at")
+        for name, value in zip(("East (x)", "North (y)", "Height (z)"), point, strict=True):
+            column.label(text=f"{name}  {value:.3f}")
+        column.label(text="Normal  {:.3f}  {:.3f}  {:.3f}".format(*normal.round(3) + 0.0))
 
 
 _PLACE = place_property(
