@@ -37,7 +37,9 @@ def doubtful_heights(
 ) -> list[BuildWarning]:
     """Warnings about surfaces of a RockInput, by their numbers in ascending order, once all that are built
     have heights. compartment: that the heights are of, with one surface asked for, whose points are those in
-    it."""
+    it. None of a realization: what it draws is no estimate."""
+    if entry.draws is not None:
+        return []
     reach, found = _Reach(work, entry, threads), []
     for number in numbers:
         points = entry.rock.surfaces[number].points

@@ -293,5 +293,4 @@ def interpolate_rock(
             del entry.attributes[number]
     if not flat:
         entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
-        if entry.draws is None:
-            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)
+        entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)

@@ -16,9 +16,7 @@ _MOST = 20_000  # points shown at most: those farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
 _RADIUS, _LEAST_RADIUS = 0.007, 0.0015  # of the model's size, at most and at least
 _APART = 0.1  # of the points may lie so close that their bodies overlap
-_STRETCH = (
-    "realmodel_stretch"  # on the object: the vertical exaggeration that its bodies have their shape for
-)
+_STRETCH = "realmodel_stretch"  # on the object: the vertical exaggeration that its bodies are shaped for
 _ASKED = 2000  # points at most whose distance to the nearest other is looked at
 
 

@@ -11,7 +11,7 @@ from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
 from .. import caches, exaggeration, meshes, viewports
-from . import bodies, cuts, modes
+from . import bodies, cuts, explosion, modes
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -127,11 +127,12 @@ def model_points(scene, cut=False):
 
 def camera_sees(scene):
     """Whether the camera of a scene has a corner or the middle of the model in its frame."""
-    points = model_points(scene, cut=True)
-    if scene.camera is None or not len(points):
+    if scene.camera is None:
         return False
-    box = np.stack([points.min(axis=0), points.max(axis=0)])
-    places = [[*box.mean(axis=0)], *([box[i, 0], box[j, 1], box[k, 2]] for i, j, k in np.ndindex(2, 2, 2))]
+    box = np.array(explosion.bounds(scene))
+    places = [box.mean(axis=0), *(box[list(corner), range(3)] for corner in np.ndindex(2, 2, 2))]
+    stretched = exaggeration.matrix(scene)
+    places = [(stretched @ np.append(place, 1.0))[:3] for place in places]
     seen = (world_to_camera_view(scene, scene.camera, Vector(place)) for place in places)
     return any(0.0 <= at.x <= 1.0 and 0.0 <= at.y <= 1.0 and at.z > 0.0 for at in seen)
 
