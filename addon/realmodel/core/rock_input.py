@@ -293,4 +293,5 @@ def interpolate_rock(
             del entry.attributes[number]
     if not flat:
         entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
-        entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)
+        if keep is as_it_is:  # tiles have no such warnings
+            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)

@@ -56,7 +56,7 @@ def make_sheets(
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
             entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads, keep)
     for number in sorted(interpolated):
-        _warn_of_doubts(work, entry, number, threads)
+        _warn_of_doubts(work, entry, number, threads, keep)
 
 
 def _make_named(kind, work: Work, entry, number: int, threads: int, keep: Keep) -> list:
@@ -93,8 +93,9 @@ def _keep(entry, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_doubts(work: Work, entry, number: int, threads: int) -> None:
-    """Adds the warnings of points_too_low and doubtful_heights, compartment by compartment."""
+def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) -> None:
+    """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
+    compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = point_sides(work, points, structure, number, threads).sides
@@ -112,11 +113,11 @@ def _warn_of_doubts(work: Work, entry, number: int, threads: int) -> None:
         def holds(places: np.ndarray, row=row) -> np.ndarray:
             return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
 
-        of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
-        for warning in (
-            *points_too_low(work, one, [number], threads),
-            *doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds)),
-        ):
+        found = points_too_low(work, one, [number], threads)
+        if keep is as_it_is:
+            of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
+            found += doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds))
+        for warning in found:
             structure.warn([compartment], warning)
 
 
