@@ -9,6 +9,7 @@ import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl import data_objects, library_rows, notices, origin, project_settings
 from realmodel.bl.display import shown_models
+from realmodel.core.automatic_library import PALETTE, palette
 from realmodel.core.build_warning import BuildWarning
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
@@ -55,9 +56,7 @@ class Files(Imported):
         self.assertEqual([s.name for s in rock.surfaces], ["low", "middle", "high"])
         self.assertEqual([e.name for e in self.model.library], ["low", "middle", "high"])
         self.assertEqual([s.property_id for s in rock.surfaces], [1, 2, 3])
-        self.assertEqual(
-            [library_rows.hex_color(e.color) for e in self.model.library], list(library_rows.PALETTE[:3])
-        )
+        self.assertEqual([library_rows.hex_color(e.color) for e in self.model.library], list(PALETTE[:3]))
         self.assertEqual(set(self.clouds()), {"low points", "middle points", "high points"})
 
     def wells(self):
@@ -436,6 +435,7 @@ class Opened(Imported):
         text = 'the range, {}, is large; give method = "universal_kriging", or say nodata = -9999'
         model.warnings = [BuildWarning(text.format(n), "points", "r", f"S{n}") for n in (1, 2)]
         model.warnings.append(BuildWarning("/data/of mine/picks.csv: 2 picks", "points", "r"))
+        model.warnings.append(BuildWarning("corners merged: 2; no action is needed", "joined"))
         kept = notices.of_model(model)
         first, second = notices.read(kept)
         self.assertTrue(first.startswith("S1 and S2: the range, 1, is large; set Method to "), first)
@@ -499,7 +499,7 @@ class Palette(PanelCase):
                 [0.0193339, 0.1191920, 0.9503041],
             ]
         )
-        colors = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in library_rows.PALETTE])
+        colors = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in PALETTE])
         linear = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
         for sight in sights:
             xyz = np.clip(linear @ np.transpose(sight), 0, 1) @ to_xyz.T / (0.95047, 1.0, 1.08883)
@@ -508,3 +508,10 @@ class Palette(PanelCase):
             apart = np.linalg.norm(lab[:, None] - lab[None], axis=2)
             self.assertGreater(apart[~np.eye(len(lab), dtype=bool)].min(), 21.0)
             self.assertGreater(np.diag(np.roll(apart, -1, axis=1)).min(), 42.0)
+
+    def test_more_surfaces_than_the_palette_has_colors_get_others(self):
+        for number in range(len(PALETTE) + 3):
+            library_rows.for_surface(self.scene, f"S{number}")
+        colors = [library_rows.hex_color(row.color) for row in self.model.library]
+        self.assertEqual(len(set(colors)), len(colors))
+        self.assertEqual(len(set(palette())), 3 * len(PALETTE))

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core.automatic_library import with_library
 from ..core.methods import CONTINUATION
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
@@ -349,7 +350,9 @@ def packed_region(rock):
 
 def fill(scene, project):
     """Fills the rows from a project, in place of the present ones. project: realmodel.core.Project. Files
-    stay files; data that were read, as in `Model.project`, are stored."""
+    stay files; data that were read, as in `Model.project`, are stored. Without a library it gets one, as
+    surfaces that are imported do."""
+    project = with_library(project)
     group = scene.realmodel
     with settings.filling():
         group.rocks.clear()

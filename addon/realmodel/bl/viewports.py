@@ -101,6 +101,8 @@ def frame_items(items, shown):
         space.region_3d.view_location = middle
         space.region_3d.view_distance = diagonal
         space.region_3d.view_rotation = view_rotation().to_quaternion()
+        if middle[2] < 0.0:
+            space.overlay.show_floor = False  # its lines would lie over a model below it
 
 
 def show_status():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .automatic_library import model_with_library
 from .blocks import count_blocks
 from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
@@ -286,7 +287,7 @@ def _section_arrays(model: Model, found: dict) -> dict:
         "compartment": np.where(blocks[:, 0] >= 0, compartment[:, 0], compartment[:, 1]),
         "block_names": [entry.name for entry in model.blocks],
         "compartment_names": list(model.compartment_names),
-        "block_colors": model.block_colors,
+        "block_colors": model_with_library(model).block_colors,
         "name": model.project.name,
         "unit": model.project.units,
     }

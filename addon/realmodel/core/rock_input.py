@@ -13,6 +13,7 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .distant_points import require_points_near
+from .doubtful_heights import doubtful_heights
 from .errors import InputRefused, number_list
 from .heights import Interpolation
 from .mapped_arrays import Keep, as_it_is
@@ -295,3 +296,5 @@ def interpolate_rock(
             del entry.attributes[number]
     if not flat:
         entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
+        if keep is as_it_is:  # tiles have no such warnings
+            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)

@@ -25,6 +25,8 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
             row.prop(group, "live", toggle=True, icon="RECOVER_LAST")
+            if group.is_outdated and not group.live:
+                layout.label(text="Changed since it was built", icon="ERROR")
             _draw_missing(layout, group)
         else:
             hint(layout, "Add surfaces first; then the blocks between them are built here.")

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..doubtful_heights import Compartment, doubtful_heights
 from ..mapped_arrays import Keep, as_it_is
 from ..surface_heights import interpolation_order
 from ..work import Work
@@ -17,6 +18,7 @@ from .compartment_sheets import CompartmentSheets, make_borrowed, named
 from .interpolated_sheets import InterpolatedSurface
 from .points_at_faults import point_sides
 from .ready_sheets import ReadyMesh
+from .sides import sides_of
 from .throws import Throws
 
 
@@ -82,7 +84,7 @@ def make_sheets(
         warnings = entry.structure.warnings
         entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
     for number in sorted(interpolated):
-        _warn_of_points_too_low(work, entry, number, threads)
+        _warn_of_doubts(work, entry, number, threads, keep)
 
 
 def _in_order(rock, known: set[int]) -> list[int]:
@@ -111,15 +113,14 @@ def _keep(entry, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Adds the warnings of points_too_low, compartment by compartment."""
+def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) -> None:
+    """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
+    compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = point_sides(work, points, structure, number, threads).sides
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
-        if not own.any():
-            continue
         its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
         one = replace(
             entry,
@@ -128,5 +129,13 @@ def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             warnings=[],
             structure=None,
         )
-        for warning in points_too_low(work, one, [number], threads):
+
+        def holds(places: np.ndarray, row=row) -> np.ndarray:
+            return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
+
+        found = points_too_low(work, one, [number], threads)
+        if keep is as_it_is:
+            of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
+            found += doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds))
+        for warning in found:
             structure.warn([compartment], warning)
