@@ -9,13 +9,16 @@ import numpy as np
 
 from ..build_warning import BuildWarning
 from ..errors import place_text
+from ..heights.run import few_points, runs_away
+from ..local_heights import is_local
 from ..methods import METHODS
 from ..mis_ties import contradictions, mean_heights
-from ..surface_heights import give_heights, needed_surfaces, where_known
+from ..surface_heights import give_heights, needed_surfaces, used_vertices, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
 from .families import Family, keys_of
+from .near_rows import near_rows
 from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import sides_of
@@ -118,21 +121,39 @@ class InterpolatedSurface:
             for number in met
             for side in (-1, 1)
         }
-        seen, attributes = {}, {}
+        rows = sorted({tuple(row[number] for number in met) for row in family.members.values()})
         settled = _settled(self.surface, self.made[id(common)][0])
-        for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
+        counts_by_node = self._counts_by_node(settled) and known.all()
+        whole_of: dict[tuple[int, ...], np.ndarray] = {}
+
+        def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
             away = np.zeros(len(own), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
                     away |= hidden[number, side]
-            whole = list(first)
-            for number, side in zip(met, sides, strict=True):
-                whole[number] = side
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            sheet = self._interpolated(family, tuple(whole), visible, settled)
-            seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
-        found = self._with_equal_ends(family, met, seen, attributes, meshed)
+            if counts_by_node:
+                return self._values_at(family, visible, settled, nodes[some])
+            if sides not in whole_of:
+                whole = list(first)
+                for number, side in zip(met, sides, strict=True):
+                    whole[number] = side
+                sheet = self._interpolated(family, tuple(whole), visible, settled)
+                whole_of[sides] = self._values_on_nodes(sheet)
+            return whole_of[sides][some]
+
+        values = near_rows(
+            self.work,
+            nodes,
+            meshed,
+            self._values_on_nodes(common),
+            [faults[number] for number in met],
+            rows,
+            values_of,
+            self.threads,
+        )
+        found = self._with_equal_ends(family, met, values, meshed)
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
@@ -140,17 +161,14 @@ class InterpolatedSurface:
         if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets
         _, triangles = self.entry.region
-        heights = {sides: self._on_nodes(sheet) for sides, sheet in sheets.items()}
-        attributes = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
-        known = np.isfinite(list(heights.values())).all(axis=0)
+        values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
+        known = np.isfinite([of[:, 0] for of in values.values()]).all(axis=0)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        return self._with_equal_ends(family, range(len(family.dying)), heights, attributes, meshed)
+        return self._with_equal_ends(family, range(len(family.dying)), values, meshed)
 
-    def _with_equal_ends(
-        self, family: Family, some, heights: dict, attributes: dict, meshed: np.ndarray
-    ) -> dict:
-        """Sheets with some heights at the nodes, drawn together beyond the ends of some of the faults that
-        die out. attributes: interpolation and vertex attributes of these sheets, likewise by sides."""
+    def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray) -> dict:
+        """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
+        of some of the faults that die out."""
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
@@ -159,7 +177,7 @@ class InterpolatedSurface:
             self.work,
             nodes,
             meshed,
-            heights,
+            {sides: np.ascontiguousarray(of[:, 0]) for sides, of in values.items()},
             [shapes[fault] for fault in faults],
             self._within(family),
             [0.0 if fault in family.settled else ramp for fault in faults],
@@ -167,7 +185,9 @@ class InterpolatedSurface:
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
-            self.made[id(sheet)] = (*attributes[sides], sheet)
+            known = np.isfinite(equal[sides])[triangles].all(axis=1)
+            its = values[sides][used_vertices(nodes, triangles[known])]
+            self.made[id(sheet)] = (None, {"variance": its[:, 1], "distance": its[:, 2]}, sheet)
         return found
 
     def _interpolated(
@@ -178,12 +198,26 @@ class InterpolatedSurface:
         surface=None,
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. Of heights on several sides of faults that die out, at one place, the mean counts."""
+        other options."""
+        one = self._from_points(family, sides, own, surface or self.surface, self.entry.region)
+        sheet = one.surfaces[self.number]
+        result = one.interpolations[self.number]
+        # the sheet itself is kept, too: so no other gets its id
+        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
+        if own.sum() > self.most[0]:
+            self.most = (int(own.sum()), result)
+        for warning in one.warnings:
+            self.entry.structure.warn(list(family.members), warning)
+        return sheet
+
+    def _from_points(self, family: Family, sides: tuple[int, ...], own: np.ndarray, surface, region):
+        """The RockInput with the surface from some points on the mesh of a region, and warnings. Of heights
+        on several sides of faults that die out, at one place, the mean counts."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
         points = np.concatenate([points, self._beyond(family, own)])
-        surfaces[self.number] = replace(surface or self.surface, points=points)
+        surfaces[self.number] = replace(surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
         shapes: list[Triangulation | None] = [None] * len(surfaces)
@@ -192,6 +226,7 @@ class InterpolatedSurface:
         one = replace(
             entry,
             rock=replace(entry.rock, surfaces=surfaces),
+            region=region,
             surfaces=shapes,
             interpolations=[None] * len(surfaces),
             warnings=[],
@@ -199,15 +234,38 @@ class InterpolatedSurface:
             structure=None,
         )
         give_heights(self.work, one, self.number, self.threads)
-        sheet = one.surfaces[self.number]
-        result = one.interpolations[self.number]
-        # the sheet itself is kept, too: so no other gets its id
-        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
-        if own.sum() > self.most[0]:
-            self.most = (int(own.sum()), result)
-        for warning in one.warnings:
-            entry.structure.warn(list(family.members), warning)
-        return sheet
+        return one
+
+    def _counts_by_node(self, surface) -> bool:
+        """Whether heights at some nodes do not depend on others, so that these need not be found."""
+        settings = surface.method_options()[1]
+        return (
+            is_local(surface)
+            and self.entry.draws is None
+            and settings["extrapolate"] != "none"
+            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
+            and not needed_surfaces(self.entry.rock, self.number)
+        )
+
+    def _values_at(self, family: Family, own: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+        """As _values_on_nodes, at some nodes alone, from some points, of a surface that counts by node."""
+        region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
+        one = self._from_points(family, (), own, surface, region)
+        points, result = one.rock.surfaces[self.number].points, one.interpolations[self.number]
+        for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
+            warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+            self.entry.structure.warn(list(family.members), warning)
+        return np.column_stack([result.z, *one.attributes[self.number].values()])
+
+    def _values_on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
+        none."""
+        z = self._on_nodes(sheet)
+        found = np.full((len(z), 3), np.nan)
+        found[:, 0] = z
+        attributes = self.made[id(sheet)][1]
+        found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
+        return found
 
     def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
         """(K, 3) points beyond the faults that part the family, for a method that needs them."""
@@ -272,12 +330,11 @@ class InterpolatedSurface:
 
 
 def _settled(surface, found):
-    """The surface with the variogram that was found once: so the two sides of a fault have the same."""
-    variogram = found.variogram
-    if variogram is None or not variogram.fitted:
-        return surface
+    """The surface with the method and the variogram that were found once: so the two sides of a fault have
+    the same."""
     options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
-    options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
+    if found.variogram is not None and found.variogram.fitted:
+        options |= {"variogram": found.variogram.settings(), "neighbours": found.neighbours}
     return replace(surface, method=found.method, options=options)
 
 
