@@ -231,9 +231,9 @@ FAULT = {
         0.0,
         kind="length",
         label="Extend",
-        tip="Distance by which the fitted surface continues beyond its points",
+        tip="Distance by which the mesh continues beyond its border, or the fitted surface beyond its points",
         low=0.0,
-        more="Default 0",
+        more="In its own plane; of a fault that dies out up and down the dip only. Default 0",
     ),
     "youngest": Setting(
         kind="any_surface",

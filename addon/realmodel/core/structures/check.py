@@ -48,11 +48,9 @@ def _check_fault(project, fault: Fault) -> None:
             raise refuse(f"'{key}' must be a list of names, not {names!r}", key, f'write {key} = ["..."]')
     if not isinstance(fault.dies_out, bool):
         raise refuse(f"'dies_out' must be true or false, not {fault.dies_out!r}", "dies_out")
-    if fault.points is None:
-        for key, given in (("extend", fault.extend), ("stick", fault.stick)):
-            if given:
-                raise refuse(f"'{key}' has no effect, as no surface is fitted through points", key)
-    elif not _is_length(fault.extend):
+    if fault.points is None and fault.stick:
+        raise refuse("'stick' has no effect, as no surface is fitted through points", "stick")
+    if not _is_length(fault.extend):
         raise refuse(f"'extend' must be a length of at least 0, not {fault.extend!r}", "extend")
     _check_names(project, refuse, "rocks", fault.rocks, "youngest", fault.youngest)
 

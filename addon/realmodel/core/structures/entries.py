@@ -42,7 +42,7 @@ class Fault(_Shape):
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
     or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
     file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
-    such a surface is continued beyond the points, model units.
+    the mesh is continued beyond its border, or the fitted surface beyond its points, model units.
 
     youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at
     which it ends; the smaller part of it beyond is dropped. dies_out: it ends inside the rock, where its
