@@ -21,9 +21,9 @@ _PARALLEL = 0.99  # cosine between two directions: where they are as near, their
 
 @dataclass(frozen=True)
 class Border:
-    """The border of a mesh: edges (E, 2) int64, as their triangles run, each between the least of the vertices
-    at its two positions; away (E, 3), of length 1: the directions in which they are continued in the planes of
-    their triangles; is_outer (E,) bool: not around a hole."""
+    """The border of a mesh: edges (E, 2) int64, as their triangles run, of vertices at one position the
+    least; away (E, 3), of length 1: the directions in which they are continued in the planes of their
+    triangles; is_outer (E,) bool: not around a hole."""
 
     edges: np.ndarray
     away: np.ndarray
@@ -50,7 +50,7 @@ def border_of(vertices: np.ndarray, triangles: np.ndarray) -> Border:
 
 def _are_outer(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(E,) bool: the edges of rings that turn as the triangles do; those around holes turn the other way."""
-    part = _connected(edges)
+    part = connected(edges)
     origin = vertices[triangles].mean(axis=(0, 1))
     a, b, c = (vertices[triangles] - origin).transpose(1, 0, 2)
     facing = cross(b - a, c - a).sum(axis=0)
@@ -58,7 +58,7 @@ def _are_outer(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -
     return np.bincount(part, turns)[part] > 0
 
 
-def _connected(edges: np.ndarray) -> np.ndarray:
+def connected(edges: np.ndarray) -> np.ndarray:
     """(E,) the number of the connected part, from 0, that each edge is in."""
     _, ends = np.unique(edges, return_inverse=True)
     ends = ends.reshape(-1, 2)

@@ -5,6 +5,7 @@ displace it, from the data in these compartments."""
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -30,9 +31,11 @@ def make_sheets(
     threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
+    numbers: Collection[int] | None = None,
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
     Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
+    numbers: of the surfaces, with those that they need; None: of all.
 
     Raises InputRefused for a surface that has data in no compartment.
     """
@@ -40,7 +43,11 @@ def make_sheets(
     count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
     interpolated = interpolation_order(rock, stage)
     ready = [number for number in range(count) if number not in interpolated]
-    steps = np.linspace(start, end, count + 1).tolist()[len(ready) :]
+    if numbers is not None:
+        interpolated, ready = (
+            [number for number in each if number in numbers] for each in (interpolated, ready)
+        )
+    steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
     def sheets_of(part: Work, number: int, own_threads: int) -> list:
         with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
@@ -53,7 +60,11 @@ def make_sheets(
     for number, (begin, finish) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
             entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads, keep)
-    for number in sorted(interpolated):
+
+
+def warn_of_points_too_low(work: Work, entry, threads: int, stage: int | None = None) -> None:
+    """Adds the warnings of points_too_low of a RockInput with sheets, compartment by compartment."""
+    for number in sorted(interpolation_order(entry.rock, stage)):
         _warn_of_points_too_low(work, entry, number, threads)
 
 
@@ -92,7 +103,6 @@ def _keep(entry, number: int, keep: Keep) -> None:
 
 
 def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Adds the warnings of points_too_low, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = point_sides(work, points, structure, number, threads).sides
