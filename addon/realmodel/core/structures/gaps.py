@@ -13,6 +13,7 @@ import numpy as np
 from ..algebra import dot, norm, principal_axes
 from ..build_warning import BuildWarning
 from ..errors import InputRefused, place_text
+from ..planar_mesh import triangulate_rings
 from ..rules import RULES
 from ..surface_heights import needed_surfaces
 from ..work import Work
@@ -34,6 +35,7 @@ _SHARE = (
 _SAMPLES = (4, 256)  # of an edge: so many at least and at most, about two in the width of a gap
 _HALVINGS = 30  # of that width: how precisely a gap is measured
 _MARGIN = 0.25  # of the range of a surface's points: how far beyond it the surface may be
+_MEASURED = 100_000  # triangles of a mesh, for the length of its edges
 _STEPS = 50  # in which the directions of a border are smoothed, at most
 
 
@@ -65,7 +67,8 @@ def edge_length(entry) -> float:
     meshes = meshes or [shape for shape in entry.surfaces if shape is not None]
     lengths = []
     for vertices, triangles in meshes:
-        a, b = vertices[edges_of(triangles), :2].transpose(1, 0, 2)
+        some = triangles[:: max(1, len(triangles) // _MEASURED)]
+        a, b = vertices[edges_of(some), :2].transpose(1, 0, 2)
         lengths.append(norm(b - a))
     return float(np.median(np.concatenate(lengths))) if lengths else 0.0
 
@@ -168,7 +171,7 @@ class _Around:
         entry, shapes = self.entry, []
         surfaces = entry.surfaces[: self.last + 1]
         if entry.region is not None:
-            shapes = [level(entry.region, 0.0)]
+            shapes = [level(triangulate_rings(entry.rock.rings()), 0.0)]
         covers = [] if None in surfaces else surfaces
 
         def over(points: np.ndarray) -> np.ndarray:
@@ -294,7 +297,8 @@ def _in_all(conditions: _Conditions, points: np.ndarray) -> np.ndarray:
     """(N,) bool: the points that meet all conditions."""
     found = np.ones(len(points), bool)
     for holds in conditions.values():
-        found[found] = holds(points[found])
+        if found.any():
+            found[found] = holds(points[found])
     return found
 
 
