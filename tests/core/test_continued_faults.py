@@ -7,6 +7,7 @@ from realmodel.core import Fault, InputRefused, Project, Rock, Surface, build
 from realmodel.core.structures import interpolated_sheets
 from realmodel.core.structures.continued import border_of, continued, extended
 from realmodel.core.structures.reading import read_structures
+from realmodel.core.structures.setup import structured_inputs
 from realmodel.core.structures.triangles import border_loops, meet, open_edges
 from realmodel.core.work import run
 from structure_cases import SQUARE, plane_fault
@@ -140,7 +141,7 @@ def volumes(model):
 def test_a_fault_that_all_but_reaches_the_wall_is_continued_to_it(y, gap):
     model = build(faulted(Fault("F", *leaning(y))))
     (text,) = closed(model)
-    assert text.startswith(f"fault 'F': its border ends up to {gap} before the wall of rock 'r', near (")
+    assert text.startswith(f"fault 'F': its border ends up to {gap} before the wall, near (")
     assert volumes(model) == pytest.approx(volumes(build(faulted(Fault("F", *leaning())))), rel=1e-9)
     vertices, _ = model.surface(2)
     own, _ = leaning(y)
@@ -154,6 +155,13 @@ def test_a_fault_that_reaches_the_wall_is_used_as_it_is():
     given, triangles = leaning()
     model = build(faulted(Fault("F", given, triangles)))
     assert closed(model) == [] and np.array_equal(model.surface(2)[0], given)
+
+
+def test_a_model_in_tiles_is_made_from_the_continued_fault():
+    project = faulted(Fault("F", *leaning((0.003, 11.0))))
+    _, structures, warnings = run(lambda work: structured_inputs(work, project, 1))
+    assert sum("it is continued to it" in warning.text for warning in warnings) == 1
+    assert np.array_equal(structures.faults[0].vertices, build(project).surface(2)[0])
 
 
 def never(*arguments):

@@ -29,9 +29,7 @@ from .sides import FaultShape, fault_sides, sides_of
 from .triangles import edges_of
 
 _GAP = 0.25  # of an edge length: a narrower gap is closed
-_SHARE = (
-    0.5  # of what a side of the border has in the rock: so much is near its end where the fault reaches it
-)
+_SHARE = 0.5  # of the part of a side of the border that is in the rock: with so much near its end, it reaches
 _SAMPLES = (4, 256)  # of an edge: so many at least and at most, about two in the width of a gap
 _HALVINGS = 30  # of that width: how precisely a gap is measured
 _MARGIN = 0.25  # of the range of a surface's points: how far beyond it the surface may be
@@ -181,7 +179,7 @@ class _Around:
                     found &= np.any([self._heights(each, points) < np.inf for each in some], axis=0)
             return found
 
-        return {f"the wall of rock '{entry.rock.name}'": over}
+        return {"the wall": over}
 
     def _side_of(self, fault: Fault, other: Fault) -> Callable[[np.ndarray], np.ndarray]:
         """Whether points are on the side of another fault on which the larger part of this one is."""

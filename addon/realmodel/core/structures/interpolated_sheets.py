@@ -242,7 +242,7 @@ class InterpolatedSurface:
         return (
             is_local(surface)
             and self.entry.draws is None
-            and settings["extrapolate"] != "none"
+            and settings.get("extrapolate") != "none"
             and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
             and not needed_surfaces(self.entry.rock, self.number)
         )
