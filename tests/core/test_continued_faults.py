@@ -191,6 +191,12 @@ def test_a_branch_that_all_but_meets_its_fault_is_continued_to_it(monkeypatch):
         build(faulted(branch(0.5), main))
 
 
+def test_a_fault_that_dies_out_may_end_beside_a_wall():
+    given, triangles = leaning((0.1, 6.0))
+    model = build(faulted(Fault("F", given, triangles, dies_out=True)))
+    assert closed(model) == [] and np.array_equal(model.surface(2)[0], given)
+
+
 def on_erosion(below):
     """The fault whose upper border lies on the surface of erosion, or below it."""
     vertices, triangles = leaning(top=4.5)

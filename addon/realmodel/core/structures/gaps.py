@@ -131,8 +131,10 @@ class _Around:
         self, fault: Fault, ends: list[Fault], box, has_sheets: bool
     ) -> tuple[Fault, list[BuildWarning]]:
         """The fault, continued where its border all but reaches the end of the rock, and warnings."""
+        if fault.dies_out and not ends:
+            return fault, []
         border, conditions = _outer_border(fault), self._conditions(fault, ends, has_sheets)
-        samples = self._looked_at(fault, border, conditions, box)
+        samples = self._looked_at(fault, border, conditions, box, ends)
         samples = samples.some(samples.near)
         if not len(samples.points):
             return fault, []
@@ -146,8 +148,14 @@ class _Around:
             fault, conditions, samples
         )
 
-    def _looked_at(self, fault: Fault, border: Border, conditions: _Conditions, box) -> _Samples:
-        """Places on the border. A side of it is near the end of the rock if most of what it has inside is."""
+    def _looked_at(
+        self, fault: Fault, border: Border, conditions: _Conditions, box, ends: list[Fault]
+    ) -> _Samples:
+        """Places on the border. A side of it is near the end of the rock if most of what it has inside is. A
+        fault that dies out may end near walls and surfaces: it only reaches those at which it ends."""
+        ending = conditions
+        if fault.dies_out:
+            ending = {fault_item(other): conditions[fault_item(other)] for other in ends}
         ways = _smoothed(fault.vertices, border, self.width)
         points, edge, weight = _spread(fault.vertices, border, self.width)
         way, side = ways[edge], _sides_of_border(fault.vertices, border, ways)[edge]
@@ -155,7 +163,7 @@ class _Around:
         inside = (z > box[0, 2]) & (z < box[1, 2])
         inside[inside] = _in_all(conditions, points[inside])
         near = inside.copy()
-        near[inside] = ~_in_all(conditions, points[inside] + self.width * way[inside])
+        near[inside] = ~_in_all(ending, points[inside] + self.width * way[inside])
         of_side, of_near = (np.bincount(side, weight * each) for each in (inside, near))
         near &= (of_near >= _SHARE * of_side)[side]
         return _Samples(points, edge, weight, way, side, inside, near)
@@ -238,7 +246,7 @@ class _Around:
         if fault.dies_out or self.structures.bodies:  # it may end inside a body
             return
         conditions = self._conditions(fault, ends, has_sheets)
-        samples = self._looked_at(fault, _outer_border(fault), conditions, box)
+        samples = self._looked_at(fault, _outer_border(fault), conditions, box, ends)
         if has_sheets:  # between the two sheets there is different rock on its two sides
             low, high = self.sheets_at(self.last, samples.points)
             found = samples.inside & (low < samples.points[:, 2]) & (samples.points[:, 2] < high)
