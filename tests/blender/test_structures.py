@@ -402,6 +402,34 @@ class Sticks(StructureCase):
 
 
 class Built(StructureCase):
+    def test_faults_are_continued_beyond_their_objects_and_files(self):
+        """By Extend, and where a gap is less than a quarter of an edge: the same blocks, however often it is
+        built. An object stays as it was drawn; what is made of a file is shown as it was used."""
+        text = "OFF\n4 2 0\n50 0.5 -60\n50 120 -60\n50 120 60\n50 0.5 60\n3 0 1 2\n3 0 2 3\n"
+        path = self.folder / "F1.off"
+        path.write_text(text)
+        self.faulted(build=False)
+        fault, found = self.model.faults[0], []
+        drawn = fault.object.data.vertices
+        for low, by in ((-20.0, 0.0), (0.5, 0.0), (15.0, 40.0)):
+            for vertex in drawn:
+                vertex.co.y = low if vertex.co.y < 60 else 120.0
+            fault.extend = by
+            for _ in range(2):
+                ops.build()
+                found.append(self.volumes())
+            self.assertEqual((len(drawn), fault.extend), (4, by))
+        fault.extend = 0.0
+        fault.source, fault.filepath = "MESH_FILE", str(path)
+        for _ in range(2):
+            ops.build()
+            found.append(self.volumes())
+        self.assertEqual([len(item.data.vertices) for item in self.objects("fault")], [6])
+        for volumes in found:
+            self.assertEqual(set(volumes), set(found[0]))
+            for name, volume in volumes.items():
+                self.assertAlmostEqual(volume, found[0][name], delta=1e-6 * volume)
+
     def test_volumes_and_objects(self):
         self.faulted(box("tunnel", (20, -10, 2), (30, 110, 6)), box("ore", (60, 20, -2), (70, 30, 2)))
         tunnel, ore = (next(b for b in self.model.bodies if b.name == n) for n in ("tunnel", "ore"))

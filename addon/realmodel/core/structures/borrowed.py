@@ -58,7 +58,9 @@ def _nearest_heights(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
     return found
 
 
-def runs_away(sheet: Triangulation, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]) -> bool:
+def sheet_runs_away(
+    sheet: Triangulation, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]
+) -> bool:
     """Whether a sheet goes far beyond the heights that it has where it is known, (V,) bool, in the
     compartment in which points `within` lie."""
     vertices = sheet[0]

@@ -11,15 +11,18 @@ import numpy as np
 from ..build_warning import BuildWarning
 from ..errors import place_text
 from ..heights.on_mesh import BOUNDS
+from ..heights.run import few_points, runs_away
+from ..local_heights import is_local
 from ..methods import METHODS
 from ..mis_ties import contradictions, mean_heights
-from ..surface_heights import Trend, give_heights, needed_surfaces, where_known
+from ..surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
-from .borrowed import as_at_fault, runs_away
+from .borrowed import as_at_fault, sheet_runs_away
 from .families import Family, keys_of
 from .few_points import are_few, of_residuals
+from .near_rows import near_rows
 from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import fault_sides, sides_of
@@ -135,7 +138,7 @@ class InterpolatedSurface:
                 is_level = self._spread(points, level) < self._spread(points, sheet)
             else:
                 known = fault_sides(self.work, sheet[0], shape, self.threads) == side
-                is_level = runs_away(sheet, known, within)
+                is_level = sheet_runs_away(sheet, known, within)
             if is_level:
                 found[id(sheet)] = level
         return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
@@ -181,22 +184,40 @@ class InterpolatedSurface:
             for number in met
             for side in (-1, 1)
         }
-        seen, attributes = {}, {}
-        settled = _settled(self.surface, self.made[id(common)][0])
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
-        for sides, row in sorted(of_members.items()):
+        settled = _settled(self.surface, self.made[id(common)][0])
+        counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
+        whole_of: dict[tuple[int, ...], np.ndarray] = {}
+
+        def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
             away = np.zeros(len(own), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
                     away |= hidden[number, side]
-            whole = list(first)
-            for number, side in zip(met, sides, strict=True):
-                whole[number] = side
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            sheet = self._interpolated(family, tuple(whole), visible, settled, trends and trends[row])
-            seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
-        found = self._with_equal_ends(family, met, seen, attributes, meshed)
+            if counts_by_node:
+                return self._values_at(family, visible, settled, nodes[some])
+            if sides not in whole_of:
+                whole = list(first)
+                for number, side in zip(met, sides, strict=True):
+                    whole[number] = side
+                trend = trends and trends[of_members[sides]]
+                sheet = self._interpolated(family, tuple(whole), visible, settled, trend)
+                whole_of[sides] = self._values_on_nodes(sheet)
+            return whole_of[sides][some]
+
+        values = near_rows(
+            self.work,
+            nodes,
+            meshed,
+            self._values_on_nodes(common),
+            [faults[number] for number in met],
+            sorted(of_members),
+            values_of,
+            self.threads,
+        )
+        found = self._with_equal_ends(family, met, values, meshed, self.made[id(common)][0])
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
@@ -213,17 +234,15 @@ class InterpolatedSurface:
         if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets
         _, triangles = self.entry.region
-        heights = {sides: self._on_nodes(sheet) for sides, sheet in sheets.items()}
-        attributes = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
-        known = np.isfinite(list(heights.values())).all(axis=0)
+        values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
+        known = np.isfinite([of[:, 0] for of in values.values()]).all(axis=0)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        return self._with_equal_ends(family, range(len(family.dying)), heights, attributes, meshed)
+        result = self.made[id(next(iter(sheets.values())))][0]
+        return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
 
-    def _with_equal_ends(
-        self, family: Family, some, heights: dict, attributes: dict, meshed: np.ndarray
-    ) -> dict:
-        """Sheets with some heights at the nodes, drawn together beyond the ends of some of the faults that
-        die out. attributes: interpolation and vertex attributes of these sheets, likewise by sides."""
+    def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
+        """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
+        of some of the faults that die out. result: the interpolation that is known of them."""
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
@@ -232,7 +251,7 @@ class InterpolatedSurface:
             self.work,
             nodes,
             meshed,
-            heights,
+            {sides: np.ascontiguousarray(of[:, 0]) for sides, of in values.items()},
             [shapes[fault] for fault in faults],
             self._within(family),
             [0.0 if fault in family.settled else ramp for fault in faults],
@@ -240,7 +259,9 @@ class InterpolatedSurface:
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
-            self.made[id(sheet)] = (*attributes[sides], sheet)
+            known = np.isfinite(equal[sides])[triangles].all(axis=1)
+            its = values[sides][used_vertices(nodes, triangles[known])]
+            self.made[id(sheet)] = (result, {"variance": its[:, 1], "distance": its[:, 2]}, sheet)
         return found
 
     def _interpolated(
@@ -252,14 +273,27 @@ class InterpolatedSurface:
         trend: Triangulation | None = None,
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. Of heights on several sides of faults that die out, at one place, the mean counts.
-        trend: a sheet that was made here, on which the points are interpolated."""
+        other options. trend: a sheet that was made here, on which the points are interpolated."""
+        one = self._from_points(family, sides, own, surface or self.surface, self.entry.region, trend)
+        sheet = one.surfaces[self.number]
+        result = one.interpolations[self.number]
+        # the sheet itself is kept, too: so no other gets its id
+        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
+        if trend is None and own.sum() > self.most[0]:
+            self.most = (int(own.sum()), result)
+        for warning in one.warnings:
+            self.entry.structure.warn(list(family.members), warning)
+        return sheet
+
+    def _from_points(self, family: Family, sides, own: np.ndarray, surface, region, trend=None):
+        """The RockInput with the surface from some points on the mesh of a region, and warnings. Of heights
+        on several sides of faults that die out, at one place, the mean counts."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
         if trend is None:
             points = np.concatenate([points, self._beyond(family, own)])
-        surfaces[self.number] = replace(surface or self.surface, points=points)
+        surfaces[self.number] = replace(surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
         shapes: list[Triangulation | None] = [None] * len(surfaces)
@@ -268,6 +302,7 @@ class InterpolatedSurface:
         one = replace(
             entry,
             rock=replace(entry.rock, surfaces=surfaces),
+            region=region,
             surfaces=shapes,
             interpolations=[None] * len(surfaces),
             warnings=[],
@@ -275,15 +310,38 @@ class InterpolatedSurface:
             structure=None,
         )
         give_heights(self.work, one, self.number, self.threads, trend and self._trend(trend))
-        sheet = one.surfaces[self.number]
-        result = one.interpolations[self.number]
-        # the sheet itself is kept, too: so no other gets its id
-        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
-        if trend is None and own.sum() > self.most[0]:
-            self.most = (int(own.sum()), result)
-        for warning in one.warnings:
-            entry.structure.warn(list(family.members), warning)
-        return sheet
+        return one
+
+    def _counts_by_node(self, surface) -> bool:
+        """Whether heights at some nodes do not depend on others, so that these need not be found."""
+        settings = surface.method_options()[1]
+        return (
+            is_local(surface)
+            and self.entry.draws is None
+            and settings.get("extrapolate") != "none"
+            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
+            and not needed_surfaces(self.entry.rock, self.number)
+        )
+
+    def _values_at(self, family: Family, own: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+        """As _values_on_nodes, at some nodes alone, from some points, of a surface that counts by node."""
+        region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
+        one = self._from_points(family, (), own, surface, region)
+        points, result = one.rock.surfaces[self.number].points, one.interpolations[self.number]
+        for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
+            warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+            self.entry.structure.warn(list(family.members), warning)
+        return np.column_stack([result.z, *one.attributes[self.number].values()])
+
+    def _values_on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
+        none."""
+        z = self._on_nodes(sheet)
+        found = np.full((len(z), 3), np.nan)
+        found[:, 0] = z
+        attributes = self.made[id(sheet)][1]
+        found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
+        return found
 
     def _trend(self, sheet: Triangulation) -> Trend:
         interpolation, attributes, _ = self.made[id(sheet)]

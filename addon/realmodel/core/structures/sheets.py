@@ -5,6 +5,7 @@ displace it, from the data in these compartments."""
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -30,9 +31,11 @@ def make_sheets(
     threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
+    numbers: Collection[int] | None = None,
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
     Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
+    numbers: of the surfaces, with those that they need; None: of all that have no sheets yet.
 
     Surfaces without enough data in a compartment come last, for the throw of others is needed there: also
     that of those younger than `stage`, so that a stage is as in the whole. Raises InputRefused for a surface
@@ -40,9 +43,15 @@ def make_sheets(
     """
     rock = entry.rock
     count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
-    interpolated = interpolation_order(rock, stage)
-    ready = [number for number in range(count) if number not in interpolated]
-    steps = np.linspace(start, end, count + 1).tolist()[len(ready) :]
+    interpolated, ready = (
+        [
+            number
+            for number in each
+            if (numbers is None or number in numbers) and not _has_sheets(entry, number)
+        ]
+        for each in _by_kind(rock, stage)
+    )
+    steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
     def begin(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
         """The sheets of a surface that are not all made yet."""
@@ -66,7 +75,7 @@ def make_sheets(
             sheets.finish()
         _keep(entry, sheets.number, keep)
 
-    few: set[int] = set()  # surfaces of which no compartment has enough points
+    few = entry.structure.few
     # ready meshes need no others
     with work.phase(start, steps[0], "interpolating surfaces"):
         unfinished = list(itertools.chain(*work.each(begin_ready, ready, threads)))
@@ -75,23 +84,33 @@ def make_sheets(
             unfinished += begin(work, number, threads)
     if unfinished:
         with work.phase(end, end, "interpolating surfaces"):
-            for number in _in_order(rock, set(ready) | set(interpolated)):
-                unfinished += begin(work, number, threads)
+            begun = {*ready, *interpolated}
+            for number in itertools.chain(*reversed(_by_kind(rock, None))):
+                if number not in begun and not _has_sheets(entry, number):
+                    unfinished += begin(work, number, threads)
             for sheets in unfinished:
                 sheets.surface.work = work
             make_borrowed(unfinished, Throws(work, entry.structure, few, threads), finish)
         younger = {surface.name for surface in rock.surfaces[count:]}
         warnings = entry.structure.warnings
         entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
-    for number in sorted(interpolated):
+
+
+def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
+    """The surfaces that are interpolated, each after those that it needs, and the others."""
+    interpolated = interpolation_order(rock, stage)
+    count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
+    return interpolated, [number for number in range(count) if number not in interpolated]
+
+
+def _has_sheets(entry, number: int) -> bool:
+    return entry.structure.sheets[0][number] is not None
+
+
+def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Keep) -> None:
+    """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
+    for number in sorted(interpolation_order(entry.rock, stage)):
         _warn_of_doubts(work, entry, number, threads, keep)
-
-
-def _in_order(rock, known: set[int]) -> list[int]:
-    """The other surfaces of a rock mass, each after those that it needs."""
-    interpolated = interpolation_order(rock)
-    ready = [number for number in range(len(rock.surfaces)) if number not in interpolated]
-    return [number for number in [*ready, *interpolated] if number not in known]
 
 
 def _keep(entry, number: int, keep: Keep) -> None:
