@@ -208,6 +208,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         min=0,
         update=changes.stage,
     )
+    known_last: IntProperty(default=-1, options={"HIDDEN"})  # settings.last_stage; -1: not known yet
     stage_slider: PointerProperty(type=props_stage.RealModelStage)
     display: EnumProperty(
         name="Display",
@@ -270,6 +271,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
+    is_outdated: BoolProperty(options={"HIDDEN"})  # something was changed since the blocks were built
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     view: PointerProperty(type=props_view.RealModelView)
     ensemble: PointerProperty(type=props_ensemble.RealModelEnsemble)

@@ -74,7 +74,6 @@ class RealModelFaultRock(bpy.types.PropertyGroup):
     )
 
 
-_FITTED = ("stick", "extend", "dies_out")  # what the surface through points depends on
 _FAULT = {key: setting for key, setting in FAULT.items() if key not in READING}
 _BODY = {key: setting for key, setting in BODY.items() if key not in READING}
 _MESH_READING = {key: setting for key, setting in BODY.items() if key in READING}
@@ -84,7 +83,9 @@ class RealModelFault(
     settings_of(
         _FAULT,
         name=changes.name,
-        **dict.fromkeys(_FITTED, changes.fitted),
+        extend=changes.extended,
+        stick=changes.fitted,
+        dies_out=changes.fitted,
         **{key: changes.unset_of_file(key) for key in ("dip", "dip_direction")},
     ),
     settings_of(READING, changes.reading),

@@ -12,6 +12,18 @@ from bpy.props import (
 )
 
 from .bl import changes
+from .bl.display import cuts
+
+
+def _plane_field(name, axis):
+    return StringProperty(
+        name=name,
+        description="Where the section plane is, in model coordinates",
+        options=set(),
+        get=cuts.place_text(axis),
+        set=cuts.move_to(axis),
+    )
+
 
 SUBJECTS = (
     ("BLOCKS", "Blocks", "The blocks"),
@@ -38,6 +50,9 @@ class RealModelView(bpy.types.PropertyGroup):
         description="Object whose XY plane cuts the model; the part on the side of its Z axis is removed",
         update=changes.section,
     )
+    plane_x: _plane_field("East (x)", 0)
+    plane_y: _plane_field("North (y)", 1)
+    plane_z: _plane_field("Height (z)", 2)
     use_section: BoolProperty(
         name="Show Cut",
         description="Show the model cut along the section plane, with filled cut faces",

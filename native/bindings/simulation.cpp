@@ -111,7 +111,7 @@ py::tuple faces_tuple(LayeredMesh::Faces<N>& faces) {
 py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const PlanLines& lines,
                       const Array<double>& vertices, const Indices& triangles,
                       double minimum_thickness, const std::vector<std::int32_t>& layers,
-                      double layer_thickness, int threads, Progress* control) {
+                      double layer_thickness, bool divided, int threads, Progress* control) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
     if (layers.size() != arrays.complex.blocks) throw py::value_error("layers: one for each block");
@@ -123,8 +123,8 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
         mesh = simulation::layered_mesh(arrays.complex, view_of(block_rock), lines,
                                         {{plan_vertices.begin(), plan_vertices.end()},
                                          {plan_triangles.begin(), plan_triangles.end()}},
-                                        {minimum_thickness, layers, layer_thickness}, threads,
-                                        control);
+                                        {minimum_thickness, layers, layer_thickness, divided},
+                                        threads, control);
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -137,6 +137,9 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     made["plan_triangles"] = to_array(std::move(mesh.plan.triangles));
     made["layers"] = mesh.layers;
     made["volumes"] = to_array(std::move(mesh.volumes));
+    made["block_layers"] = mesh.block_layers;
+    made["skewed"] =
+        py::make_tuple(mesh.skewed.faces, mesh.skewed.most, mesh.skewed.place, mesh.skewed.tall);
     return made;
 }
 
@@ -254,13 +257,15 @@ Raises InputError kinds "nothing", "bad_index"; Cancelled.)");
     module.def("layered_mesh", &layered_mesh, py::arg("model"), py::arg("block_rock"),
                py::arg("lines"), py::arg("vertices"), py::arg("triangles"),
                py::arg("minimum_thickness"), py::arg("layers"), py::arg("layer_thickness"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("divided"), py::arg("threads") = 0, py::arg("control") = nullptr,
                R"(Columns of prisms, pyramids and tetrahedra on a planar mesh that contains `lines`.
 
 vertices (V, 2) float64, triangles (T, 3) int32: the planar mesh. layers: of each block, how many it is
-divided into (at most, where layer_thickness is above 0; 0: no limit). Returns a dict: points (P, 3);
-tetrahedron, pyramid, prism: dicts of corners, block, column, layer; triangle, quadrilateral: (corners,
-surface) of the faces outside and between blocks; plan_vertices, plan_triangles, layers, volumes (B,).
+divided into (at most, where layer_thickness is above 0; 0: no limit, else one, and more where it is too
+tall). divided: the elements will be divided into tetrahedra. Returns a dict: points (P, 3); tetrahedron,
+pyramid, prism: dicts of corners, block, column, layer; triangle, quadrilateral: (corners, surface) of the
+faces outside and between blocks; plan_vertices, plan_triangles, layers, volumes (B,), block_layers (B,);
+skewed: how many faces have a skewness above 4, the largest, its place, and the blocks that are too tall.
 Raises InputError kinds "bad_index", "too_large"; Cancelled.)");
     module.def("filled_mesh", &filled_mesh, py::arg("model"), py::arg("cell_region"),
                py::arg("kept"), py::arg("edge_length"), py::arg("tolerance"), py::arg("sizes"),

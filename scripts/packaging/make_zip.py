@@ -20,8 +20,7 @@ from web_pages import web_pages
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon" / "realmodel"
 TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
-LARGEST = 10e6  # bytes
-BY_LZMA = (".so", ".pyd", ".off", ".csv", ".asc", ".py")  # smaller by a twentieth and more
+LARGEST = 16e6  # bytes
 INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the time of every file in the zip: the zero of the format
 
@@ -70,8 +69,8 @@ def write_zip(path, files):
                 entry = zipfile.ZipInfo(name, EARLIEST)
                 entry.create_system = 3  # Unix, whichever system makes it
                 entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
-                # Blender unpacks with Python, which knows both; LZMA makes programs smaller by a quarter.
-                entry.compress_type = zipfile.ZIP_LZMA if name.endswith(BY_LZMA) else zipfile.ZIP_DEFLATED
+                # the only method that Explorer, macOS and unzip open
+                entry.compress_type = zipfile.ZIP_DEFLATED
                 archive.writestr(entry, files[name], compresslevel=9)
         size = unfinished.stat().st_size
         if size > LARGEST:

@@ -34,6 +34,7 @@ class Divide(BooleanCase):
         self.assertEqual([item.name for item in made["loop"]], ["Loop, Hard Closed"])
         loop = made["loop"][0].data
         self.assertEqual(len(loop.edges), len(loop.vertices))
+        self.assertTrue(all(edge.is_loose for edge in loop.edges), "others are not drawn")
         np.testing.assert_allclose(coordinates(loop)[:, 2], 0.25, atol=1e-6)
         for item in (plane, globe):
             self.assertTrue(item.hide_get() and item.hide_render)

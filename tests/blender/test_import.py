@@ -9,6 +9,7 @@ import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl import data_objects, library_rows, notices, origin, project_settings
 from realmodel.bl.display import shown_models
+from realmodel.core.automatic_library import PALETTE, palette
 from realmodel.core.build_warning import BuildWarning
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
@@ -55,10 +56,60 @@ class Files(Imported):
         self.assertEqual([s.name for s in rock.surfaces], ["low", "middle", "high"])
         self.assertEqual([e.name for e in self.model.library], ["low", "middle", "high"])
         self.assertEqual([s.property_id for s in rock.surfaces], [1, 2, 3])
-        self.assertEqual(
-            [library_rows.hex_color(e.color) for e in self.model.library], list(library_rows.PALETTE[:3])
-        )
+        self.assertEqual([library_rows.hex_color(e.color) for e in self.model.library], list(PALETTE[:3]))
         self.assertEqual(set(self.clouds()), {"low points", "middle points", "high points"})
+
+    def wells(self):
+        """Files of tops in wells, s0 the youngest. They dip, and the older one is, the farther up dip it is
+        known: the mean heights are in the other order than the tops."""
+        x, y = np.random.default_rng(3).random((2, 40)).round(4) * 1000.0
+        for number in range(12):
+            met = x > 60.0 * number
+            z = 0.3 * x - 4.0 * number
+            self.table(f"s{number}.csv", np.column_stack([EAST + x, NORTH + y, z])[met])
+        return [f"s{number}" for number in range(12)]
+
+    def add(self, names):
+        ops.surface_add(directory=str(self.folder), files=[{"name": f"{name}.csv"} for name in names])
+        return self.order()
+
+    def order(self):
+        return [surface.name for surface in self.model.rocks[0].surfaces]
+
+    def test_shared_wells_decide_which_is_older(self):
+        names = self.wells()
+        self.assertEqual(self.add(names), names[::-1])
+
+    def test_surfaces_are_sorted(self):
+        self.wells()
+        ops.rock_add()
+        rock = self.model.rocks[0]
+        for name in ("s3", "s11", "s0", "s7"):
+            self.add([name])
+        flat = rock.surfaces.add()
+        flat.name, flat.source = "flat", "NONE"
+        rock.surfaces.move(4, 1)
+        rock.active_surface = 3  # s0
+        ops.surface_sort()
+        self.assertEqual(self.order(), ["s11", "flat", "s7", "s3", "s0"])
+        self.assertEqual(rock.surfaces[rock.active_surface].name, "s0")
+        ops.surface_sort()
+        self.assertEqual(self.order(), ["s11", "flat", "s7", "s3", "s0"])
+        ops.surface_remove()
+        ops.surface_move(direction="DOWN")
+        self.assertEqual(self.order(), ["s11", "flat", "s3", "s7"])
+        ops.region_around()
+        for row in rock.surfaces:
+            row.method = "tin"
+        flat = rock.surfaces["flat"]
+        flat.method, flat.value = "constant", -200.0
+        ops.build()
+        (text,) = [t for t in notices.read(self.model.warnings) if "at the same place" in t]
+        self.assertTrue(text.startswith("s3: "), text)
+        self.assertIn("points lie above those of 's7'", text)
+        ops.surface_sort()
+        ops.build()
+        self.assertNotIn("at the same place", self.model.warnings)
 
     def test_one_of_several_is_bad_and_nothing_is_added(self):
         self.table("good.csv", grid(1.0))
@@ -207,8 +258,33 @@ class Data(Imported):
         self.assertLess(np.abs(places - np.array(expected)).max(), 1e-3)
         edges = {tuple(edge.vertices) for edge in paths.data.edges}
         self.assertEqual(edges, {(3 * n + k, 3 * n + k + 1) for n in range(5) for k in range(2)})
+        self.assertTrue(all(edge.is_loose for edge in paths.data.edges), "others are not drawn")
         self.assertGreater(rock.edge_length, 0.0)
         self.assertGreater(self.model.origin[0], 3e6)
+
+    def test_picks_that_contradict_the_order_are_said_by_hole(self):
+        """The clay is met in the holes up dip alone, so that its mean height is the larger one."""
+        rows = [(f"B{n}", "sand", 200.0 + 30.0 * n) for n in range(6)]
+        rows += [(f"B{n}", "clay", 190.0 + 30.0 * n) for n in range(3, 6)]
+        (self.folder / "picks.csv").write_text(
+            "hole,x,y,surface,elevation\n"
+            + "".join(
+                f"{h},{EAST + 90 * int(h[1])},{NORTH + 50 * (int(h[1]) % 3)},{s},{z}\n" for h, s, z in rows
+            )
+        )
+        ops.boreholes_read(filepath=str(self.folder / "picks.csv"))
+        rock = self.model.rocks[0]
+        self.assertEqual([s.name for s in rock.surfaces], ["clay", "sand"])
+        ops.surface_move(direction="DOWN")
+        ops.region_around()
+        for row in rock.surfaces:
+            row.method = "plane"
+        for name in ("clay", "marl"):
+            rock.surfaces[1].name = name
+            ops.build()
+            (text,) = [t for t in notices.read(self.model.warnings) if "at the same place" in t]
+            self.assertIn(f"sand: 3 of its 6 points lie above those of '{name}'", text)
+            self.assertIn("; holes B3, B4 and B5;", text)
 
 
 class Origin(Imported):
@@ -359,6 +435,7 @@ class Opened(Imported):
         text = 'the range, {}, is large; give method = "universal_kriging", or say nodata = -9999'
         model.warnings = [BuildWarning(text.format(n), "points", "r", f"S{n}") for n in (1, 2)]
         model.warnings.append(BuildWarning("/data/of mine/picks.csv: 2 picks", "points", "r"))
+        model.warnings.append(BuildWarning("corners merged: 2; no action is needed", "joined"))
         kept = notices.of_model(model)
         first, second = notices.read(kept)
         self.assertTrue(first.startswith("S1 and S2: the range, 1, is large; set Method to "), first)
@@ -369,6 +446,29 @@ class Opened(Imported):
         ops.dismiss()
         self.assertEqual(self.model.warnings, "")
         self.assertFalse(ops.dismiss.poll())
+
+    def test_settings_are_called_as_in_the_panel(self):
+        for text, wanted in (
+            (
+                "fault 'F': it ends inside the rock; extend it beyond the rock, set 'dies_out' or 'ends_at', "
+                "or choose an older 'youngest'",
+                "fault 'F': it ends inside the rock; extend it beyond the rock, set Dies Out or Ends At, or "
+                "choose an older Youngest",
+            ),
+            ("a closed surface is a body: write [[body]]", "a closed surface is a body: add it as a body"),
+            ("use a shorter edge_length", "use a shorter Edge Length"),
+            ("one and a base_elevation", "one and a Base Elevation"),
+            ('or give extrapolate = "nearest"', "or set Extrapolation to Nearest Point"),
+            (
+                "surface 'after': 'to' names 'name', which depends on this surface",
+                "surface 'after': Parallel To names 'name', which depends on this surface",
+            ),
+            (
+                "'ends_at' names fault 'extend', which does not exist",
+                "Ends At names fault 'extend', which does not exist",
+            ),
+        ):
+            self.assertEqual(notices.in_panel_words(text), wanted)
 
 
 class Palette(PanelCase):
@@ -399,7 +499,7 @@ class Palette(PanelCase):
                 [0.0193339, 0.1191920, 0.9503041],
             ]
         )
-        colors = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in library_rows.PALETTE])
+        colors = np.array([[int(c[i : i + 2], 16) / 255 for i in (1, 3, 5)] for c in PALETTE])
         linear = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
         for sight in sights:
             xyz = np.clip(linear @ np.transpose(sight), 0, 1) @ to_xyz.T / (0.95047, 1.0, 1.08883)
@@ -408,3 +508,10 @@ class Palette(PanelCase):
             apart = np.linalg.norm(lab[:, None] - lab[None], axis=2)
             self.assertGreater(apart[~np.eye(len(lab), dtype=bool)].min(), 21.0)
             self.assertGreater(np.diag(np.roll(apart, -1, axis=1)).min(), 42.0)
+
+    def test_more_surfaces_than_the_palette_has_colors_get_others(self):
+        for number in range(len(PALETTE) + 3):
+            library_rows.for_surface(self.scene, f"S{number}")
+        colors = [library_rows.hex_color(row.color) for row in self.model.library]
+        self.assertEqual(len(set(colors)), len(colors))
+        self.assertEqual(len(set(palette())), 3 * len(PALETTE))

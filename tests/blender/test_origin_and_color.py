@@ -27,6 +27,10 @@ class Origin(unittest.TestCase):
         box = np.array([[0.0, 0.0, 1e6], [2.0, 2.0, 1e6 + 1e-3]])
         self.assertEqual(origin.choose_origin(box).tolist(), [0.0, 0.0, 1e6])
 
+    def test_east_and_north_move_together(self):
+        box = np.array([[270000.0, 3912000.0, -2900.0], [331000.0, 3965000.0, 150.0]])
+        self.assertEqual(origin.choose_origin(box).tolist(), [300000.0, 3940000.0, 0.0])
+
     def test_points_without_extent(self):
         self.assertEqual(origin.choose_origin(np.zeros((0, 3))).tolist(), [0.0, 0.0, 0.0])
         self.assertEqual(origin.choose_origin(np.array([[5.0, 5.0, 5.0]])).tolist(), [0.0, 0.0, 0.0])

@@ -225,6 +225,35 @@ class Surfaces(PanelCase):
         ops.build()
         self.assertAlmostEqual(self.volumes()["S1 block"], 1e5, places=5)
 
+    def test_the_stage_follows_the_youngest_surface(self):
+        stack(0.0, 10.0)
+        ops.build()
+        select(sheet("pit", 5.0))
+        ops.surface_add(use_object=True)
+        self.assertEqual(self.model.stage, 2)
+        ops.build()
+        self.assertEqual(self.model.stage, 2)
+        self.assertAlmostEqual(volume(bpy.data.objects["S1 block"].data), 5e4, places=3)
+        ops.surface_copy()
+        self.assertEqual(self.model.stage, 3)
+        ops.surface_remove()
+        self.assertEqual(self.model.stage, 2)
+        row = self.rock().surfaces.add()  # as a script does
+        row.name, row.source, row.object = "late", "MESH_OBJECT", sheet("late", 20.0)
+        ops.build()
+        self.assertEqual(self.model.stage, 3)
+
+    def test_a_stage_that_was_chosen_stays_when_a_surface_is_added(self):
+        stack(0.0, 10.0, 20.0)
+        ops.build()
+        self.model.stage = 1
+        select(sheet("late", 30.0))
+        ops.surface_add(use_object=True)
+        ops.build()
+        self.assertEqual(self.model.stage, 1)
+        ops.rock_remove()
+        self.assertEqual(self.model.stage, 0)
+
     def test_hide(self):
         stack(0.0, 10.0)
         ops.build()
@@ -415,10 +444,13 @@ class Results(PanelCase):
         for operator in (ops.copy_table, ops.clear):
             self.refused(operator, "there is no model yet")
         ops.build()
-        rows = list(csv.DictReader(io.StringIO(results.as_csv(self.scene))))
+        rows = list(csv.DictReader(io.StringIO(results.as_text(self.scene))))
         self.assertEqual([row["block"] for row in rows], ["S1 block", "S2 block"])
         self.assertEqual([float(row["volume"]) for row in rows], [1e5, 2e5])
         self.assertAlmostEqual(float(rows[1]["share"]), 2 / 3)
+        pasted = [line.split("\t") for line in results.as_text(self.scene, "\t").splitlines()]
+        self.assertEqual([line[0] for line in pasted], ["block", "S1 block", "S2 block"])
+        self.assertEqual({len(line) for line in pasted}, {len(results.CSV_HEADINGS)})
         self.model.active_result = 1
         self.assertEqual([o.name for o in self.scene.objects if o.select_get()], ["S2 block"])
         self.assertEqual(bpy.context.view_layer.objects.active.name, "S2 block")
@@ -447,7 +479,7 @@ class Results(PanelCase):
         report = json.loads((self.folder / "r.json").read_text())
         self.assertTrue(report["validation"]["passed"])
         ops.report(filepath=str(self.folder / "t.csv"))
-        self.assertEqual((self.folder / "t.csv").read_text(), results.as_csv(self.scene))
+        self.assertEqual((self.folder / "t.csv").read_text(), results.as_text(self.scene))
         for operator, name in ((ops.export, "m.xyz"), (ops.export, "m"), (ops.report, "r.txt")):
             self.refused(operator, "", filepath=str(self.folder / name))
         self.refused(ops.export, "no folder", filepath=str(self.folder / "none" / "m.npz"))

@@ -8,6 +8,7 @@ import bpy
 from blender_state import empty_file, inventory, open_edges, volume
 from panel_case import PanelCase, ops, raise_by, select, sheet, stack
 from realmodel.bl import built_models
+from realmodel.bl.display import colors
 
 
 def block(name):
@@ -28,6 +29,31 @@ class Persistence(PanelCase):
         ops.build()
         area = 6000.0
         self.assertAlmostEqual(sum(self.volumes().values()), sum(before.values()) + area, delta=1e-6 * area)
+
+    def test_what_changed_since_the_build_is_said(self):
+        stack(0.0, 10.0, 30.0)
+        self.assertFalse(self.model.is_outdated)
+        ops.build()
+        self.assertFalse(self.model.is_outdated)
+        self.model.rocks[0].surfaces[1].rule = "conformable"
+        self.assertTrue(self.model.is_outdated)
+        ops.build()
+        self.assertFalse(self.model.is_outdated)
+        for look in ("show_axes", "use_section"):
+            setattr(self.model.view, look, True)
+        self.model.stage = 1
+        bpy.context.view_layer.update()
+        self.assertFalse(self.model.is_outdated)
+        ops.surface_remove()
+        self.assertTrue(self.model.is_outdated)
+        ops.clear()
+        self.assertFalse(self.model.is_outdated)
+
+    def test_the_legend_names_a_block_whose_surface_was_removed(self):
+        stack(0.0, 10.0, 30.0)
+        ops.build()
+        ops.surface_remove()
+        self.assertEqual([name for name, _ in colors.key(self.scene).entries], ["S2", "S1"])
 
     def all_settings(self):
         """Every property, by its path, but pointers."""

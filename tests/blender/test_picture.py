@@ -8,9 +8,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 from blender_state import empty_file, inventory, pixels
+from bpy_extras.object_utils import world_to_camera_view
 from made_projects import LIBRARY, other_rock, surface, two_rocks
+from mathutils import Matrix, Vector
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, picture
+from realmodel.bl.display import viewpoints
 from realmodel.core import OutputFailed, Project, Rock, build
 
 
@@ -138,6 +141,32 @@ class SetUp(PanelCase):
         image = pixels(self.folder / "f12.png")
         for number in (1, 2, 3):
             self.assertGreater(share_of_hue(image, LIBRARY.get(number).color), 0.002, number)
+
+    def test_a_camera_that_looks_elsewhere_is_told_from_one_of_the_model(self):
+        batch.write_scene(build(two_rocks()))
+        self.assertFalse(viewpoints.camera_sees(self.scene))
+        ops.set_up_picture(view="MODEL")
+        bpy.context.view_layer.update()
+        self.assertTrue(viewpoints.camera_sees(self.scene))
+        self.scene.camera.matrix_world = Matrix.Translation((1e5, 0.0, 0.0))
+        bpy.context.view_layer.update()
+        self.assertFalse(viewpoints.camera_sees(self.scene))
+
+    def test_a_cut_model_is_in_the_middle_of_its_picture(self):
+        batch.write_scene(build(two_rocks()))
+        ops.section_plane(axis="X")
+        plane = self.model.view.plane
+        plane.location.x -= 0.25 * np.ptp(viewpoints.model_points(self.scene)[:, 0])
+        ops.section_update()
+        whole, left = viewpoints.model_points(self.scene), viewpoints.model_points(self.scene, cut=True)
+        self.assertLess(left[:, 0].max(), whole[:, 0].max() - 1.0)
+        self.model.view.show_legend = False
+        ops.set_up_picture(view="MODEL")
+        bpy.context.view_layer.update()
+        seen = [world_to_camera_view(self.scene, self.scene.camera, Vector(place)) for place in left]
+        for axis in "xy":
+            middle = sum(f(getattr(at, axis) for at in seen) for f in (min, max)) / 2
+            self.assertAlmostEqual(middle, 0.5, delta=0.02)
 
     def test_the_legend_is_in_every_picture(self):
         batch.write_scene(build(two_rocks()))

@@ -83,6 +83,18 @@ class ModelInFeet(PanelCase):
         self.assertEqual(units.area_text(self.scene, 1e6), "1 M ft²")
         self.assertEqual(units.length_text(self.scene, 40.0), "40 ft")
 
+    def test_a_large_model_is_measured_in_cubic_kilometers(self):
+        path = self.folder / "p.toml"
+        path.write_text(PROJECT.format(unit="m").replace("2000", "61000").replace("500]", "53000]"))
+        ops.open_project(filepath=str(path))
+        self.model.rocks[0].edge_length = 20000.0
+        ops.build()
+        (row,) = self.model.results
+        self.assertEqual(units.volume_text(self.scene, row), "129.3")
+        self.assertEqual(units.unit_text(self.scene, 3), "km³")
+        self.assertEqual(units.total_volume_text(self.scene), "129.3 km³")
+        self.assertEqual(units.full_volume_text(self.scene, row), "129,320,000,000 m³")
+
     def test_who_sees_the_other_system_reads_its_units(self):
         self.open("ft")
         self.scene.unit_settings.system = "METRIC"

@@ -129,11 +129,11 @@ def test_a_branch_that_meets_nothing_is_refused():
     with pytest.raises(
         InputRefused, match=r"fault 'B': it ends at fault 'M', but does not meet it.* is 1\.5 at"
     ):
-        require_meeting([main, far])
+        require_meeting(far, [main])
     touching = Fault("B", *plane_fault(turn=90.0, y=(5.0, 15.0)), ends_at=("M",))
-    require_meeting([main, touching])
+    require_meeting(touching, [main])
     touching.vertices[:, 0] += 1e-7  # as a file with few digits has it
-    require_meeting([main, touching])
+    require_meeting(touching, [main])
 
 
 def test_what_acts():

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import structure_cases
 from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
 from realmodel.core.mapped_arrays import MappedArrays
@@ -105,6 +106,32 @@ def test_cells_do_not_depend_on_where_tiles_end(name, tmp_path):
         assert len(keys) == len(set(keys))
         found.append(set(keys))
     assert found[0] == found[1] == found[2]
+
+
+def test_sheets_of_neighbors_do_not_depend_on_where_tiles_end(tmp_path):
+    """Of two faults: between them there are no points of the younger surface, beyond them two."""
+    plan = np.random.default_rng(5).uniform(0.0, 10.0, (300, 2))
+    drop = np.where(plan[:, 0] > 3, 0.6, 0.0) + np.where(plan[:, 0] > 7, 0.5, 0.0)
+    low = np.column_stack([plan, 0.03 * plan[:, 1] - drop])
+    high = low[plan[:, 0] < 3] + np.array([0.0, 0.0, 2.0])
+    few = low[plan[:, 0] > 7][:2] + np.array([0.0, 0.0, 2.1])
+    surfaces = [Surface("S0", points=low), Surface("S1", points=np.concatenate([high, few]))]
+    rock = Rock("r", surfaces, region=structure_cases.SQUARE, edge_length=1.0, base_elevation=-4.0)
+    faults = [
+        Fault(name, *structure_cases.plane_fault(x, lean))
+        for name, x, lean in (("F", 3.0, 0.2), ("G", 7.0, -0.1))
+    ]
+    project = Project("p", [rock], faults=faults)
+    whole = build(project)
+    texts = {warning.text for warning in whole.warnings}
+    assert sum("the throw of fault" in text for text in texts) == 2
+    found = []
+    for folder, size in (("one", (20.0, 20.0)), ("six", (3.4, 5.1))):
+        tiled = build_tiles(project, tmp_path / folder, size)
+        assert {warning.text for warning in tiled.warnings} == texts
+        found.append({key for tile in tiled.tiles for key in cell_keys(tile.model())})
+        assert_same_blocks(tiled, whole, 0.02)
+    assert found[0] == found[1]
 
 
 def test_sections_boreholes_and_warnings_are_those_of_the_whole(tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Columns of prisms for solvers: valid, conforming, no thinner than asked, with the volumes of the model."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -239,6 +240,30 @@ def test_division_into_layers():
     assert len(both.elements["prism"]) == 5 * columns
     layer, block = by_number.plan.layer["prism"], by_number.element_block["prism"]
     assert block[layer == 0].tolist() == [1] * columns  # the highest layer is the youngest
+
+
+def test_thick_blocks_with_a_steep_top_are_divided():
+    """Unless layers are given: then they are as asked, and faces that are too skew are told."""
+    model = build(
+        Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", [40, 340, 340, 40])])])
+    )
+    mesh = checked(model.simulation_mesh(5.0, 0.5))
+    layers = mesh.plan.layers
+    assert layers > 1 and mesh.volumes == pytest.approx(mesh.exact_volumes, rel=1e-9)
+    assert [str(warning) for warning in mesh.warnings] == [
+        f"rock 'r': block 's1 block' is divided into {layers} layers: as one it is too thick for how steep "
+        "its top or base is; give the layers, or their thickness, for others"
+    ]
+    for one in (1, [1], {"s1 block": 1}):
+        asked = checked(model.simulation_mesh(5.0, 0.5, layers=one))
+        assert asked.plan.layers == 1
+        (warning,) = asked.warnings
+        assert re.match(r"\d+ faces have a skewness above 4, up to [0-9.]+ near \(", warning.text)
+        assert warning.text.endswith("checkMesh fails them; use thinner layers in 's1 block'")
+    thin = checked(model.simulation_mesh(5.0, 0.5, layer_thickness=8.0))
+    assert not thin.warnings and thin.plan.layers == 43
+    level = build(Project(name="b", rocks=[Rock(name="r", surfaces=[plane("s0", 0), plane("s1", 160)])]))
+    assert level.simulation_mesh(5.0, 0.5).plan.layers == 1
 
 
 def test_edges_are_shorter_where_asked():

@@ -11,7 +11,7 @@ import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
 from realmodel.core.exporters.meshes import save_mesh
 from realmodel.core.simulation.element_faces import ElementFaces
-from solver_meshes import least_angles
+from solver_meshes import check_solver_mesh, least_angles
 from solvers import (
     foam_program,
     ogs_program,
@@ -77,6 +77,85 @@ def test_check_mesh_finds_no_fault(tmp_path, name, edge, thickness, layer):
     found = re.search(r"non-orthogonality Max: ([0-9.]+)", output)
     assert float(found[1]) < 70
     assert least_angles(mesh.plan.vertices, mesh.plan.triangles).min() > 20
+
+
+def overturned_fold(base=-8.0):
+    """A section with overturned limbs, given as points. As heights they are steep, and cross one another."""
+    rng = np.random.default_rng(0)
+    along = np.linspace(0.0, 16.0, 160)
+    surfaces = []
+    for number in range(7):
+        z = 1.3 * np.sin(1.6 * along + 1.0)
+        x = along + 1.1 * z
+        kept = (rng.random(len(x)) < 0.35) & (x > 0) & (x < 16)
+        points = np.column_stack([x, rng.uniform(-0.5, 0.5, len(x)), z + 0.5 * number])[kept]
+        surfaces.append(Surface(f"S{number}", points=points, method="natural_neighbour"))
+    return section_model(surfaces, base)
+
+
+def hecho_fold():
+    """The section of shared/data/folds/hecho_sparse, its points taken as heights."""
+    folder = places.REAL_DATA / "folds" / "hecho_sparse"
+    points = [np.loadtxt(folder / f"s{n}.csv", delimiter=",", skiprows=1) for n in range(6)]
+    surfaces = [Surface(f"S{n}", points=p, method="natural_neighbour") for n, p in enumerate(points)]
+    return section_model([*surfaces, Surface("top", mesh=folder / "top.off")], -2.0)
+
+
+def section_model(surfaces, base):
+    region = [[0.0, -0.5], [16.0, -0.5], [16.0, 0.5], [0.0, 0.5]]
+    rock = Rock("r", surfaces, region=region, base_elevation=base, edge_length=0.3)
+    return build(Project("section", [rock]))
+
+
+def skew_faces(output):
+    """How many faces checkMesh finds too skew, and the largest skewness."""
+    found = re.search(r"Max skewness = ([0-9.]+)(?:, ([0-9]+) highly skew)?", output)
+    return int(found[2] or 0), float(found[1])
+
+
+@foam_only
+@pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
+@pytest.mark.parametrize(
+    ("model", "edge", "thickness", "layer"),
+    [
+        (overturned_fold, 0.32, 0.032, None),
+        (overturned_fold, 0.533, 0.0533, 0.266),
+        (overturned_fold, 0.64, 0.016, 1.6),
+        pytest.param(hecho_fold, 0.32, 0.032, 0.107, marks=data_only),
+        pytest.param(hecho_fold, 0.229, 0.0457, 0.16, marks=data_only),
+    ],
+)
+def test_check_mesh_takes_steep_crossing_surfaces(tmp_path, model, edge, thickness, layer, elements):
+    mesh = model().simulation_mesh(edge, thickness, layer_thickness=layer, elements=elements)
+    check_solver_mesh(mesh)
+    save_mesh(mesh, tmp_path / "case.foam")
+    output = run_foam("checkMesh", tmp_path / "case.foam")
+    assert "Mesh OK." in output, "\n".join(line for line in output.splitlines() if "***" in line)
+    assert not [warning for warning in mesh.warnings if warning.kind == "mesh_skewness"]
+
+
+def thin_zigzag(slope):
+    """Two sheets, 0.4 m high, on slopes up and down, and nothing below."""
+    x = np.linspace(0.0, 10.0, 41)
+    z = slope * np.abs((x + 1) % 4 - 2)
+    first = 2 * np.arange(40)[:, None]
+    triangles = np.add(first, [0, 2, 3, 0, 3, 1]).reshape(-1, 3)
+    plan = np.column_stack([np.repeat(x, 2), np.tile([0.0, 3.0], 41)])
+    heights = [np.repeat(z, 2) + 0.4 * k for k in range(3)]
+    return [Surface(f"S{k}", np.column_stack([plan, h]), triangles) for k, h in enumerate(heights)]
+
+
+@foam_only
+@pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
+def test_faces_that_stay_skew_are_told(tmp_path, elements):
+    """One element in a column, thin and steep: there is nothing that it could become one with."""
+    model = build(Project("z", [Rock("r", thin_zigzag(30))]))
+    mesh = model.simulation_mesh(0.5, 0.05, elements=elements)
+    save_mesh(mesh, tmp_path / "case.foam")
+    count, most = skew_faces(run_foam("checkMesh", tmp_path / "case.foam"))
+    (told,) = (warning.text for warning in mesh.warnings if warning.kind == "mesh_skewness")
+    assert told.startswith(f"{count} faces have a skewness above 4, up to {most:.1f} near (")
+    assert "use a shorter edge length, or a base_elevation farther below" in told
 
 
 @pytest.fixture(scope="module")

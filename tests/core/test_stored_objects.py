@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import BuildFailed, Fault
+from realmodel.core import BuildFailed, Fault, InputRefused
 from realmodel.core.mapped_arrays import write_mapped
 from realmodel.core.structures.sides import FaultShape
 from realmodel.distributed.stored_objects import read_object, write_object
@@ -38,6 +38,15 @@ def test_objects_come_back_with_their_types_and_identities(tmp_path):
     assert found["x"] == [0.1, np.inf, 7]
 
 
+def test_errors_of_surfaces_come_back(tmp_path):
+    """RockInput.torn."""
+    error = InputRefused("it folds", file=tmp_path / "s.csv", advice="smooth it", place=(1.0, 2.0))
+    found = stored({3: error}, tmp_path)[3]
+    assert type(found) is InputRefused
+    assert vars(found) == vars(error)
+    assert str(found.within("surface 'S'")) == str(error.within("surface 'S'"))
+
+
 def test_objects_of_others_are_not_written():
     with pytest.raises(TypeError, match="StringIO"):
         write_object([io.StringIO()], io.BytesIO())
@@ -59,9 +68,9 @@ def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     "kind",
-    ["os:system", ".core.atomic:Path", ".core.build:build", ".core.nothing:X", ".core.structures.sides"],
+    ["os:system", "Path", "Project", "PolyData", ".core.model:Model", "realmodel.core.Surface"],
 )
-def test_only_classes_of_the_package_are_made(kind, tmp_path):
+def test_only_classes_of_windows_are_made(kind, tmp_path):
     file = tmp_path / "object"
     text = json.dumps([[[kind, []]], [0]]).encode()
     with file.open("wb") as out:

@@ -111,7 +111,7 @@ BODY = '[[body]]\nname = "B"\nmesh = "cube.off"\n'
             "p.toml:14: fault 'F1': 'rocks' names rock mass 'hill', which does not exist",
         ),
         (F1 + "dies_out = 1", "p.toml:14: fault 'F1': 'dies_out' must be true or false, not 1"),
-        (F1 + "extend = 3", "p.toml:14: fault 'F1': 'extend' has no effect, as no surface is fitted"),
+        (F1 + "extend = -3", "p.toml:14: fault 'F1': 'extend' must be at least 0, not -3"),
         (F1 + 'points = "f.pol"', "it has both points and mesh"),
         ('[[fault]]\nname = "F1"\n', "fault 'F1': it has no shape; add mesh = ... or points = ..."),
         ('[[fault]]\nname = "F1"\nmesh = "no.ts"\n', "p.toml:13: fault 'F1': file not found"),

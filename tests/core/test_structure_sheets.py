@@ -6,14 +6,16 @@ from collections import Counter
 import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface, build
+from realmodel.core.structures import interpolated_sheets
 from realmodel.core.structures.between_sheets import common_lines, places_between
 from realmodel.core.structures.families import around_tips, families, parting
+from realmodel.core.structures.interpolated_sheets import InterpolatedSurface
 from realmodel.core.structures.rock_structure import RockStructure
-from realmodel.core.structures.sides import RockFaults
+from realmodel.core.structures.sides import RockFaults, sides_of
 from realmodel.core.structures.tips import _Drawn, _meet_within, _near, _places_of, blended
 from realmodel.core.structures.triangles import overlapping_pairs
 from realmodel.core.structures.within import parts_of_lines
-from realmodel.core.work import Work
+from realmodel.core.work import Work, run
 from structure_cases import SQUARE, plane_fault, prepared
 
 
@@ -213,6 +215,21 @@ def test_heights_are_shared_as_the_weights_say():
         assert np.array_equal(found[row], expected, equal_nan=True)
 
 
+def overlapping(count, method="natural_neighbour"):
+    """A project with faults that die out and overlap in plan, each with a throw of its own."""
+    plan = np.random.default_rng(4).uniform(0.0, 10.0, (500, 2))
+    height, faults = 0.1 * plan[:, 0], []
+    for number in range(count):
+        x = 3.0 + 0.8 * number
+        lean, turn = (0.3, -0.4)[number % 2], 12.0 * (number % 3 - 1)
+        faults.append(Fault(f"F{number}", *plane_fault(x, lean, (2.0, 8.0), turn=turn), dies_out=True))
+        throw = 0.5 * np.clip(1.0 - np.abs(plan[:, 1] - 5.0) / 3.0, 0.0, None)
+        height = height + np.where(plan[:, 0] > x, throw, 0.0)
+    surface = Surface("S", points=np.column_stack([plan, height]), method=method)
+    rock = Rock("r", [surface], region=[SQUARE], edge_length=0.6, base_elevation=-5.0)
+    return Project("p", [rock], faults=faults)
+
+
 def test_faults_that_die_out_are_asked_for_all_combinations_of_sides_at_once(monkeypatch):
     """With twice as many that overlap in plan there are more than twice as many combinations, and twice as
     many questions to the native module."""
@@ -224,22 +241,46 @@ def test_faults_that_die_out_are_asked_for_all_combinations_of_sides_at_once(mon
         return native(self, function, *arguments, **options)
 
     monkeypatch.setattr(Work, "native", counted)
-    plan = np.random.default_rng(4).uniform(0.0, 10.0, (500, 2))
     found = []
     for count in (3, 6):
-        height, faults = 0.1 * plan[:, 0], []
-        for number in range(count):
-            x = 3.0 + 0.8 * number
-            lean, turn = (0.3, -0.4)[number % 2], 12.0 * (number % 3 - 1)
-            faults.append(Fault(f"F{number}", *plane_fault(x, lean, (2.0, 8.0), turn=turn), dies_out=True))
-            throw = 0.5 * np.clip(1.0 - np.abs(plan[:, 1] - 5.0) / 3.0, 0.0, None)
-            height = height + np.where(plan[:, 0] > x, throw, 0.0)
-        surface = Surface("S", points=np.column_stack([plan, height]), method="natural_neighbour")
-        rock = Rock("r", [surface], region=[SQUARE], edge_length=0.6, base_elevation=-5.0)
+        project = overlapping(count)
         asked.clear()
-        (entry,) = prepared(Project("p", [rock], faults=faults))
+        (entry,) = prepared(project)
         found.append((len(entry.structure.distinct(0)), asked["structure_sides"], asked["structure_beyond"]))
     (sheets, sides, beyond), (more_sheets, more_sides, more_beyond) = found
     assert more_sheets > 2 * sheets
-    assert 0 < more_sides <= 2 * sides
-    assert 0 < more_beyond <= 2.5 * beyond, "drawing nearer may take one turn more"
+    # finding where rows are, and drawing nearer, may take one turn more
+    assert 0 < more_sides <= 2.5 * sides
+    assert 0 < more_beyond <= 2.5 * beyond
+
+
+@pytest.mark.parametrize("method", ["kriging", "natural_neighbour"])
+def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatch):
+    """There they are the same to the bit as if they were interpolated everywhere, and twice as many faults
+    take about twice as many heights."""
+    heights, asked = interpolated_sheets.give_heights, []
+
+    def counted(work, entry, number, threads, *trend):
+        asked.append(len(entry.region[0]))
+        heights(work, entry, number, threads, *trend)
+
+    monkeypatch.setattr(interpolated_sheets, "give_heights", counted)
+    found = []
+    for count in (3, 6):
+        asked.clear()
+        (entry,) = prepared(overlapping(count, method))
+        found.append((len(entry.structure.compartments), sum(asked)))
+    (few, of_few), (many, of_many) = found
+    assert many >= 3 * few and of_many < 2 * of_few < many * len(entry.region[0])
+    monkeypatch.setattr(InterpolatedSurface, "_counts_by_node", lambda self, surface: False)
+    (whole,) = prepared(overlapping(6, method))
+    faults, count = whole.structure.faults, 0
+    assert np.array_equal(whole.structure.compartments, entry.structure.compartments)
+    for row, own, other in zip(
+        whole.structure.compartments, entry.structure.sheets, whole.structure.sheets, strict=True
+    ):
+        sides = run(lambda work, sheet=other[0]: sides_of(work, sheet[0], faults))
+        is_there = (sides == row).all(axis=1)
+        assert np.array_equal(own[0][0][is_there], other[0][0][is_there])
+        count += is_there.sum()
+    assert count > 0.9 * len(whole.region[0])

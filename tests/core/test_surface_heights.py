@@ -96,9 +96,9 @@ def test_points_below_a_surface_that_is_not_the_one_before_are_listed():
     ground = Surface("ground", points=points(5, 5, 5, 5), method="tin")
     deep = Surface("deep", points=points(1, 1, 1, 1), method="tin")
     fill = Surface("fill", points=points(3, 3, 3, 3), method="tin", rule="conformable")
-    assert wrong_sides(ground, deep, fill) == []
-    ground.rule = "base"
     all_points = (0, 1, 2, 3)
+    assert wrong_sides(ground, deep, fill) == [("ground", all_points)], "the points of fill are right"
+    ground.rule = "base"
     assert wrong_sides(ground, deep, fill) == [("deep", all_points), ("fill", all_points)]
     deep.points = points(1, 1, 7, 1)
     text = [str(w) for w in build(rock(ground, deep, fill)).warnings if w.surface == "fill"]

@@ -35,7 +35,13 @@ def test_one_folder_on_top(package):
 
 
 def test_small(package):
-    assert package.stat().st_size < 10e6
+    assert package.stat().st_size < 16e6
+
+
+def test_every_program_that_opens_zips_opens_it(package):
+    """Explorer, macOS and unzip know no other method."""
+    with zipfile.ZipFile(package) as archive:
+        assert {entry.compress_type for entry in archive.infolist()} == {zipfile.ZIP_DEFLATED}
 
 
 def test_both_ways_to_be_found_by_blender(unpacked):

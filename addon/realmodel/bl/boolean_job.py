@@ -315,13 +315,7 @@ def _loop_mesh(loop, matrix):
     ends = np.arange(len(places), dtype=np.int32)
     edges = np.stack([ends, np.roll(ends, -1)], axis=1)
     edges = edges if loop.is_closed else edges[:-1]
-    mesh = bpy.data.meshes.new(loop.name)
-    mesh.vertices.add(len(places))
-    mesh.vertices.foreach_set("co", places.ravel())
-    mesh.edges.add(len(edges))
-    mesh.edges.foreach_set("vertices", edges.ravel())
-    mesh.update()
-    return mesh
+    return meshes.line_mesh(loop.name, places, edges)
 
 
 def _stand_at(item, other):

@@ -15,6 +15,16 @@ def keep(row, holes):
     row.hole_picks = json.dumps(known)
 
 
+def rename(row, old, new):
+    """Gives the picks of a surface of a rock mass its new name."""
+    picks = of_rock(row)
+    for _, met in picks.values():
+        for pick in met:
+            pick[0] = new if pick[0] == old else pick[0]
+    if picks:
+        row.hole_picks = json.dumps(picks)
+
+
 def of_rock(row):
     """{hole: [collar or None, [[surface, place], ...]]} in model coordinates, the highest pick first."""
     return json.loads(row.hole_picks) if row.hole_picks else {}

@@ -5,23 +5,27 @@
 import numpy as np
 
 from ..core import PointFile
+from ..core.age_order import age_order
 from ..core.readers import read_point_file
 from . import library_rows, project_settings, reading_text, settings, stored_arrays
 
 
-def give(scene, rock, points, add_surfaces=False):
+def give(scene, rock, picks, add_surfaces=False):
     """Adds points to the surfaces of their names.
 
-    rock: its row. points: {surface: (P, 3) float64 in model units}. add_surfaces: adds those that are not
-    there, the lowest first. Returns warnings about unused points. Raises InputRefused.
+    rock: its row. picks: realmodel.core.Picks in model units. add_surfaces: adds those that are not there,
+    the oldest first. Returns warnings about unused points, and about their order. Raises InputRefused.
     """
+    points = picks.points
     given = {row.name for row in rock.surfaces}
     new = [name for name in points if name not in given]
     own = {row.name: _own_points(scene, row) for row in rock.surfaces if row.name in points}
     warnings = []
     with settings.filling():
         if add_surfaces:
-            for name in sorted(new, key=lambda name: float(points[name][:, 2].mean())):
+            order = age_order(new, [points[name] for name in new], picks.holes)
+            warnings += [text] if (text := order.warning(new)) else []
+            for name in (new[number] for number in order.order):
                 row = rock.surfaces.add()
                 row.name = name
                 row.property_id = library_rows.for_surface(scene, name)

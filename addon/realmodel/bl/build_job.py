@@ -25,6 +25,7 @@ class BuildJob(ThreadJob):
         self.scene_name = current.name
         self.cells = cells or current.realmodel.cells.lower()
         self.composed = project_settings.compose(current, depsgraph, whole)
+        settings.follow_youngest(current)
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
         self._stage = group.stage if is_stage else None  # the stage that is shown afterwards

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..core import BuildFailed, polygon_mesh
 from ..core.assembly import build_stage
+from ..core.automatic_library import model_with_library
 from ..core.build_warning import BuildWarning
 from ..core.errors import place_text
 from ..core.units import length_text
@@ -177,6 +178,7 @@ def write_model(current, model, project=None):
     """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. The
     user's objects stay; materials of earlier properties are reused. project: the project that the model was
     built from, if the settings are to name its files beside the stored data."""
+    model = model_with_library(model)
     _remove_model(current)
     project_settings.fill(current, project or model.project)
     composed = project_settings.compose(current, viewports.updated_layer(current).depsgraph)
@@ -201,10 +203,9 @@ def put(current, prepared, composed, in_place=False):
     except BaseException:
         bpy.data.batch_remove(created)
         raise
-    group, last = current.realmodel, settings.last_stage(current)
+    group = current.realmodel
+    settings.follow_youngest(current)
     with settings.filling():
-        if group.stage >= last or not len(group.results):
-            group.stage = last
         _settle_edited(current, composed)
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
@@ -224,6 +225,7 @@ def put(current, prepared, composed, in_place=False):
         before = group.built_stamp if in_place else None
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
+        group.is_outdated = False
     display.built(current, prepared.bounds, prepared.stage)
     looks.follow(current)
     weathering.follow(current)
@@ -301,6 +303,7 @@ def _settle_edited(current, composed):
         row.object = row.interface
         row.source = "MESH_OBJECT"
         row.interface_digest = ""
+        structure_settings.forget_extension(row)
 
 
 def _new_blocks(current, prepared, created, in_place):
@@ -469,6 +472,7 @@ def _clear(current):
         current.realmodel.results.clear()
         current.realmodel.built_stamp = ""
         current.realmodel.warnings = ""
+        current.realmodel.is_outdated = False
         current.realmodel.view.compartments = ""
     scene.remove_objects(objects)
     display.cleared(current)

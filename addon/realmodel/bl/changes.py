@@ -14,6 +14,7 @@ from . import (
     reading_text,
     region_size,
     settings,
+    structure_settings,
     surface_figures,
     units,
     viewports,
@@ -97,15 +98,26 @@ def source(surface, context):
     discarded."""
     if settings.is_filling():
         return
+    if surface.interface_digest and _keeps_shape(surface):
+        structure_settings.forget_extension(surface)
     surface.interface_digest = ""
     with settings.filling():
         reading_text.fill(surface, {})
+        if surface.source == "POINTS_FILE" and surface.filepath:
+            surface.id_data.realmodel.show_data = True
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
         if surface.filepath and settings.kind_of(surface) != "surface":
             project_settings.forget_shape(surface)
     data_objects.update(surface.id_data)
     setting(surface, context)
+
+
+def _keeps_shape(surface):
+    """Whether a new source gives the shape that was made from the file before."""
+    if surface.source == "MESH_OBJECT":
+        return surface.object == surface.interface
+    return not surface.filepath
 
 
 def reading(row, context):
@@ -120,9 +132,14 @@ def reading(row, context):
     setting(surface, context)
 
 
+def extended(fault, context):
+    """The extension of a fault: what is made from its file depends on it; of a trace the line is kept."""
+    (setting if fault.source in ("MESH_OBJECT", *settings.TRACES) else reading)(fault, context)
+
+
 def fitted(fault, context):
-    """A setting that the surface through the points of a fault depends on."""
-    (reading if fault.source == "POINTS_FILE" else setting)(fault, context)
+    """A setting that the surface through the points of a fault depends on, and where it is extended."""
+    (extended if fault.source == "POINTS_FILE" or fault.extend > 0.0 else setting)(fault, context)
 
 
 def unset_of_file(key):

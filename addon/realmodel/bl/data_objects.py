@@ -11,10 +11,11 @@ from itertools import pairwise
 import bpy
 import numpy as np
 
-from ..core import InputRefused, PointFile, RealModelError
-from ..core.readers import read_point_file, read_region
+from ..core import InputRefused, PointFile, RealModelError, Surface
+from ..core.readers import read_mesh, read_point_file, read_region
+from ..core.readers.fault_sticks import read_fault_points
 from ..core.readers.fault_trace import read_fault_trace
-from . import borehole_picks, display, project_settings, reading_text, settings, stored_arrays
+from . import borehole_picks, display, meshes, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
@@ -74,7 +75,7 @@ def begin(scene, points):
 def points_of(scene, rock, depsgraph):
     """(P, 3) float64 of all points of a rock mass's surfaces, in model coordinates; the vertices of ready
     meshes count where there are no points. Raises InputRefused."""
-    found = [_row_points(scene, row, depsgraph) for row in rock.surfaces]
+    found = [row_points(scene, row, depsgraph) for row in rock.surfaces]
     found = [points for points in found if points is not None and len(points)]
     if not found:
         raise InputRefused(
@@ -83,14 +84,21 @@ def points_of(scene, rock, depsgraph):
     return np.concatenate(found)
 
 
-def _row_points(scene, row, depsgraph):
+def row_points(scene, row, depsgraph):
+    """(P, 3) float64 in model coordinates: the points of a surface, or the vertices of its ready mesh; None
+    where there are none yet. Raises InputRefused."""
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT") and row.object is not None:
         return project_settings.shapes.points(row.object, depsgraph) + project_settings.model_origin(scene)
     if row.source == "POINTS_FILE":
         return _read_points(scene, row)
     if row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)["vertices"]
-    return None
+    path = project_settings.absolute(row.filepath)
+    if row.source != "MESH_FILE" or path is None:
+        return None
+    given = Surface(row.name)
+    project_settings.name_file(given, row, path)
+    return read_mesh(path).in_model(given.mesh, scene.realmodel.units)[0]
 
 
 def _read_points(scene, row):
@@ -128,26 +136,37 @@ def _wanted(scene, read):
                 lambda rock=rock: _paths(rock),
             )
         for row in rock.surfaces:
-            if row.source == "POINTS_FILE" and (row.filepath or row.stored):
-                try:
-                    key = file_key(row)
-                except RealModelError:  # only some of the columns are set yet
-                    continue
+            if (key := _points_key(row)) is not None:
                 found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),
                 )
-    for fault in scene.realmodel.faults:
-        if fault.source == "TRACE_FILE" and (fault.filepath or fault.stored_trace):
+    for row in scene.realmodel.faults:
+        if row.source == "TRACE_FILE" and (row.filepath or row.stored_trace):
             try:
-                key = fault.stored_stamp if fault.stored_trace else file_key(fault)
+                key = row.stored_stamp if row.stored_trace else file_key(row)
             except RealModelError:
                 continue
-            found[f"trace {fault.name} {key or _checksum(fault.stored_trace)}"] = (
-                f"{fault.name} trace",
-                lambda fault=fault: _trace(scene, fault),
+            found[f"trace {row.name} {key or _checksum(row.stored_trace)}"] = (
+                f"{row.name} trace",
+                lambda row=row: _trace(scene, row),
+            )
+        elif key := _points_key(row):
+            found[f"sticks {row.name} {row.stick} {key}"] = (
+                f"{row.name} sticks",
+                lambda row=row: _sticks(scene, row),
             )
     return found
+
+
+def _points_key(row):
+    """`file_key` of a row that is made from points; None where there are none yet."""
+    if row.source != "POINTS_FILE" or not (row.filepath or getattr(row, "stored", "")):
+        return None
+    try:
+        return file_key(row)
+    except RealModelError:  # only some of the columns are set yet
+        return None
 
 
 def _checksum(text):
@@ -165,9 +184,22 @@ def _paths(rock):
         [*([] if collar is None else [collar]), *(place for _, place in picks)]
         for collar, picks in borehole_picks.of_rock(rock).values()
     ]
-    starts = np.cumsum([0, *map(len, holes)])
+    return _chains(holes)
+
+
+def _sticks(scene, row):
+    """The sticks of a fault, or its scattered points."""
+    given = PointFile(project_settings.absolute(row.filepath), **reading_text.options(row))
+    stick = reading_text.column(row.stick) if row.stick.strip() else None
+    found, _ = read_fault_points(given, stick, scene.realmodel.units)
+    return (found, np.empty((0, 2), np.int32)) if isinstance(found, np.ndarray) else _chains(found)
+
+
+def _chains(lines):
+    """The points of lines (N, 3) each, and the edges (E, 2) that join those of each line."""
+    starts = np.cumsum([0, *map(len, lines)])
     first = np.setdiff1d(np.arange(starts[-1]), starts[1:] - 1)
-    return np.concatenate(holes), np.stack([first, first + 1], 1).astype(np.int32)
+    return np.concatenate(lines), np.stack([first, first + 1], 1).astype(np.int32)
 
 
 def _outline(scene, rock):
@@ -201,14 +233,7 @@ def _new(scene, stamp, name, coordinates, edges):
     if ORIGIN_KEY not in scene:
         begin(scene, coordinates)
     origin = project_settings.model_origin(scene)
-    mesh = bpy.data.meshes.new(name)
-    mesh.vertices.add(len(coordinates))
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(coordinates - origin, np.float32).ravel())
-    if len(edges):
-        mesh.edges.add(len(edges))
-        mesh.edges.foreach_set("vertices", np.ascontiguousarray(edges, np.int32).ravel())
-    mesh.update()
-    item = bpy.data.objects.new(name, mesh)
+    item = bpy.data.objects.new(name, meshes.line_mesh(name, coordinates - origin, edges))
     item[KEY], item[_ORIGIN] = stamp, [float(value) for value in origin]
     item.hide_select = item.hide_render = True
     collection = _collection(scene)

@@ -4,6 +4,7 @@
 import bpy
 
 from ..core import Library, Property
+from ..core.automatic_library import palette
 from . import materials, settings
 
 _TEXTS = ("rock", "age", "structure", "description")
@@ -61,18 +62,10 @@ def add(scene, entry):
     return row
 
 
-# Colors of rocks for what has none: any two differ, and most of all neighbors, also for people who confuse
-# red and green or blue and yellow (CIE76 of 21 or more in the simulations of Machado et al., 2009).
-PALETTE = (
-    *("#efd951", "#ac5132", "#b6dae3", "#663428", "#acb960", "#1f515c"),
-    *("#e6a396", "#e45d20", "#6d7365", "#f4f7d7", "#6aa7c7", "#432f7e"),
-)
-
-
 def next_color(scene):
     """An "#rrggbb" of the palette for one more property: the first of those that are used least."""
     used = [hex_color(row.color) for row in scene.realmodel.library]
-    return min(PALETTE, key=used.count)
+    return min(palette(), key=used.count)
 
 
 def for_surface(scene, name):

@@ -24,7 +24,15 @@ measured = caches.new()  # by the name of a scene: seconds from the last change 
 
 def touch(scene):
     """Reports that input of a scene's model was changed."""
+    if len(scene.realmodel.results):
+        scene.realmodel.is_outdated = True
+    _look_at(scene)
+
+
+def _look_at(scene):
+    """Reports that a scene's model may be another one than its input makes."""
     names.know(scene)
+    settings.follow_youngest(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)
 
@@ -33,7 +41,7 @@ def switched():
     """`live` was switched on or off in some scene, or another file was opened."""
     _work.forget_changes()
     for scene in bpy.data.scenes:
-        touch(scene)
+        _look_at(scene)
 
 
 def is_working():
@@ -53,16 +61,26 @@ def changed(scene, depsgraph):
         if rock.region is not None and _names(rock.region) & edited:
             rock.region_area = -1.0
             region_size.ask()
-            touch(scene)
-        if any(_names(item) & edited for item in plan_mesh.objects(rock)):
-            touch(scene)
+            _edited(scene, rock.region)
+        for item in plan_mesh.objects(rock):
+            if _names(item) & edited:
+                _edited(scene, item)
     for _, row in settings.interface_rows(scene):
         made = row.interface if row.interface_digest else None
         if made is not None and _names(made) & edited:
-            touch(scene)
+            _edited(scene, made)
         source = row.object if row.source in settings.OF_OBJECTS else None
         if source is not None and _names(source) & edited:
-            touch(scene)
+            _edited(scene, source)
+
+
+def _edited(scene, item):
+    """Blender has evaluated an object that a model is made from. Only in edit mode it is sure that it has
+    another shape now."""
+    if item.mode == "EDIT":
+        touch(scene)
+    else:
+        _look_at(scene)
 
 
 def _counts(update):
@@ -77,7 +95,7 @@ def _names(item):
 def undone():
     """Called after undo and redo: the displayed blocks may be of another build."""
     for scene in bpy.data.scenes:
-        touch(scene)
+        _look_at(scene)
 
 
 def stop_work():

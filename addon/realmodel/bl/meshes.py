@@ -61,6 +61,18 @@ def triangle_mesh(name, coordinates, triangles, smooth=False):
     return new_mesh(name, PolygonMesh(coordinates, offsets, triangles.ravel(), smooth=smooth))
 
 
+def line_mesh(name, coordinates, edges):
+    """A new mesh datablock of points (V, 3) and lines (E, 2) between them, without faces."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(len(coordinates))
+    mesh.vertices.foreach_set("co", np.ascontiguousarray(coordinates, np.float32).ravel())
+    if len(edges):
+        mesh.edges.add(len(edges))
+        mesh.edges.foreach_set("vertices", np.ascontiguousarray(edges, np.int32).ravel())
+    mesh.update(calc_edges_loose=True)  # other edges without faces are not drawn in Blender 3.4
+    return mesh
+
+
 def without_repeated_corners(triangles):
     """(T, 3) int32: the triangles whose corners are three different vertices."""
     triangles = np.asarray(triangles, np.int32).reshape(-1, 3)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""References by name from settings to surfaces, faults and rock masses: renaming a row updates them."""
+"""References by name from settings and picks to surfaces, faults and rock masses: renaming a row updates
+them."""
 
 from ..core.methods import OPTIONS
 from ..core.setting import property_name
-from . import settings
+from . import borehole_picks, settings
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
@@ -23,6 +24,8 @@ def follow(row):
     alike = [other for other in _named(scene) if settings.kind_of(other) == kind]
     if not old or any(other.name == old for other in alike):
         return
+    if kind == "surface":
+        borehole_picks.rename(settings.rock_of(row), old, row.name)
     with settings.filling():
         for owner, key in _references(scene, row, kind):
             if getattr(owner, key) == old:

@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The warnings of a build for the panel: short, equal ones merged, settings by their labels."""
+"""Messages for the panel: settings by their labels; the warnings of a build short, equal ones merged."""
 
 import re
 from pathlib import Path
 
-import bpy
-
 from ..core.errors import number_list
+from ..core.schema import BODY, FAULT, ROCK, SURFACE
 
-# Settings as project files have them, and the property of a surface with the label of each, or the label.
-_LABELS = {
-    "method": "method",
-    "columns": "Columns",
-    "where": "Filters",
-    "separator": "separator",
-    "decimal": "decimal",
-    "nodata": "nodata",
-    "height": "height_attribute",
-    "extrapolate": "extrapolate",
-}
-_SETTING = re.compile(
-    r"(?:\b(?:say|write|give|set) )?\b("
-    + "|".join(_LABELS)
-    + r') = (".*?"|\[.*?\]|\{.*?\}|[^\s,;]+)'
+# By the keys of project files: settings that the panel shows, and the labels of those of several parts.
+_SETTINGS = {key: setting for each in (BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}
+_LABELS = {key: setting.label for key, setting in _SETTINGS.items() if setting.label}
+_LABELS |= {"columns": "Columns", "where": "Filters", "ends_at": "Ends At", "rocks": "Rock Masses"}
+_KEY = "|".join(sorted(_LABELS, key=len, reverse=True))
+_GIVEN = re.compile(
+    rf"(?:\b(?:say|write|give|set) )?\b({_KEY})"
+    + r' = (".*?"|\[.*?\]|\{.*?\}|[^\s,;]+)'
     + r'(?: or (".*?"))?'
 )
+_QUOTED = re.compile(
+    r"((?:surface|fault|body|rock|mass|block|column|object|layer|method|names) )?" + rf"'({_KEY})'"
+)
+_PLAIN = re.compile(r"(?<![\w'/.-])(" + "|".join(key for key in _LABELS if "_" in key) + r")(?![\w'/-]|\.\w)")
+_BODY = re.compile(r"write \[\[body\]\]")
+_NO_ACTION = "joined"  # the kind of a warning after which nothing is to be done
 _PATH = re.compile(r"(?<!\S)/(?:[^\s:]+/)+([^\s:/]+\.\w+)")
 
 
@@ -34,6 +32,8 @@ def of_model(model):
     alike = {}
     several = len(model.project.rocks) > 1
     for warning in model.warnings:
+        if warning.kind == _NO_ACTION:
+            continue
         alike.setdefault(re.sub(r"\d[\d.,e+-]*", "0", warning.text), []).append(warning)
     lines = []
     for group in alike.values():
@@ -54,22 +54,18 @@ def read(kept):
 
 def in_panel_words(text):
     """A message with the labels of the panel in the place of the keys of project files, and files by name."""
-    names = bpy.types.Scene.bl_rna.properties
-    for key in ("realmodel", "rocks", "surfaces"):
-        names = names[key].fixed_type.properties
-
-    def setting(found):
-        key = _LABELS[found[1]]
-        label = names[key].name if key in names else key
-        values = [_value(found[1], value, names) for value in found.groups()[1:] if value]
-        return f"set {label} to {' or '.join(values)}"
-
-    return _PATH.sub(lambda found: Path(found[0]).name, _SETTING.sub(setting, text))
+    text = _BODY.sub("add it as a body", _GIVEN.sub(_setting, text))
+    text = _QUOTED.sub(lambda found: found[0] if found[1] else _LABELS[found[2]], text)
+    text = _PLAIN.sub(lambda found: _LABELS[found[1]], text)
+    return _PATH.sub(lambda found: Path(found[0]).name, text)
 
 
-def _value(key, value, names):
+def _setting(found):
+    values = [_value(found[1], value) for value in found.groups()[1:] if value]
+    return f"set {_LABELS[found[1]]} to {' or '.join(values)}"
+
+
+def _value(key, value):
     value = value.strip('"[]{} ').replace('"', "")
-    if key == "method":
-        items = names["method"].enum_items
-        return items[value].name if value in items else value
-    return value or "nothing"
+    words = _SETTINGS[key].words
+    return words[value][0] if value in words else value or "nothing"

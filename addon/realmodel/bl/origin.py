@@ -12,10 +12,9 @@ import numpy as np
 
 KEY = "realmodel_origin"
 
-# An axis on which no coordinate is farther from 0 than this many extents of the model keeps its
-# own zero: float32 then loses three bits at most, and people see the coordinates they know.
+# Coordinates in plan, or heights, that are nowhere farther from 0 than this many extents of the model keep
+# their own zero: float32 then loses three bits at most, and people see the coordinates they know.
 FAR = 8.0
-
 
 TOO_FAR = 100.0  # sizes of a model: coordinates in 32 bits then have steps of a hundred-thousandth of it
 
@@ -33,8 +32,9 @@ def far_from(origin, vertices):
 def choose_origin(vertices):
     """Origin for a model with these vertices.
 
-    vertices: (V, 3) float64, model units. Returns (3,) float64: on each axis 0, or a round number
-    (a power of ten near a tenth of the extent is its step) next to the middle of the model.
+    vertices: (V, 3) float64, model units. Returns (3,) float64: in plan and in height 0, or round numbers (a
+    power of ten near a tenth of the extent is their step) next to the middle of the model. East and north
+    move together: a map coordinate beside an offset is read as two of a kind.
     """
     vertices = np.asarray(vertices, np.float64)
     if not len(vertices):
@@ -45,6 +45,7 @@ def choose_origin(vertices):
     if extent > 0.0:
         step = 10.0 ** math.floor(math.log10(extent / 5.0))
         far = np.maximum(np.abs(low), np.abs(high)) > FAR * extent
+        far[:2] = far[:2].any()
         origin[far] = np.rint((0.5 * (low + high))[far] / step) * step
     return origin
 

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..core import InputRefused
-from . import build_job, exaggeration, project_settings, shapes, viewports
+from . import build_job, data_objects, exaggeration, notices, project_settings, shapes, viewports
 from .display import visible
 
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
@@ -23,7 +23,7 @@ def forget():
 def remember(scene, error):
     """Stores the objects and triangles of a refusal of a scene's model, for `show`."""
     activity = bpy.context.window_manager.realmodel
-    activity.problem = build_job.message(error)
+    activity.problem = notices.in_panel_words(build_job.message(error))
     row = build_job.refused_surface(scene, error)
     is_given = row is not None and row.source in ("MESH_OBJECT", "TRACE_OBJECT")
     item = None if row is None else (row.object if is_given else row.interface)
@@ -35,22 +35,27 @@ def remember(scene, error):
 
 
 def has_place(context):
-    return context.window_manager.realmodel.problem_object in bpy.data.objects
+    activity = context.window_manager.realmodel
+    return bool(activity.problem_place) or activity.problem_object in bpy.data.objects
 
 
 def show(context):
-    """Selects the bad triangles of the last refusal in edit mode, or the object that it speaks of with the 3D
-    cursor at its place, and turns the viewport there.
+    """Selects the bad triangles of the last refusal in edit mode, or moves the 3D cursor to its place and
+    selects the object that it speaks of, if there is one yet; and turns the viewport there.
 
     Raises InputRefused where they are not there any more.
     """
     activity = context.window_manager.realmodel
     item = bpy.data.objects.get(activity.problem_object)
-    if item is None or item.name not in context.view_layer.objects:
+    item = None if item is None or item.name not in context.view_layer.objects else item
+    if item is None and not activity.problem_place:
         raise InputRefused("the refused surface is not in this scene any more", advice="build again")
     triangles = json.loads(activity.problem_triangles or "[]")
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
+    if item is None:
+        _show_place(context, None, json.loads(activity.problem_place))
+        return
     visible.show(context.scene, item, True)
     _open_eyes(context.view_layer.layer_collection, item)
     if not triangles:
@@ -76,14 +81,22 @@ def _select(context, item):
 
 
 def _show_place(context, item, place):
-    """place: (x, y, z), or (x, y) at the height of the object, in model coordinates."""
-    offset = np.asarray(place, np.float64) - project_settings.model_origin(context.scene)[: len(place)]
-    if len(offset) < 3:
-        offset = np.append(offset, shapes.points(item, context.evaluated_depsgraph_get())[:, 2].mean())
-    at = exaggeration.matrix(context.scene) @ np.append(offset, 1.0)
-    context.scene.cursor.location = at[:3]
-    _select(context, item)
-    _frame(context, at[None, :3], max(item.dimensions) * _FRAMED)
+    """item: the object that it is of, or None. place: (x, y, z), or (x, y) in the middle of the heights of
+    the object or of all data, in model coordinates."""
+    scene, items = context.scene, [item]
+    if item is None:
+        items = data_objects.objects(scene) + project_settings.user_objects(scene)
+    around = viewports.corners(items)
+    offset = np.zeros(3)
+    offset[: len(place)] = np.asarray(place) - project_settings.model_origin(scene)[: len(place)]
+    at = (exaggeration.matrix(scene) @ np.append(offset, 1.0))[:3]
+    if len(place) < 3 and len(around):
+        at[2] = (around[:, 2].min() + around[:, 2].max()) / 2
+    scene.cursor.location = at
+    if item is not None:
+        _select(context, item)
+    size = np.ptp(around, axis=0).max() if len(around) else 1.0
+    _frame(context, at[None], size * _FRAMED)
 
 
 def _open_eyes(layer, item):

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core.automatic_library import with_library
 from ..core.methods import CONTINUATION
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
@@ -89,7 +90,8 @@ def compose(scene, depsgraph, whole=True):
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     for number, row in enumerate(group.rocks):
-        rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
+        base = method_settings.value(row, "base_elevation", ROCK)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=borehole_picks.of_rock(row))
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(composed, number, rock, row, depsgraph, whole)
         composed.project.rocks.append(rock)
@@ -179,6 +181,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
                     setattr(surface, key, None)
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
+            structure_settings.clear_extension(surface)
             return
     if row.source == "TRACE_OBJECT":
         _trace_of_object(composed, surface, row, depsgraph)
@@ -189,6 +192,8 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored, row)
+        if row.source == "POINTS_FILE" or (path is not None and row.source != "TRACE_FILE"):
+            structure_settings.clear_extension(surface)
     else:
         kind = {"POINTS_FILE": "points", "TRACE_FILE": "trace"}.get(row.source, "mesh")
         raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
@@ -345,7 +350,9 @@ def packed_region(rock):
 
 def fill(scene, project):
     """Fills the rows from a project, in place of the present ones. project: realmodel.core.Project. Files
-    stay files; data that were read, as in `Model.project`, are stored."""
+    stay files; data that were read, as in `Model.project`, are stored. Without a library it gets one, as
+    surfaces that are imported do."""
+    project = with_library(project)
     group = scene.realmodel
     with settings.filling():
         group.rocks.clear()
@@ -359,7 +366,7 @@ def fill(scene, project):
         for rock in project.rocks:
             add_rock(group, rock)
         structure_settings.fill(scene, project)
-        group.stage = settings.last_stage(scene)
+    settings.follow_youngest(scene)
     names.know(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)

@@ -12,7 +12,7 @@ from ..core.drawing.raster import rasterize
 from ..core.surface_quality import surface_quality
 from ..core.volume_uncertainty import volume_deviations
 from ..core.work import Job
-from . import caches, settings, viewports
+from . import caches, notices, settings, viewports
 from .display import shown_models
 from .threads import threads
 
@@ -119,7 +119,7 @@ def _look():
     except Cancelled:
         pass
     except RealModelError as error:
-        bpy.context.window_manager.realmodel.problem = str(error)
+        bpy.context.window_manager.realmodel.problem = notices.in_panel_words(str(error))
     return None
 
 

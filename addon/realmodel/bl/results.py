@@ -38,10 +38,10 @@ def row_chosen(group, context):
     layer.objects.active = chosen
 
 
-def as_csv(scene):
-    """The table as text with commas, numbers in full."""
+def as_text(scene, delimiter=","):
+    """The table as text, numbers in full."""
     file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
+    writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
     writer.writerow(CSV_HEADINGS)
     names = {row.id: row.name for row in scene.realmodel.library}
     rows = scene.realmodel.results

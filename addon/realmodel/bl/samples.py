@@ -49,6 +49,11 @@ def label(name):
     return next((item[1] for item in enum_items(None, None) if item[0] == name), name)
 
 
+def description(name):
+    """What an example shows; empty where that is not known."""
+    return next((item[2] for item in enum_items(None, None) if item[0] == name), "")
+
+
 def project_file(name):
     """The project file of an example. Raises InputRefused."""
     place = folder()

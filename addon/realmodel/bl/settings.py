@@ -166,6 +166,18 @@ def last_stage(scene):
     )
 
 
+def follow_youngest(scene):
+    """The stage goes with the youngest surface, where it was there before rows were added or removed, or
+    there is no model yet."""
+    group, last = scene.realmodel, last_stage(scene)
+    before = last if group.known_last < 0 else group.known_last
+    with filling():
+        if group.stage != last and (group.stage >= min(before, last) or not len(group.results)):
+            group.stage = last
+        if group.known_last != last:
+            group.known_last = last
+
+
 def has_rows(scene):
     return any(len(rock.surfaces) for rock in scene.realmodel.rocks)
 

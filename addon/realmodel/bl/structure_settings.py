@@ -53,6 +53,19 @@ def packed_trace(fault):
     )
 
 
+def clear_extension(entry):
+    """The mesh of a fault was made from its file, as its settings say: they are not to be applied again."""
+    if isinstance(entry, Fault):
+        entry.extend, entry.stick = 0.0, None
+
+
+def forget_extension(row):
+    """The mesh that a fault's row has from now on was extended when it was made."""
+    if settings.kind_of(row) == "fault":
+        with settings.filling():
+            method_settings.set_value(row, "extend", FAULT, 0.0)
+
+
 def item_of(entry):
     """The name of a fault or a body in messages."""
     return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
@@ -93,9 +106,10 @@ def _fill_shape(row, entry, units):
         return
     if entry.vertices is None:  # points or a trace from a script or a project file
         entry = work.run(lambda task: _read_fault(task, entry, units))
-    if entry.vertices is None:
-        row.source, row.stored_trace = "TRACE_FILE", packed_trace(entry)
-        return
+        if entry.vertices is None:
+            row.source, row.stored_trace = "TRACE_FILE", packed_trace(entry)
+            return
+        forget_extension(row)
     row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
 
 

@@ -23,6 +23,7 @@ _LENGTH_UNITS = {
 _IMPERIAL = frozenset(("in", "ft", "us-ft", "yd", "mi"))
 _SYMBOLS = {"us-ft": "ft (US)"}
 _POWERS = ("", "", "²", "³")
+_LARGE = 1e11  # cubic meters
 
 
 def set_up(scene, unit):
@@ -47,7 +48,7 @@ def area_text(scene, value):
 
 def volume_text(scene, row):
     """The volume of a row without its unit, which `unit_text` gives once for a whole column."""
-    return number_text(results.volume(row) * shown_unit(scene, 3)[1])
+    return number_text(results.volume(row) * _volume_unit(scene)[1])
 
 
 def full_volume_text(scene, row):
@@ -58,7 +59,8 @@ def full_volume_text(scene, row):
 
 
 def volume_amount_text(scene, value):
-    return _text(scene, value, 3)
+    unit, factor = _volume_unit(scene)
+    return f"{number_text(value * factor)} {unit}"
 
 
 def total_volume_text(scene):
@@ -80,7 +82,15 @@ def number_text(value):
 
 def unit_text(scene, power):
     """The unit of lengths (power 1), areas or volumes, as it is shown."""
-    return shown_unit(scene, power)[0]
+    return (_volume_unit(scene) if power == 3 else shown_unit(scene, power))[0]
+
+
+def _volume_unit(scene):
+    """As shown_unit; of a large model cubic kilometers in the place of cubic meters."""
+    unit, factor = shown_unit(scene, 3)
+    view = scene.realmodel.view
+    box = math.prod(high - low for low, high in zip(view.bounds_low, view.bounds_high, strict=True))
+    return ("km³", 1e-9 * factor) if unit == "m³" and box * factor > _LARGE else (unit, factor)
 
 
 def _text(scene, value, power, number=number_text):

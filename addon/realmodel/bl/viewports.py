@@ -83,19 +83,26 @@ def frame(current, shown):
     frame_items(scene.model_objects(current, "interface") + scene.model_objects(current, "block"), shown)
 
 
+def corners(items):
+    """(8 N, 3) the corners of the boxes around N objects, where they stand."""
+    found = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
+    return np.array(found).reshape(-1, 3)
+
+
 def frame_items(items, shown):
     """Frames objects in viewports, and extends their clipping."""
-    corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
-    if not corners:
+    around = corners(items)
+    if not len(around):
         return
-    corners = np.array(corners)
-    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    middle = 0.5 * (around.min(axis=0) + around.max(axis=0))
+    diagonal = float(np.linalg.norm(np.ptp(around, axis=0)))
     for space in shown:
         space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
         space.region_3d.view_location = middle
         space.region_3d.view_distance = diagonal
         space.region_3d.view_rotation = view_rotation().to_quaternion()
+        if middle[2] < 0.0:
+            space.overlay.show_floor = False  # its lines would lie over a model below it
 
 
 def show_status():

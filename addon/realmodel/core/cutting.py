@@ -6,21 +6,21 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import Generic
 
 import numpy as np
 
+from .automatic_library import model_with_library
 from .cell_complex import CellComplex
 from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
-from .model_data import ModelData
+from .model_data import ModelData, SomeModel
 from .section import Fence, Section
 from .section_faults import traces_on_fence, traces_on_plane
 from .surface_input import checked_triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
 _CUT_SHARE = 0.97
-SomeModel = TypeVar("SomeModel", bound=ModelData)  # halves are of the class of the whole
 
 
 @dataclass(eq=False)
@@ -285,7 +285,7 @@ def _section_arrays(model: ModelData, found: dict) -> dict:
         "compartment": np.where(blocks[:, 0] >= 0, compartment[:, 0], compartment[:, 1]),
         "block_names": [entry.name for entry in model.blocks],
         "compartment_names": list(model.compartment_names),
-        "block_colors": model.block_colors,
+        "block_colors": model_with_library(model).block_colors,
         "name": model.project.name,
         "unit": model.project.units,
     }

@@ -176,7 +176,7 @@ class PartHeights:
 def local_surfaces(rock: Rock) -> set[int]:
     """The numbers of the surfaces of a rock mass that can be interpolated in parts. Surfaces that they need,
     or that other surfaces need, are included only if they have heights everywhere."""
-    found = {number for number, surface in enumerate(rock.surfaces) if _is_local(surface)}
+    found = {number for number, surface in enumerate(rock.surfaces) if is_local(surface)}
     while True:
         others = set(range(len(rock.surfaces))) - found
         asked = {each for number in others for each in needed_surfaces(rock, number)}
@@ -188,7 +188,8 @@ def local_surfaces(rock: Rock) -> set[int]:
         found -= asked | lacking
 
 
-def _is_local(surface: Surface) -> bool:
+def is_local(surface: Surface) -> bool:
+    """Whether the heights of a surface at some nodes do not depend on others."""
     if not surface.interpolated:
         return False
     method, settings = surface.method_options()

@@ -6,7 +6,7 @@ from __future__ import annotations
 import colorsys
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -185,3 +185,6 @@ class ModelData:
         begin, end = self.surface_triangle_offsets[number : number + 2]
         sheet = self.surface_triangle_sheet[begin:end]
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
+
+
+SomeModel = TypeVar("SomeModel", bound=ModelData)  # what is made of a model is of its class

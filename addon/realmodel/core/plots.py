@@ -12,18 +12,20 @@ import numpy as np
 
 from .cross_validation import CrossValidation
 from .drawing import Drawing
-from .drawing.charts import LINE, Axes
+from .drawing.charts import LINE, Axes, left_margin
 from .drawing.drawing import BLACK, GRAY
+from .units import METERS, length_text, number_text
 from .variogram import VARIOGRAMS, Variogram
 
 __all__ = ["cross_validation", "mesh_quality", "smallest_angles", "variogram"]
 
 BLUE, RED = (0.12, 0.42, 0.70), (0.80, 0.20, 0.15)
 _PAGE = (260.0, 220.0)  # points, without the words above
-_LEFT, _RIGHT, _BELOW = 46.0, 10.0, 32.0
+_RIGHT, _BELOW = 10.0, 32.0
 _SIZE = 8.0
 _MANY = 300  # points, beyond which their dots become smaller
 _MOST_DOTS = 4000
+_FAR = 10_000.0  # meters, from which on lengths are in kilometers or miles
 _BINS = np.arange(0.0, 61.0, 2.0)  # degrees
 
 
@@ -50,26 +52,33 @@ def variogram(fitted: Variogram, unit: str = "", page=_PAGE, words: bool = True)
 
 def variogram_lines(fitted: Variogram, unit: str = "") -> list[str]:
     """The values of a variogram in words, a line for each of its structures."""
-    length, square = f" {unit}" if unit else "", f" {unit}²" if unit else ""
+    square = f" {unit}²" if unit else ""
     origin = "fitted" if fitted.fitted else "given"
     if not fitted.structures:
-        texts = (f"range {fitted.range:.4g}{length}", f"sill {fitted.sill:.4g}{square}")
+        texts = (f"range {_length(fitted.range, unit)}", f"sill {number_text(fitted.sill)}{square}")
         lines = [
             f"{VARIOGRAMS[fitted.model][0]}, {origin}:",
-            ", ".join([*texts, f"nugget {fitted.nugget:.3g}{square}"]),
+            ", ".join([*texts, f"nugget {number_text(fitted.nugget)}{square}"]),
         ]
     else:
-        lines = [f"Nested, {origin}: nugget {fitted.nugget:.3g}{square}"]
+        lines = [f"Nested, {origin}: nugget {number_text(fitted.nugget)}{square}"]
         lines += [
-            f"{VARIOGRAMS[part.model][0]}: range {part.range:.4g}{length}, sill {part.sill:.4g}{square}"
+            f"{VARIOGRAMS[part.model][0]}: range {_length(part.range, unit)}, "
+            f"sill {number_text(part.sill)}{square}"
             for part in fitted.structures
         ]
     if fitted.anisotropy:
         ratio, azimuth = fitted.anisotropy["ratio"], fitted.anisotropy["azimuth"]
         lines.append(f"anisotropy {ratio:.3g}, azimuth {azimuth:.0f}°")
     if fitted.fitted:
-        lines.append("chosen by cross-validation, not by the dots alone")
+        lines.append("best in cross-validation: the dots may lie off it")
     return lines
+
+
+def _length(value: float, unit: str) -> str:
+    if unit in METERS and value * float(METERS[unit]) >= _FAR:
+        return length_text(value, unit)
+    return f"{number_text(value)} {unit}".rstrip()
 
 
 def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
@@ -141,10 +150,12 @@ def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
     """Axes on a page of their own, with lines of text above if requested."""
     above = LINE * _SIZE * len(lines) if words else 0.0
     drawing = Drawing(page[0], page[1] + above)
+    height = page[1] - _BELOW - _SIZE
+    left = left_margin(y_range, height, _SIZE)
     if words:
         for number, text in enumerate(lines, 1):
-            drawing.text(_LEFT, drawing.height - LINE * _SIZE * number, text, _SIZE)
-    box = (_LEFT, _BELOW, page[0] - _LEFT - _RIGHT, page[1] - _BELOW - _SIZE)
+            drawing.text(left, drawing.height - LINE * _SIZE * number, text, _SIZE)
+    box = (left, _BELOW, page[0] - left - _RIGHT, height)
     return Axes(drawing, box, x_range, y_range, _SIZE)
 
 

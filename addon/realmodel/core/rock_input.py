@@ -13,6 +13,7 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .distant_points import require_points_near
+from .doubtful_heights import doubtful_heights
 from .errors import InputRefused, number_list
 from .heights import Interpolation
 from .mapped_arrays import Keep, as_it_is
@@ -32,6 +33,7 @@ from .surface_heights import (
 )
 from .surface_input import Reader, SurfaceInput, read_each
 from .work import Work, run
+from .wrong_order import points_above_younger
 from .wrong_sides import points_too_low
 
 if TYPE_CHECKING:
@@ -122,7 +124,7 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         for surface in rock.surfaces:
             met = picks.points.pop(surface.name, None) if surface.interpolated else None
             asked.append(SurfaceInput.of(rock, surface, met, project.units))
-        rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes))
+        rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes or rock.hole_picks))
         all_warnings.append((warnings, _unnamed(rock, picks)))
     found = dict(reader(work, asked))
     inputs, first = [], 0
@@ -282,6 +284,8 @@ def interpolate_rock(
         plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
         for number in flat:
             entry.surfaces[number] = plan
+    if not flat and entry.draws is None:
+        entry.warnings += points_above_younger(entry.rock, waiting)
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
@@ -292,3 +296,5 @@ def interpolate_rock(
             del entry.attributes[number]
     if not flat:
         entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
+        if keep is as_it_is:  # tiles have no such warnings
+            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)

@@ -232,9 +232,11 @@ FAULT = {
         0.0,
         kind="length",
         label="Extend",
-        tip="Distance by which the fitted surface continues beyond its points, or the trace beyond its ends",
+        tip="Distance by which the mesh continues beyond its border, the fitted surface beyond its points, "
+        "or the trace beyond its ends",
         low=0.0,
-        more="Default 0; a trace goes through the rock then, unless the fault dies out",
+        more="In its own plane; of a fault that dies out up and down the dip only, of its trace along that. "
+        "Default 0; a trace goes through the rock then, unless the fault dies out",
     ),
     "trace": _OTHER,
     "dip": Setting(

@@ -4,16 +4,35 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
 from .heights import Interpolation, chosen, heights
-from .methods import SURFACE_OPTIONS
+from .heights.interpolation import Task
+from .heights.on_mesh import within_bounds
+from .heights.run import elsewhere
+from .heights.surface_reference import heights_of
+from .methods import SURFACE_OPTIONS, checked_options
+from .mis_ties import without_mis_ties
 from .project import Rock, surface_item
 from .work import Work, native_module
 from .wrong_sides import Triangulation, heights_at, listed
+
+
+class Trend(NamedTuple):
+    """What the few points of a surface, or none, are interpolated on. sheet: it; z: (N,) its heights at the
+    nodes of the planar mesh, NaN where it has none. interpolation, attributes: of the points that it was made
+    from. method, options: by which what points differ from it is interpolated."""
+
+    sheet: Triangulation
+    z: np.ndarray
+    interpolation: Interpolation
+    attributes: dict[str, np.ndarray]
+    method: str
+    options: dict
 
 
 def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -74,18 +93,24 @@ def _vertex_attributes(
     return {"variance": variance[kept], "distance": distance[kept]}
 
 
-def give_heights(work: Work, entry, number: int, threads: int) -> None:
-    """Interpolates one surface of a RockInput on the mesh of its region, and keeps it above the older one
-    where it has a minimum thickness."""
+def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | None = None) -> None:
+    """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
+    keeps it above the older one where it has a minimum thickness."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     nodes, triangles = entry.region
     method, settings = surface.method_options()
     others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
-        give = heights if entry.draws is None else entry.draws[number].heights
-        result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
+        if trend is not None:
+            result = _on_trend(work, entry, number, trend, others, threads)
+        else:
+            give = heights if entry.draws is None else entry.draws[number].heights
+            result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
         shape = where_known(nodes, triangles, result.z)
-        attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
+        if trend is not None and not len(surface.points):
+            attributes = trend.attributes
+        else:
+            attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
             warnings += _older_points_above(work, rock, number, shape, threads)
@@ -98,6 +123,30 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
     entry.interpolations[number] = result
     entry.attributes[number] = attributes
     entry.warnings += warnings
+
+
+def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, threads: int) -> Interpolation:
+    """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
+    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.region
+    points, mis_ties = without_mis_ties(surface.points)
+    away = points.copy()
+    away[:, 2] -= heights_at(work, trend.sheet, points[:, :2], threads)
+    away = away[np.isfinite(away[:, 2])]
+    result = replace(trend.interpolation, z=trend.z)
+    if len(away):
+        give = heights
+        if entry.draws is not None:  # the trend is drawn, too: nothing is the same in the next realization
+            give = replace(entry.draws[number], known={}).heights
+        settings = checked_options(trend.method, trend.options)
+        result = give(work, away, nodes, trend.method, settings, threads, triangles, {})
+        result = replace(result, z=trend.z + result.z)
+    task = Task(work, points, nodes, surface.method_options()[1], threads, triangles, surfaces=others)
+    border = result.z
+    if task.settings.get("border") is not None:
+        given = heights_of(task, task.settings["border"], nodes, "border")
+        border = np.where(np.isfinite(given), given, border)
+    warnings = [*([mis_ties] if mis_ties else []), *elsewhere(points, nodes)]
+    return replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
 
 
 def _older_points_above(

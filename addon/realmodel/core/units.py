@@ -36,6 +36,11 @@ def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
     return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
 
 
+def number_text(value: float) -> str:
+    """A number of four digits, or of all before the point: "86,820"."""
+    return f"{value:,.0f}" if 1000.0 <= abs(value) < 1e15 else f"{value:.4g}"
+
+
 def length_text(value: float, unit: str) -> str:
     """A length in a unit for a person: "3,430 km"."""
     long = "mi" if unit in ("in", "ft", "us-ft", "yd", "mi") else "km"

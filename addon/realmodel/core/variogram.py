@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .units import number_text
+
 # f(t) of each model, t = h / range. The factors of the last two make f(1) = 0.95.
 _A, _B = 4.743864518390579, 5.918649346310188
 _SHAPES = {
@@ -167,8 +169,8 @@ def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = Fal
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the range of the fitted variogram, {variogram.range:.4g}, far exceeds the extent of the "
-            f"points, {extent:.4g}: its sill, and variances far from points, are extrapolated; the heights "
-            "may follow a trend: try universal kriging"
+            f"the range of the fitted variogram, {number_text(variogram.range)}, far exceeds the extent of "
+            f"the points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; "
+            "the heights may follow a trend: try universal kriging"
         )
     return warnings

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects with many arrays in a file that runs no code when it is read, as one of pickle would."""
+"""The window of a tile in a file. Reading it runs no code of the file, as pickle would, and makes objects of
+known classes only."""
 
 from __future__ import annotations
 
-import importlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -11,16 +11,24 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ..core import BuildFailed
+from ..core import Body, BuildFailed, BuildWarning, Fault, InputRefused, Rock, Surface
 from ..core.mapped_arrays import read_mapped, write_mapped
+from ..core.rock_input import RockInput
+from ..core.structures.parts import Structures
+from ..core.structures.reach import Reach
+from ..core.structures.rock_structure import RockStructure
+from ..core.structures.sides import FaultShape, RockFaults
+from ..core.structures.windows import Window
 
-_PACKAGE = __package__.partition(".")[0]
+_STORED = (Window, RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body)
+_STORED += (Reach, BuildWarning, InputRefused)
+_CLASSES = {kind.__name__: kind for kind in _STORED}
 _OBJECTS = "objects"  # the table of objects, as JSON; arrays have numbers for names
 _ARRAY, _PATH, _LIST, _TUPLE, _DICT = "array", "path", "list", "tuple", "dict"
 
 
 def write_object(value: object, file: BinaryIO) -> None:
-    """Writes a value of this package's classes, lists, tuples, dicts, paths, arrays, numbers and texts.
+    """Writes a value of these classes, lists, tuples, dicts, paths, arrays, numbers and texts.
 
     What is one object in several places is one again when it is read.
     """
@@ -52,12 +60,11 @@ def write_object(value: object, file: BinaryIO) -> None:
             return [_LIST if kind is list else _TUPLE, [number_of(each) for each in value]]
         if kind is dict:
             return [_DICT, [[number_of(key), number_of(each)] for key, each in value.items()]]
-        if not kind.__module__.startswith(f"{_PACKAGE}."):
+        if kind not in _STORED:
             raise TypeError(f"{kind} cannot be written")
-        name = f"{kind.__module__.removeprefix(_PACKAGE)}:{kind.__qualname__}"
         if isinstance(value, tuple):
-            return [name, [number_of(each) for each in value]]
-        return [name, [[key, number_of(each)] for key, each in vars(value).items()]]
+            return [kind.__name__, [number_of(each) for each in value]]
+        return [kind.__name__, [[key, number_of(each)] for key, each in vars(value).items()]]
 
     root = number_of(value)
     text = json.dumps([table, root]).encode()
@@ -77,12 +84,12 @@ def read_object(path: Path) -> Any:
         for kind, content in table:
             found.append(_made(kind, content, arrays, value_of))
         return value_of(root)
-    except (KeyError, IndexError, ValueError, TypeError, AttributeError, ImportError) as error:
+    except (KeyError, IndexError, ValueError, TypeError) as error:
         raise BuildFailed(f"{path}: cannot be read; delete it and start again") from error
 
 
 def _made(kind: str, content: Any, arrays: dict[str, np.ndarray], value_of: Callable[[Any], Any]) -> Any:
-    """An object of an entry; no constructor runs."""
+    """An object of an entry; no constructor runs but that of a tuple."""
     if kind == _ARRAY:
         return arrays[content]
     if kind == _PATH:
@@ -92,14 +99,9 @@ def _made(kind: str, content: Any, arrays: dict[str, np.ndarray], value_of: Call
         return values if kind == _LIST else tuple(values)
     if kind == _DICT:
         return {value_of(key): value_of(each) for key, each in content}
-    module, _, name = kind.partition(":")
-    made: Any = importlib.import_module(module, _PACKAGE) if module.startswith(".") else None
-    for part in name.split("."):
-        made = getattr(made, part)
-    if not isinstance(made, type) or not made.__module__.startswith(f"{_PACKAGE}."):
-        raise TypeError(f"{kind} is no class of {_PACKAGE}")
+    made: Any = _CLASSES[kind]
     if issubclass(made, tuple):
-        return tuple.__new__(made, [value_of(each) for each in content])
-    instance = object.__new__(made)
+        return made(*(value_of(each) for each in content))
+    instance = made.__new__(made)
     vars(instance).update((key, value_of(each)) for key, each in content)
     return instance

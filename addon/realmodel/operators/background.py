@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import build_job, viewports
+from ..bl import build_job, notices, viewports
 from ..core import Cancelled, RealModelError
 from .reporting import Reporting
 
@@ -99,7 +99,7 @@ class InBackground(Reporting):
         viewports.redraw()
 
     def _refused(self, context, error):
-        self.report({"ERROR"}, build_job.message(error))
+        self.report({"ERROR"}, notices.in_panel_words(build_job.message(error)))
         self.refused(context, error)
         viewports.redraw()
         return {"CANCELLED"}

@@ -59,7 +59,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
     add_surfaces: BoolProperty(
         name="Add Surfaces",
-        description="Add surfaces that are named in the table but not in the list, the lowest first",
+        description="Add surfaces that are named in the table but not in the list, the oldest first",
         default=True,
     )
 
@@ -81,7 +81,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
-        warnings = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
+        warnings = borehole_points.give(context.scene, rock, found, self.add_surfaces)
         borehole_picks.keep(rock, found.holes)
         arrived(context, rock, list(found.points.values()))
         for text in [*found.warnings, *warnings]:

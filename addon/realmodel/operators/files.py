@@ -290,7 +290,7 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
         model = None if is_table else shown_models.whole(context.scene)
         with Outputs() as outputs, outputs.file(path) as file:
             if is_table:
-                file.write(results.as_csv(context.scene).encode())
+                file.write(results.as_text(context.scene).encode())
             else:
                 write_report(model, path, file)
 

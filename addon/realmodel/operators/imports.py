@@ -23,6 +23,7 @@ from ..bl import (
     viewports,
 )
 from ..core import InputRefused, MeshFile, PointFile
+from ..core.age_order import age_order
 from ..core.errors import HeightsMissing
 from ..core.point_file import ReadingRefused
 from ..core.readers import (
@@ -194,7 +195,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                         yield preview_table(path)
 
     def _given(self, context):
-        """The surfaces to add, the lowest first, and warnings about them. Raises InputRefused."""
+        """The surfaces to add, the oldest first, and warnings about them. Raises InputRefused."""
         if self.use_object:
             item = context.active_object
             if item is None or item.type != "MESH":
@@ -212,9 +213,11 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                 found.append(surface)
         if len(found) == 1:
             found[0].name = self.name.strip() or found[0].name
-        elif all(surface.places is not None for surface in found):
-            found.sort(key=lambda surface: float(surface.places[:, 2].mean()))
-        return found, warnings
+            return found, warnings
+        names = [surface.name for surface in found]
+        order = age_order(names, [surface.places for surface in found])
+        warnings += [text] if (text := order.warning(names)) else []
+        return [found[number] for number in order.order], warnings
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
@@ -279,19 +282,22 @@ def _draw_preview(box, preview):
 
 
 def arrived(context, rock, places, read=None):
-    """Updates the scene for new data of a rock mass: the origin if there is none, an edge length, the display
-    and the view. places: arrays (N, 3) in model coordinates. read: as for data_objects.update."""
+    """Updates the scene for new data of a rock mass (None: of a fault): the origin if there is none, an edge
+    length, the display and the view. places: arrays (N, 3) in model coordinates. read: as for
+    data_objects.update."""
     scene = context.scene
     if places:
         points = np.concatenate(places)
         data_objects.begin(scene, points)
-        plan_mesh.propose_edge_length(rock, points)
+        if rock is not None:
+            plan_mesh.propose_edge_length(rock, points)
     with settings.filling():
         scene.realmodel.show_data = scene.realmodel.show_data or bool(places)
     data_objects.update(scene, read)
     if places and not len(scene.realmodel.results):
         context.view_layer.update()
-        viewports.frame_items(data_objects.objects(scene), viewports.spaces(context))
+        shown = data_objects.objects(scene) + project_settings.user_objects(scene)
+        viewports.frame_items(shown, viewports.spaces(context))
     live.touch(scene)
 
 

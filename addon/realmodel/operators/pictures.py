@@ -54,7 +54,7 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
         found = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
         picture.set_up(
             scene,
-            viewpoints.model_points(scene),
+            viewpoints.model_points(scene, cut=True),
             _size(scene),
             None if found is None else found[2],
             left=overlay.legend_share(scene, _size(scene)),
@@ -84,7 +84,7 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
     def act(self, context):
         scene = context.scene
         left = overlay.legend_share(scene, _size(scene))
-        points = viewpoints.model_points(scene)
+        points = viewpoints.model_points(scene, cut=True)
         animation.turntable(scene, points, _size(scene), self.frames, self.elevation, left)
         picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
         self.report({"INFO"}, f"Frames {scene.frame_start} to {scene.frame_end}")

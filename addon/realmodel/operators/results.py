@@ -8,15 +8,15 @@ from .reporting import Reporting, a_model
 
 
 class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
-    """Copy the table of blocks to the clipboard as CSV, for a spreadsheet"""
+    """Copy the table of blocks to the clipboard, to be pasted into a spreadsheet"""
 
     bl_idname = "realmodel.copy_table"
-    bl_label = "Copy Table as CSV"
+    bl_label = "Copy Table"
     bl_options = {"REGISTER"}
     needs = (a_model,)
 
     def act(self, context):
-        context.window_manager.clipboard = results.as_csv(context.scene)
+        context.window_manager.clipboard = results.as_text(context.scene, "\t")
         self.report({"INFO"}, f"Copied {len(context.scene.realmodel.results)} rows")
 
 

@@ -49,7 +49,6 @@ class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
         with settings.filling():
             group.rocks.remove(list(group.rocks).index(row))
             group.active_rock = max(0, min(group.active_rock, len(group.rocks) - 1))
-            group.stage = settings.last_stage(scene)
         data_objects.update(scene)
         live.touch(scene)
 

@@ -26,11 +26,14 @@ def _show(operator, context, made):
     operator.report({"INFO"}, f"Section made: see {made.name}{hidden}")
 
 
+def _is_given(operator):
+    return any(operator.properties.is_property_set(key) for key in ("location", "normal"))
+
+
 def _plane_of(operator, context):
     """The point and the normal given to an operator, else those of the section plane."""
     scene = context.scene
-    given = any(operator.properties.is_property_set(key) for key in ("location", "normal"))
-    if given:
+    if _is_given(operator):
         if not any(operator.normal):
             raise UsageError("the normal is zero: give the direction that is normal to the plane")
         return tuple(operator.location), tuple(operator.normal)
@@ -41,7 +44,26 @@ def _plane_of(operator, context):
     return tuple(point - project_settings.model_origin(scene)), normal
 
 
-_PLACE = place_property("A point of the plane, in the coordinates of the scene")
+def _draw_plane(operator, context):
+    """The point and the normal that an operator was given, or where the section plane is."""
+    layout, scene = operator.layout, context.scene
+    layout.use_property_split = True
+    if _is_given(operator):
+        is_near = not project_settings.model_origin(scene).any()
+        layout.prop(operator, "location", text="Location" if is_near else "From Origin")
+        layout.prop(operator, "normal")
+    elif cuts.plane_of(scene) is not None:
+        point, normal = cuts.plane_in_model(scene)
+        column = layout.column(align=True)
+        column.label(text="Section plane at")
+        for name, value in zip(("East (x)", "North (y)", "Height (z)"), point, strict=True):
+            column.label(text=f"{name}  {value:.3f}")
+        column.label(text="Normal  {:.3f}  {:.3f}  {:.3f}".format(*normal.round(3) + 0.0))
+
+
+_PLACE = place_property(
+    "A point of the plane, in the coordinates of the scene: those of the model less its origin"
+)
 _NORMAL = FloatVectorProperty(
     name="Normal",
     description="Normal of the plane",
@@ -61,6 +83,10 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     location: _PLACE
     normal: _NORMAL
     flat: BoolProperty(name="Flat", description=_FLAT)
+
+    def draw(self, context):
+        self.layout.prop(self, "flat")
+        _draw_plane(self, context)
 
     def act(self, context):
         found = sections.by_plane(context.scene, *_plane_of(self, context))
@@ -114,6 +140,13 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
         if not self.properties.is_property_set("exaggeration"):
             self.exaggeration = exaggeration.factor(context.scene)
         return super().invoke(context, event)
+
+    def draw(self, context):
+        for name in ("format", "along"):
+            self.layout.prop(self, name)
+        if self.along == "PLANE":
+            _draw_plane(self, context)
+        self.layout.prop(self, "exaggeration")
 
     def write(self, context, path):
         if self.along == "PLANE":

@@ -162,6 +162,10 @@ class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
     sample: EnumProperty(name="Example", description="Which of them", items=samples.enum_items)
     build: BoolProperty(name="Build", description="Build the model as soon as it is opened", default=True)
 
+    @classmethod
+    def description(cls, _context, properties):
+        return samples.description(properties.sample) if properties.is_property_set("sample") else ""
+
     def act(self, context):
         _open(context.scene, samples.project_file(self.sample))
         if self.build:

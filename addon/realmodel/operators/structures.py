@@ -16,6 +16,7 @@ from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_fil
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.structures.traces import VERTICAL
 from ..core.structures.triangles import open_edges
+from .imports import arrived
 from .reporting import (
     Reporting,
     a_body,
@@ -178,9 +179,8 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             row = _add(scene, kind, path.stem, source)
             with settings.filling():
                 row.filepath = str(path)
-                scene.realmodel.show_data |= source == "TRACE_FILE"
-        data_objects.update(scene)
-        live.touch(scene)
+        of_data = ("POINTS_FILE", "TRACE_FILE")
+        arrived(context, None, [places for _, source, _, places in found if source in of_data])
         self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
 
     def _paths(self):

@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import EnumProperty
 
-from ..bl import built_scene, data_objects, library_rows, live, settings
+from ..bl import borehole_picks, built_scene, data_objects, library_rows, live, settings
+from ..core.age_order import age_order
 from .reporting import Reporting, a_surface
 
 
@@ -24,7 +25,6 @@ class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
             built_scene.release_surface(scene, row)
             rock.surfaces.remove(number)
             rock.active_surface = max(0, min(number, len(rock.surfaces) - 1))
-            scene.realmodel.stage = min(scene.realmodel.stage, settings.last_stage(scene))
         data_objects.update(scene)
         live.touch(scene)
 
@@ -80,6 +80,34 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
+    """Sort the surfaces of the rock mass by age, as their points show it: the older one is the lower one at
+    the same places. Where points do not decide, by name"""
+
+    bl_idname = "realmodel.surface_sort"
+    bl_label = "Sort Surfaces"
+    needs = (a_surface,)
+
+    def act(self, context):
+        scene, rock = context.scene, settings.active_rock(context.scene)
+        depsgraph = context.evaluated_depsgraph_get()
+        names = [row.name for row in rock.surfaces]
+        points = [data_objects.row_points(scene, row, depsgraph) for row in rock.surfaces]
+        found = age_order(names, points, borehole_picks.of_rock(rock))
+        now, active = list(range(len(names))), rock.active_surface
+        for target, number in enumerate(found.order):
+            rock.surfaces.move(now.index(number), target)
+            now.insert(target, now.pop(now.index(number)))
+        rock.active_surface = now.index(active) if active in now else 0
+        live.touch(scene)
+        if (text := found.warning(names)) is not None:
+            self.report({"WARNING"}, text)
+        if list(found.order) == sorted(found.order):
+            self.report({"INFO"}, "The surfaces were in this order already")
+            return
+        self.report({"INFO"}, f"Oldest first: {', '.join(names[number] for number in found.order)}")
+
+
 class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):
     """Hide the active surface's interface in the viewport, or show it again; it is built all the same"""
 
@@ -122,6 +150,7 @@ CLASSES = (
     REALMODEL_OT_surface_remove,
     REALMODEL_OT_surface_copy,
     REALMODEL_OT_surface_move,
+    REALMODEL_OT_surface_sort,
     REALMODEL_OT_surface_hide,
     REALMODEL_OT_surface_property,
 )

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import method_settings, notices, settings
+from ..bl import method_settings, notices, problems, settings
 from .panel import OfAModel, TabPanel, hint, letters, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
@@ -25,6 +25,8 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
             row.prop(group, "live", toggle=True, icon="RECOVER_LAST")
+            if group.is_outdated and not group.live:
+                layout.label(text="Changed since it was built", icon="ERROR")
             _draw_missing(layout, group)
         else:
             hint(layout, "Add surfaces first; then the blocks between them are built here.")
@@ -64,12 +66,12 @@ def _draw_missing(layout, group):
 def _draw_problem(box, activity):
     box.alert = True
     row = box.row()
-    lines = wrapped(notices.in_panel_words(activity.problem), taken=_ICON)
+    lines = wrapped(activity.problem, taken=_ICON)
     column = row.column(align=True)
     for line in lines:
         column.label(text=line)
     row.operator("realmodel.dismiss", text="", icon="X", emboss=False)
-    if activity.problem_object:
+    if problems.has_place(bpy.context):
         box.operator("realmodel.show_problem", icon="VIEWZOOM")
 
 

@@ -70,10 +70,11 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
 
 def _draw_fault(layout, fault):
     if fault.source in settings.TRACES:
-        for key in ("dip", "dip_direction", "elevation", "extend"):
+        for key in ("dip", "dip_direction", "elevation"):
             setting_rows.draw(layout, fault, key, FAULT)
     setting_rows.draw(layout, fault, "youngest", FAULT)
     setting_rows.draw(layout, fault, "dies_out", FAULT)
+    setting_rows.draw(layout, fault, "extend", FAULT)
     _draw_names(layout, fault, "ends_at", "Ends At")
     _draw_names(layout, fault, "rocks", "Rock Masses")
 
@@ -117,8 +118,8 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
                 setting_rows.draw(layout, entry, key, READING)
             return
         is_trace = entry.source == "TRACE_FILE"
-        for key in () if is_trace else ("extend", "stick"):
-            setting_rows.draw(layout, entry, key, FAULT)
+        if not is_trace:
+            setting_rows.draw(layout, entry, "stick", FAULT)
         for key in READING:
             if is_trace and key in ("columns", "separator", "decimal"):
                 continue

@@ -30,6 +30,7 @@ class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
         buttons.separator()
         buttons.operator("realmodel.surface_move", text="", icon="TRIA_UP").direction = "UP"
         buttons.operator("realmodel.surface_move", text="", icon="TRIA_DOWN").direction = "DOWN"
+        buttons.operator("realmodel.surface_sort", text="", icon="SORTSIZE")
         if not len(rock.surfaces):
             hint(
                 layout,

@@ -4,8 +4,8 @@
 import bpy
 
 from .. import props_stage
-from ..bl import compartments, library_rows, settings, units
-from ..bl.display import coordinates, cuts, modes, preparing, residuals
+from ..bl import compartments, library_rows, project_settings, settings, units
+from ..bl.display import coordinates, cuts, modes, preparing, residuals, viewpoints
 from .panel import OfABuiltModel, TabPanel, hint, wrapped
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
@@ -18,7 +18,10 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, group):
         column = layout.column(align=True)
-        column.prop(group, "display", text="Show")
+        row = column.row(align=True)
+        row.prop(group, "display", text="Show")
+        if preparing.is_working(context.scene):  # beside it: a line of its own would move all below it
+            row.label(icon="SORTTIME")
         if group.display in _WITH_SUBJECT:
             column.prop(group.view, "subject")
         if group.display == "SURFACES":
@@ -27,8 +30,6 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         if group.color_by == "UNCERTAINTY" and group.view.shade_limits[1] == 0.0:
             hint(layout, "No surface has a standard deviation. Kriging computes one.")
         _stage(layout, context.scene)
-        if preparing.is_working(context.scene):
-            hint(layout, "being made ...")
         column = layout.column(align=True)
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
@@ -127,15 +128,22 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
                 "realmodel.section_plane", "axis", text="Add Section Plane", icon="MESH_PLANE"
             )
         else:
-            layout.prop(view, "use_section")
-            layout.prop(plane, "location")
+            row = layout.row(align=True)
+            row.prop(view, "use_section")
+            if cuts.is_working(scene):
+                row.label(icon="SORTTIME")
+            column = layout.column(align=True)
+            if project_settings.model_origin(scene).any():
+                for name in ("plane_x", "plane_y", "plane_z"):
+                    column.prop(view, name)
+                column.prop(plane, "location", text="Offset")
+            else:
+                column.prop(plane, "location")
             layout.prop(plane, "rotation_euler", text="Rotation")
             row = layout.row(align=True)
             row.operator_menu_enum("realmodel.section_plane", "axis", text="Turn To")
             row.operator("realmodel.section_flip", text="Flip", icon="ARROW_LEFTRIGHT")
             row.operator("realmodel.section_remove", text="", icon="X")
-            if cuts.is_working(scene):
-                hint(layout, "cutting ...")
         layout.prop(view, "plane", text="Plane")
         if plane is not None:
             _section_buttons(layout, "section", "PLANE", "Save Section...")
@@ -175,7 +183,9 @@ class REALMODEL_PT_view_picture(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_parent_id = "REALMODEL_PT_view"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw_in(self, layout, _context, _group):
+    def draw_in(self, layout, context, _group):
+        if not viewpoints.camera_sees(context.scene):
+            hint(layout, "F12 would not show the model: its camera looks elsewhere, or there is none.")
         layout.operator("realmodel.set_up_picture", icon="LIGHT_SUN")
         layout.operator("realmodel.render_picture", icon="RENDER_STILL")
         row = layout.row(align=True)

@@ -63,9 +63,9 @@ void thin_out(std::vector<SizeSource>& sources, double finest) {
 
 }  // namespace
 
-std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField& size,
-                                      double least_angle, double shortest_edge,
-                                      std::size_t most_vertices, const Check& check) {
+std::vector<SizeSource> border_detail(const RegionGraph& graph, SizeField& size, double least_angle,
+                                      double shortest_edge, std::size_t most_vertices,
+                                      const Check& check) {
     constexpr double kShortShare = 0.7;  // cut_border's own pieces are hardly shorter than that
     FlatMesh mesh = mesh_without_lattice(graph, cut_border(graph, size, shortest_edge, check),
                                          shortest_edge, check);

@@ -12,8 +12,8 @@ namespace realmodel::meshing {
 /// Where border, inner lines and points are too close to one another for edges as long as `size`
 /// wants: the short pieces that a coarse refinement without regard to size leaves there, whose
 /// lengths follow the local feature size (Ruppert 1995, theorem 1).
-std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField& size,
-                                      double least_angle, double shortest_edge,
-                                      std::size_t most_vertices, const Check& check);
+std::vector<SizeSource> border_detail(const RegionGraph& graph, SizeField& size, double least_angle,
+                                      double shortest_edge, std::size_t most_vertices,
+                                      const Check& check);
 
 }  // namespace realmodel::meshing

@@ -23,7 +23,7 @@ double length_of(const RegionGraph& graph, const Segment& edge) {
 
 /// For each point the distance at which its edges are cut because two of them meet at a sharp angle
 /// inside the region; 0 where none do.
-std::vector<double> tip_lengths(const RegionGraph& graph, const SizeField& size) {
+std::vector<double> tip_lengths(const RegionGraph& graph, SizeField& size) {
     struct Spoke {
         std::int32_t corner;
         double direction;
@@ -78,7 +78,7 @@ std::size_t piece_count(double lengths) {
 
 /// Shares of the way from a to b, between `begin` and `end`, at which to cut.
 std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, double end,
-                         const SizeField& size) {
+                         SizeField& size) {
     std::vector<double> shares;
     if (begin > 0) shares.push_back(begin);
     const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
@@ -226,7 +226,7 @@ private:
 
 }  // namespace
 
-BorderPieces cut_border(const RegionGraph& graph, const SizeField& size, double finest,
+BorderPieces cut_border(const RegionGraph& graph, SizeField& size, double finest,
                         const Check& check) {
     const std::vector<double> tips = tip_lengths(graph, size);
     return Cutter(graph, finest, check).run([&](const Segment& edge) {

@@ -24,7 +24,7 @@ struct BorderPieces {
 /// most 1.4 of it. Around a corner sharper than 60 degrees all edges are first cut at one distance
 /// from it, so that the triangle at the tip has two equal edges (Ruppert 1995, section 7, "corner
 /// lopping" by concentric circles). `finest`: pieces half as long will not be cut again.
-BorderPieces cut_border(const RegionGraph& graph, const SizeField& size, double finest,
+BorderPieces cut_border(const RegionGraph& graph, SizeField& size, double finest,
                         const Check& check);
 
 /// Cuts every edge where it crosses the lines of a grid of squares, but for cuts nearer than

@@ -21,7 +21,7 @@ enum State : std::uint8_t { kWaiting, kActive, kAccepted };
 
 class Front {
 public:
-    Front(FlatMesh& mesh, const SizeField& size, std::size_t most_vertices, const Check& check)
+    Front(FlatMesh& mesh, SizeField& size, std::size_t most_vertices, const Check& check)
         : mesh_(mesh), size_(size), most_vertices_(most_vertices), check_(check) {}
 
     void run(std::int32_t first) {
@@ -155,7 +155,7 @@ private:
     }
 
     FlatMesh& mesh_;
-    const SizeField& size_;
+    SizeField& size_;
     std::size_t most_vertices_;
     const Check& check_;
     Encroachment encroachment_;
@@ -166,8 +166,8 @@ private:
 
 }  // namespace
 
-void advance_front(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-                   std::size_t most_vertices, const Check& check) {
+void advance_front(FlatMesh& mesh, SizeField& size, std::int32_t first, std::size_t most_vertices,
+                   const Check& check) {
     Front(mesh, size, most_vertices, check).run(first);
 }
 

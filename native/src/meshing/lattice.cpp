@@ -168,7 +168,7 @@ private:
 /// Fills the rows of a lattice between the crossings of the border with them.
 class RowFiller {
 public:
-    RowFiller(const LatticeFrame& frame, const SizeField& size, double edge_length, double room,
+    RowFiller(const LatticeFrame& frame, SizeField& size, double edge_length, double room,
               const Check& check)
         : map_{frame},
           frame_(frame),
@@ -294,7 +294,7 @@ private:
 
     FrameMap map_;
     const LatticeFrame& frame_;
-    const SizeField& size_;
+    SizeField& size_;
     double edge_length_, room_;
     const Check& check_;
     std::size_t seen_ = 0;
@@ -390,7 +390,7 @@ LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
 }
 
 Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
-                       const LatticeFrame& frame, const SizeField& size, double edge_length,
+                       const LatticeFrame& frame, SizeField& size, double edge_length,
                        double clearance, const Check& check) {
     RowFiller filler(frame, size, edge_length, clearance * edge_length, check);
     filler.keep_off_border(border, loners);

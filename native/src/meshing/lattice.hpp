@@ -35,7 +35,7 @@ struct Lattice {
 /// where something might. Time and memory grow with the points made and the pieces, not with the
 /// bounding box.
 Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
-                       const LatticeFrame& frame, const SizeField& size, double edge_length,
+                       const LatticeFrame& frame, SizeField& size, double edge_length,
                        double clearance, const Check& check);
 
 }  // namespace realmodel::meshing

@@ -30,8 +30,7 @@ struct BadTriangle {
 
 class Refinement {
 public:
-    Refinement(FlatMesh& mesh, const RefinementTarget& target, const SizeField& size,
-               const Check& check)
+    Refinement(FlatMesh& mesh, const RefinementTarget& target, SizeField& size, const Check& check)
         : mesh_(mesh),
           target_(target),
           size_(size),
@@ -119,7 +118,7 @@ private:
 
     FlatMesh& mesh_;
     RefinementTarget target_;
-    const SizeField& size_;
+    SizeField& size_;
     double least_sine2_;
     const Check& check_;
     Encroachment encroachment_;
@@ -139,8 +138,8 @@ void require_room(const FlatMesh& mesh, std::size_t most_vertices) {
                      -1, {}, std::array{p[0], p[1], 0.0});
 }
 
-void refine(FlatMesh& mesh, const RefinementTarget& target, const SizeField& size,
-            std::int32_t first, std::span<const std::int32_t> also, const Check& check) {
+void refine(FlatMesh& mesh, const RefinementTarget& target, SizeField& size, std::int32_t first,
+            std::span<const std::int32_t> also, const Check& check) {
     Refinement(mesh, target, size, check).run(first, also);
 }
 

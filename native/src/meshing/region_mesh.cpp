@@ -108,9 +108,11 @@ public:
 
     MeshEstimate estimate() {
         fitting_ = kMostTriangles;  // it is the caller who asks whether it fits
-        const double triangles = request_.triangles > 0
-                                     ? request_.triangles
-                                     : triangles_of(unchecked_field(longest(), 1));
+        double triangles = request_.triangles;
+        if (triangles <= 0) {
+            SizeField size = unchecked_field(longest(), 1);
+            triangles = triangles_of(size);
+        }
         return {triangles, triangles * kBytesPerTriangle};
     }
 
@@ -170,7 +172,7 @@ private:
 
     std::size_t most_vertices() const { return static_cast<std::size_t>(fitting_ / 2); }
 
-    double triangles_of(const SizeField& size) const {
+    double triangles_of(SizeField& size) const {
         return triangles_in(graph_, size, step(0.01, 0.01, "sizing the triangles")) +
                2 * estimate_pieces(graph_, size.largest());
     }
@@ -220,9 +222,9 @@ private:
                                           ": use longer ones, or shorter distances");
     }
 
-    BandedMesh first_mesh(const SizeField& size, double finest, const Check& cutting,
+    BandedMesh first_mesh(SizeField& size, double finest, const Check& cutting,
                           const Check& placing, const Check& joining) const;
-    PlanarMesh mesh(const SizeField& size, double begin, double end) const;
+    PlanarMesh mesh(SizeField size, double begin, double end) const;
     PlanarMesh run_for_count();
 
     const MeshRequest& request_;
@@ -267,7 +269,7 @@ PlanarMesh collected(FlatMesh&& flat, const Check& check) {
 }
 
 /// Border, lattices and the band between them.
-BandedMesh Meshing::first_mesh(const SizeField& size, double finest, const Check& cutting,
+BandedMesh Meshing::first_mesh(SizeField& size, double finest, const Check& cutting,
                                const Check& placing, const Check& joining) const {
     BorderPieces border;
     std::vector<Lattice> lattices;
@@ -291,7 +293,7 @@ BandedMesh Meshing::first_mesh(const SizeField& size, double finest, const Check
     return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
 }
 
-PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const {
+PlanarMesh Meshing::mesh(SizeField size, double begin, double end) const {
     const auto part = [&](double from, double to, const char* text) {
         return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
     };

@@ -114,7 +114,7 @@ double pieces_along(std::span<const SizeSource> sources, const PlanPoint& low,
     return pieces;
 }
 
-std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField& size) {
+std::vector<double> lattice_lengths(const MeshRequest& request, SizeField& size) {
     constexpr double kClearlyShorter = 0.8;  // else two lattices would collide
     std::vector<double> lengths{size.largest()};
     std::vector<double> wanted;
@@ -126,7 +126,7 @@ std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField&
     return lengths;
 }
 
-double triangles_in(const RegionGraph& graph, const SizeField& size, const Check& check) {
+double triangles_in(const RegionGraph& graph, SizeField& size, const Check& check) {
     constexpr double kEquilateral = std::numbers::sqrt3 / 4;  // the area at side 1
     constexpr double kNextToNothing = 0.25 * kEquilateral;
     if (size.is_uniform()) return graph.area / (kEquilateral * size.largest() * size.largest());

@@ -25,9 +25,9 @@ double longest_by_density(const RegionGraph& graph, const MeshRequest& request);
 
 /// The distinct lengths that a field has over whole areas, where lattices fit: the largest, and
 /// those of local lengths with room around them.
-std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField& size);
+std::vector<double> lattice_lengths(const MeshRequest& request, SizeField& size);
 
 /// About how many triangles of these sizes fill a region.
-double triangles_in(const RegionGraph& graph, const SizeField& size, const Check& check);
+double triangles_in(const RegionGraph& graph, SizeField& size, const Check& check);
 
 }  // namespace realmodel::meshing

@@ -58,7 +58,7 @@ double SizeField::length_at(const SizeSource& source, double x, double y) const 
     return source.start + std::min(gradation_, source.growth) * distance(source, x, y);
 }
 
-void SizeField::make_leaf(std::int32_t node, const std::array<double, 4>& lengths) const {
+void SizeField::make_leaf(std::int32_t node, const std::array<double, 4>& lengths) {
     nodes_[node] = {static_cast<std::int32_t>(leaves_.size()), kLeaf};
     std::array<float, 4>& leaf = leaves_.emplace_back();
     for (int i = 0; i < 4; ++i)
@@ -79,7 +79,7 @@ std::array<double, 4> SizeField::corner_lengths(const Cell& cell,
 }
 
 /// Makes a node a leaf, or an inner node with four children to be opened.
-void SizeField::open(std::int32_t node, const Cell& cell) const {
+void SizeField::open(std::int32_t node, const Cell& cell) {
     const auto [begin, count] = nodes_[node];
     const double half = cell.width / 2, reach = gradation_ * half * std::numbers::sqrt2;
     const double x = cell.x + half, y = cell.y + half;
@@ -120,7 +120,7 @@ void SizeField::open(std::int32_t node, const Cell& cell) const {
     nodes_.insert(nodes_.end(), 4, Node{first_kept, kept});
 }
 
-double SizeField::look_up(const PlanPoint& p) const {
+double SizeField::look_up(const PlanPoint& p) {
     double u = std::clamp((p[0] - low_[0]) / width_, 0.0, 1.0);
     double v = std::clamp((p[1] - low_[1]) / width_, 0.0, 1.0);
     // Mostly it is the leaf of the question before. (Scaling by a power of 2 and taking whole

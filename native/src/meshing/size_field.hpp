@@ -24,8 +24,8 @@ struct SizeSource {
 
 /// The least of what sources ask for, and of a largest length. No length differs from another by
 /// more than gradation * distance. Kept in a quadtree whose leaves are no larger than edges are
-/// there, each with the lengths at its corners. Leaves are made where they are asked for: from one
-/// thread at a time.
+/// there, each with the lengths at its corners. Leaves are made where they are asked for, so asking
+/// changes the field; what it answers does not depend on what was asked before.
 class SizeField {
 public:
     /// The same length everywhere.
@@ -40,7 +40,7 @@ public:
     double largest() const { return largest_; }
     /// No length between `low` and `high` is less.
     double smallest() const { return smallest_; }
-    double at(const PlanPoint& p) const { return nodes_.empty() ? largest_ : look_up(p); }
+    double at(const PlanPoint& p) { return nodes_.empty() ? largest_ : look_up(p); }
 
 private:
     static constexpr std::int32_t kInner = -1, kLeaf = -2;
@@ -59,9 +59,9 @@ private:
         double scale, column, row;
         std::int32_t leaf;
     };
-    double look_up(const PlanPoint& p) const;
-    void open(std::int32_t node, const Cell& cell) const;
-    void make_leaf(std::int32_t node, const std::array<double, 4>& lengths) const;
+    double look_up(const PlanPoint& p);
+    void open(std::int32_t node, const Cell& cell);
+    void make_leaf(std::int32_t node, const std::array<double, 4>& lengths);
     std::array<double, 4> corner_lengths(const Cell& cell,
                                          std::span<const std::int32_t> sources) const;
     double length_at(const SizeSource& source, double x, double y) const;
@@ -70,10 +70,10 @@ private:
     PlanPoint low_{};
     double width_ = 0;
     std::vector<SizeSource> sources_;
-    mutable std::vector<Node> nodes_;
-    mutable std::vector<std::int32_t> candidates_;      // numbers of sources
-    mutable std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
-    mutable FoundLeaf last_{0, 1, 1, 0};                // none yet
+    std::vector<Node> nodes_;
+    std::vector<std::int32_t> candidates_;      // numbers of sources
+    std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
+    FoundLeaf last_{0, 1, 1, 0};                // none yet
 };
 
 }  // namespace realmodel::meshing

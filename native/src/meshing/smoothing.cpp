@@ -18,7 +18,7 @@ constexpr std::size_t kManyActive = 200'000;
 
 class Smoothing {
 public:
-    Smoothing(FlatMesh& mesh, const SizeField& size, std::int32_t first,
+    Smoothing(FlatMesh& mesh, SizeField& size, std::int32_t first,
               std::span<const std::int32_t> also, std::int32_t corners,
               std::span<const std::int32_t> kept)
         : mesh_(mesh),
@@ -199,7 +199,7 @@ private:
     }
 
     FlatMesh& mesh_;
-    const SizeField& size_;
+    SizeField& size_;
     Valences valences_;
     StarMoves moves_;
     JudgedFlips flips_;
@@ -209,9 +209,8 @@ private:
 
 }  // namespace
 
-void smooth(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-            std::span<const std::int32_t> also, std::int32_t corners,
-            std::span<const std::int32_t> kept, const Check& check) {
+void smooth(FlatMesh& mesh, SizeField& size, std::int32_t first, std::span<const std::int32_t> also,
+            std::int32_t corners, std::span<const std::int32_t> kept, const Check& check) {
     Smoothing(mesh, size, first, also, corners, kept).run(check);
 }
 

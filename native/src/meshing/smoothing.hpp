@@ -19,8 +19,7 @@ namespace realmodel::meshing {
 /// stay; but of those from number `corners` on that lie between two corners of the
 /// border, where sizes vary, some slide along it and some are taken out. Vertices that were
 /// collapsed are used by no triangle. Deterministic.
-void smooth(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-            std::span<const std::int32_t> also, std::int32_t corners,
-            std::span<const std::int32_t> kept, const Check& check);
+void smooth(FlatMesh& mesh, SizeField& size, std::int32_t first, std::span<const std::int32_t> also,
+            std::int32_t corners, std::span<const std::int32_t> kept, const Check& check);
 
 }  // namespace realmodel::meshing

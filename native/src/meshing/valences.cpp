@@ -23,7 +23,7 @@ double mean_ratio(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
     return 2 * std::numbers::sqrt3 * twice_area(a, b, c) / squares;
 }
 
-Valences::Valences(FlatMesh& mesh, const SizeField& size) : mesh_(mesh), size_(size) {
+Valences::Valences(FlatMesh& mesh, SizeField& size) : mesh_(mesh), size_(size) {
     const std::size_t points = mesh.points.size();
     leaving_.resize(points);
     triangles_.assign(points, 0);

@@ -16,7 +16,7 @@ namespace realmodel::meshing {
 /// Field 1991, "Mesh relaxation").
 class Valences {
 public:
-    Valences(FlatMesh& mesh, const SizeField& size);
+    Valences(FlatMesh& mesh, SizeField& size);
 
     FlatMesh& mesh() { return mesh_; }
     const FlatMesh& mesh() const { return mesh_; }
@@ -72,7 +72,7 @@ private:
     void collapse(HalfEdge edge);
 
     FlatMesh& mesh_;
-    const SizeField& size_;
+    SizeField& size_;
     std::vector<HalfEdge> leaving_;        ///< of each vertex: an edge from it
     std::vector<std::int32_t> triangles_;  ///< of each vertex: how many it has; 0: it is gone
     std::vector<std::int32_t> wanted_;     ///< and how many it should have

@@ -40,7 +40,7 @@ double length(const Point& a) {
 Point moved(const Point& p, const Point& way, double share) {
     return {p[0] + share * way[0], p[1] + share * way[1], p[2] + share * way[2]};
 }
-double length_at(const meshing::SizeField& lengths, const Point& p) {
+double length_at(meshing::SizeField& lengths, const Point& p) {
     return lengths.at({p[0], p[1]});
 }
 
@@ -268,7 +268,7 @@ struct Piece {
 };
 
 std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::int32_t>& line,
-                             const meshing::SizeField& lengths) {
+                             meshing::SizeField& lengths) {
     std::vector<Piece> pieces;
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Point from = model.vertex(line[i - 1]);
@@ -288,7 +288,7 @@ std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::in
 
 /// Points that divide a line into parts of about equal size, in order.
 std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int32_t>& line,
-                            const meshing::SizeField& lengths) {
+                            meshing::SizeField& lengths) {
     const std::vector<Piece> pieces = pieces_of(model, line, lengths);
     double size = 0;
     for (const Piece& piece : pieces)
@@ -308,7 +308,7 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
 }  // namespace
 
 std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edge> sharp_edges,
-                                   const meshing::SizeField& lengths) {
+                                   meshing::SizeField& lengths) {
     SpacedPoints spaced;
     std::vector<Point> found;
     const auto add = [&](const Point& p) {
@@ -326,8 +326,8 @@ std::vector<Point> points_on_edges(const ComplexView& model, std::span<const Edg
 
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
-                                       std::span<const Point> others,
-                                       const meshing::SizeField& lengths, double share) {
+                                       std::span<const Point> others, meshing::SizeField& lengths,
+                                       double share) {
     SpacedPoints spaced;
     const auto add = [&](const Point& p) { return spaced.add(p, share * length_at(lengths, p)); };
     for (const Point& p : others)

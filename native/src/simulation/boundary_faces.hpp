@@ -35,7 +35,7 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
 /// Points on sharp edges, no two nearer than a part of the edge length there, corners first.
 std::vector<std::array<double, 3>> points_on_edges(
     const ComplexView& model, std::span<const std::array<std::int32_t, 2>> sharp_edges,
-    const meshing::SizeField& lengths);
+    meshing::SizeField& lengths);
 
 /// Vertices of the triangles that are no nearer to each other, and to `others`, than `share` of the
 /// edge length there.
@@ -46,6 +46,6 @@ struct SurfaceSeed {
 std::vector<SurfaceSeed> surface_seeds(const ComplexView& model,
                                        std::span<const BoundaryTriangle> triangles,
                                        std::span<const std::array<double, 3>> others,
-                                       const meshing::SizeField& lengths, double share);
+                                       meshing::SizeField& lengths, double share);
 
 }  // namespace realmodel::simulation

@@ -66,7 +66,7 @@ meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& f
     return {edge_length, meshing::kGradation, std::move(sources), low, high, kMostLeaves};
 }
 
-double cubes_in(const meshing::SizeField& lengths, const std::array<double, 3>& low,
+double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
                 const std::array<double, 3>& high, double most, const Progress* progress) {
     const double height = high[2] - low[2];
     if (lengths.is_uniform()) {

@@ -24,7 +24,7 @@ meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& f
 /// About how many cubes with these edges fill a box, of which any part of the plan has one at
 /// least. @throws InputError kind too_large (where edges differ in length, and there are more than
 /// `most`); Cancelled
-double cubes_in(const meshing::SizeField& lengths, const std::array<double, 3>& low,
+double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
                 const std::array<double, 3>& high, double most, const Progress* progress);
 
 }  // namespace realmodel::simulation

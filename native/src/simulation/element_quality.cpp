@@ -15,7 +15,8 @@ namespace {
 // checkMesh's limits, or a little within them
 constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
 constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
-constexpr double kMostSkewness = 3.8;        ///< its limit is 4
+constexpr double kSkewnessLimit = 4;         ///< without any option
+constexpr double kMostSkewness = 3.8;        ///< what is mended
 constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
 constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
 
@@ -26,6 +27,7 @@ constexpr double kEasedFace = 0.8;       ///< cosine: flatter faces are not what
 constexpr double kEasedShare = 0.1;
 
 using Point = std::array<double, 3>;
+using Face = ElementFace;
 
 double dot(const Point& a, const Point& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -34,11 +36,33 @@ Point difference(const Point& a, const Point& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-/// A face between two elements, of three or four corners (of three the last is twice there).
-struct Face {
-    std::array<Point, 4> corners;
-    Point area, center;
-};
+/// How far from its center a face is crossed, as checkMesh measures it: 1 is the edge of the face.
+/// @param way  from the center of an element to that of the face
+/// @param line  from there to the other element; at the outside to the plane of the face, upright
+/// @param share  of the length of the line that counts as the size of a smaller face
+double skewness(const Face& face, const Point& way, const Point& line, double share) {
+    const double ratio = dot(way, face.area) / dot(line, face.area);
+    Point off;  // from where the line crosses the face to its center
+    for (std::size_t k = 0; k < 3; ++k)
+        off[k] = way[k] - ratio * line[k];
+    const double far = std::sqrt(dot(off, off));
+    if (far == 0) return 0;
+    double reach = share * std::sqrt(dot(line, line));
+    for (const Point& corner : face.corners)
+        reach = std::max(reach, std::abs(dot(off, difference(corner, face.center))) / far);
+    return far / reach;
+}
+
+double inner_skewness(const Face& face, const Point& own, const Point& other) {
+    return skewness(face, difference(face.center, own), difference(other, own), 0.2);
+}
+
+double outer_skewness(const Face& face, const Point& own) {
+    const Point way = difference(face.center, own);
+    const double share = dot(way, face.area) / dot(face.area, face.area);
+    return skewness(face, way, {share * face.area[0], share * face.area[1], share * face.area[2]},
+                    0.4);
+}
 
 /// Whether checkMesh fails a face between two elements.
 bool is_bad(const Face& face, const Point& own, double own_volume, const Point& other,
@@ -52,15 +76,7 @@ bool is_bad(const Face& face, const Point& own, double own_volume, const Point& 
     if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
     if (std::min(own_volume, other_volume) < kLeastShare * std::max(own_volume, other_volume))
         return true;
-    Point off;  // from where the line crosses the face to its center
-    for (std::size_t k = 0; k < 3; ++k)
-        off[k] = way[k] - dot(way, face.area) / along * line[k];
-    const double far = std::sqrt(dot(off, off));
-    if (far == 0) return false;
-    double reach = 0.2 * length;
-    for (const Point& corner : face.corners)
-        reach = std::max(reach, std::abs(dot(off, difference(corner, face.center))) / far);
-    return far > kMostSkewness * reach;
+    return inner_skewness(face, own, other) > kMostSkewness;
 }
 
 /// The side of a column between heights `low` and `high` at points a and b of the plan.
@@ -193,15 +209,76 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
     return found;
 }
 
-ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
-    std::vector<Body> bodies(columns_.fronts.size());
+/// The neighbor within takes the volume, but what stands out of the top goes.
+bool ElementQuality::gives_upward(std::size_t t, std::size_t element) const {
+    const std::size_t first = columns_.offset[t], count = columns_.elements(t);
+    return count > 1 && (element == first || (element + 1 == first + count && is_tall(t, element)));
+}
+
+/// Gives up an element: its upper heights, or its lower ones.
+void ElementQuality::give_up(std::size_t t, std::size_t element, bool upper,
+                             Removals& found) const {
+    const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (low[i] == high[i]) continue;
+        found.push_back(
+            {plan_.mesh().triangles[t][i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
+    }
+}
+
+std::vector<ElementQuality::Body> ElementQuality::bodies() const {
+    std::vector<Body> made(columns_.fronts.size());
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t] + columns_.elements(t); ++e)
-            bodies[e] = body(t, e);
+            made[e] = body(t, e);
     }
+    return made;
+}
+
+/// Visits all faces once, those between two elements from the lower one or from the triangle with
+/// the lesser number.
+template <class Visit>
+void ElementQuality::for_faces(const Visit& visit) const {
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        if (columns_.elements(t) == 0) continue;
+        const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
+        const auto& nodes = plan_.mesh().triangles[t];
+        for (std::size_t e = first; e <= end; ++e) {
+            const Front& front = columns_.fronts[e];
+            Face face{{}, flat_area(t, front), {}};
+            for (std::size_t i = 0; i < 4; ++i)
+                face.corners[i] = position(t, i % 3, front[i % 3]);
+            for (std::size_t k = 0; k < 3; ++k)
+                face.center[k] = (face.corners[0][k] + face.corners[1][k] + face.corners[2][k]) / 3;
+            const Place below{t, e == first ? kNone : e - 1}, above{t, e == end ? kNone : e};
+            if (e == first)
+                visit(face, above, below);
+            else
+                visit(face, below, above);
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t n = plan_.neighbor(t, i);
+            const std::size_t j = (i + 1) % 3;
+            const auto a = levels_.heights(nodes[i]), b = levels_.heights(nodes[j]);
+            for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
+                if (is_shared && index(n) < t) return;
+                const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
+                const Face face = side_face(
+                    plan_.mesh().vertices[index(nodes[i])], plan_.mesh().vertices[index(nodes[j])],
+                    {a[index(low[i])], b[index(low[j])]}, {a[index(high[i])], b[index(high[j])]});
+                visit(face, Place{t, e}, is_shared ? Place{index(n), beyond} : Place{t, kNone});
+            });
+        }
+    }
+}
+
+ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
+    const std::vector<Body> bodies = this->bodies();
     Removals found;
-    const auto give_up = [&](std::size_t t, std::size_t e, bool upper) {
+    const auto give_up = [&](const Place& place, bool upper) {
+        const auto [t, e] = place;
         const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
         if (columns_.elements(t) == 1) {
             // a thick one alone in its column stays: without it its neighbor would be the end
@@ -210,62 +287,118 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
                 rise = std::max(rise, position(t, i, high[i])[2] - position(t, i, low[i])[2]);
             if (is_narrow[t] == 0 || rise >= kThickEnd * minimum_thickness_) return;
         }
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (low[i] == high[i]) continue;
-            found.push_back(
-                {plan_.mesh().triangles[t][i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
-        }
-    };
-    // the neighbor within takes the volume, but what stands out of the top goes
-    const auto upper = [&](std::size_t t, std::size_t e) {
-        const std::size_t first = columns_.offset[t], count = columns_.elements(t);
-        return count > 1 && (e == first || (e + 1 == first + count && is_tall(t, e)));
+        this->give_up(t, e, upper, found);
     };
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
-        const auto& nodes = plan_.mesh().triangles[t];
         for (std::size_t e = first; e < end; ++e) {
-            const bool is_first = e == first, is_last = e + 1 == end;
-            if (determinant(t, e, is_first, is_last, open_sides_[e]) < kWeakDeterminant)
-                give_up(t, e, upper(t, e));
-            if (is_last) continue;
-            const Front& front = columns_.fronts[e + 1];
-            Face face{{}, flat_area(t, front), {}};
-            for (std::size_t i = 0; i < 4; ++i)
-                face.corners[i] = position(t, i % 3, front[i % 3]);
-            for (std::size_t k = 0; k < 3; ++k)
-                face.center[k] = (face.corners[0][k] + face.corners[1][k] + face.corners[2][k]) / 3;
-            if (!is_bad(face, bodies[e].center, bodies[e].volume, bodies[e + 1].center,
-                        bodies[e + 1].volume))
-                continue;
-            // the face goes, and the smaller element with it
-            if (bodies[e].volume < bodies[e + 1].volume)
-                give_up(t, e, true);
-            else
-                give_up(t, e + 1, e + 2 == end && is_tall(t, e + 1));
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t n = plan_.neighbor(t, i);
-            if (n < 0 || index(n) < t) continue;
-            const std::size_t j = (i + 1) % 3;
-            const auto a = levels_.heights(nodes[i]), b = levels_.heights(nodes[j]);
-            for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
-                if (!is_shared) return;
-                const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
-                const Face face = side_face(
-                    plan_.mesh().vertices[index(nodes[i])], plan_.mesh().vertices[index(nodes[j])],
-                    {a[index(low[i])], b[index(low[j])]}, {a[index(high[i])], b[index(high[j])]});
-                if (!is_bad(face, bodies[e].center, bodies[e].volume, bodies[beyond].center,
-                            bodies[beyond].volume))
-                    return;
-                const bool own = bodies[e].volume < bodies[beyond].volume;
-                const std::size_t column = own ? t : index(n), smaller = own ? e : beyond;
-                give_up(column, smaller, upper(column, smaller));
-            });
+            if (determinant(t, e, e == first, e + 1 == end, open_sides_[e]) < kWeakDeterminant)
+                give_up({t, e}, gives_upward(t, e));
         }
     }
+    for_faces([&](const Face& face, const Place& own, const Place& other) {
+        if (other.element == kNone) return;
+        const Body &a = bodies[own.element], &b = bodies[other.element];
+        if (!is_bad(face, a.center, a.volume, b.center, b.volume)) return;
+        // the face goes, and the smaller element with it
+        const bool is_own = a.volume < b.volume;
+        const auto [t, e] = is_own ? own : other;
+        const bool is_last = e + 1 == columns_.offset[t] + columns_.elements(t);
+        give_up({t, e}, own.triangle != other.triangle ? gives_upward(t, e)
+                                                       : is_own || (is_last && is_tall(t, e)));
+    });
     return found;
+}
+
+ElementQuality::Skewed ElementQuality::skewed(bool divided) const {
+    Skewed found;
+    if (!divided) {
+        find_skewed(*this, {}, found);
+    } else {
+        std::vector<std::size_t> whole;
+        const ColumnFronts parts = tetrahedra(whole);
+        find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, found);
+    }
+    std::sort(found.tall.begin(), found.tall.end());
+    found.tall.erase(std::unique(found.tall.begin(), found.tall.end()), found.tall.end());
+    return found;
+}
+
+/// The elements divided by the diagonals at the lower ends of their sides with the lesser node (as
+/// divided() of addon/realmodel/core/simulation/tetrahedra.py): the corner with the greatest node
+/// moves first. `whole`: the element that each is a part of.
+ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
+    ColumnFronts made;
+    for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+        poll(progress_, t);
+        const auto& nodes = plan_.mesh().triangles[t];
+        std::array<std::size_t, 3> order{0, 1, 2};
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return nodes[a] > nodes[b]; });
+        for (std::size_t e = columns_.offset[t]; e < columns_.offset[t + 1]; ++e) {
+            Front front = columns_.fronts[e];
+            made.fronts.push_back(front);
+            made.blocks.push_back(columns_.blocks[e]);
+            whole.push_back(e);
+            if (e + 1 == columns_.offset[t + 1]) continue;
+            const Front& high = columns_.fronts[e + 1];
+            for (const std::size_t corner : order) {
+                if (front[corner] == high[corner]) continue;
+                front[corner] = high[corner];
+                if (front == high) continue;
+                made.fronts.push_back(front);
+                made.blocks.push_back(columns_.blocks[e]);
+                whole.push_back(e);
+            }
+        }
+        made.offset.push_back(made.fronts.size());
+    }
+    return made;
+}
+
+/// @param parts  the faces of these elements are looked at; of which `whole` each is a part, if it
+/// is not one itself
+void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
+                                 Skewed& found) const {
+    const std::vector<Body> bodies = this->bodies(),
+                            of_parts = whole.empty() ? bodies : parts.bodies();
+    const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
+    parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
+        const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
+        const Point& center = of_parts[own.element].center;
+        const double skewness = is_outer
+                                    ? outer_skewness(face, center)
+                                    : inner_skewness(face, center, of_parts[other.element].center);
+        if (!(skewness > kMostSkewness)) return;
+        const std::size_t e = whole_of(own.element);
+        if (skewness > kSkewnessLimit) {
+            ++found.faces;
+            if (is_outer && !is_side) found.tall.push_back(columns_.blocks[e]);
+        }
+        if (skewness > found.most) {
+            found.most = skewness;
+            found.place = face.center;
+        }
+        if (is_outer && !is_side) return;  // too tall rather than too thin
+        const std::size_t next = is_outer ? e : whole_of(other.element);
+        const bool is_own = e == next || bodies[e].volume < bodies[next].volume;
+        const std::size_t t = is_own ? own.triangle : other.triangle, smaller = is_own ? e : next;
+        if (columns_.elements(t) == 1) return;
+        const bool upper = is_side || e == next ? joins_upward(t, smaller, bodies) : is_own;
+        give_up(t, smaller, upper, found.removals);
+    });
+}
+
+/// Whether an element that has to get thicker joins the next above it, not that below: one of its
+/// own block rather than of another, the smaller one rather than the larger one.
+bool ElementQuality::joins_upward(std::size_t t, std::size_t e,
+                                  const std::vector<Body>& bodies) const {
+    if (e == columns_.offset[t]) return true;
+    if (e + 1 == columns_.offset[t] + columns_.elements(t)) return false;
+    const bool below = columns_.blocks[e - 1] == columns_.blocks[e],
+               above = columns_.blocks[e + 1] == columns_.blocks[e];
+    return below == above ? bodies[e + 1].volume < bodies[e - 1].volume : above;
 }
 
 std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t> is_asked) const {

@@ -15,6 +15,12 @@
 
 namespace realmodel::simulation {
 
+/// A face of an element, of three or four corners (of three one is twice there).
+struct ElementFace {
+    std::array<std::array<double, 3>, 4> corners;
+    std::array<double, 3> area, center;
+};
+
 /// Finds the elements that solvers do badly with, as OpenFOAM's checkMesh measures it, and what
 /// mends them. Heights are read anew each time; fronts must stay.
 class ElementQuality {
@@ -38,6 +44,20 @@ public:
     /// center, or at more than 70 degrees from the direction across, or if one is much smaller.
     Removals failing(std::span<const std::uint8_t> is_narrow) const;
 
+    /// Faces between elements and outside that are crossed farther from their centers than
+    /// checkMesh allows, and the worst of them. Elements that are too thin for how steep they are
+    /// there become one with the next in their columns (`removals`). At top and base they are too
+    /// tall instead: `tall` has the blocks of these.
+    struct Skewed {
+        std::size_t faces = 0;
+        double most = 0;
+        std::array<double, 3> place{};
+        std::vector<std::int32_t> tall;
+        Removals removals;
+    };
+    /// @param divided  whether elements are divided into tetrahedra
+    Skewed skewed(bool divided) const;
+
     /// Of each steep face that the line between the centers of its elements crosses at too small an
     /// angle: by how much its corners would move to make it less steep.
     /// @param is_asked  of each node: triangles without one are passed over
@@ -50,10 +70,27 @@ private:
         double volume;
     };
 
+    using Face = ElementFace;
+    static constexpr std::size_t kNone = SIZE_MAX;
+    /// An element, or what is outside beside a triangle.
+    struct Place {
+        std::size_t triangle, element;
+    };
+
     std::size_t moved_corners(std::size_t element) const;
     Point position(std::size_t t, std::size_t corner, std::int32_t at) const;
     Point flat_area(std::size_t t, const Front& front) const;
     Body body(std::size_t t, std::size_t element) const;
+    std::vector<Body> bodies() const;
+    bool gives_upward(std::size_t t, std::size_t element) const;
+    bool joins_upward(std::size_t t, std::size_t e, const std::vector<Body>& bodies) const;
+    void give_up(std::size_t t, std::size_t element, bool upper, Removals& found) const;
+    /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
+    template <class Visit>
+    void for_faces(const Visit& visit) const;
+    ColumnFronts tetrahedra(std::vector<std::size_t>& whole) const;
+    void find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
+                     Skewed& found) const;
     bool leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const;
     double determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
                        unsigned open_sides) const;

@@ -300,7 +300,7 @@ private:
 
 /// The edge length of a place, as CGAL asks for it.
 struct EdgeLength {
-    const meshing::SizeField* lengths;
+    meshing::SizeField* lengths;
     double operator()(const Point& p, int /*dimension*/, int /*index*/) const {
         return lengths->at({p.x(), p.y()});
     }
@@ -392,7 +392,7 @@ void require_volume(const FilledMesh& mesh) {
 /// More than any mesh of this size should need: Delaunay refinement is not proven to end where
 /// boundaries meet at sharp angles.
 std::size_t most_points(const ComplexView& model, const BoundaryFaces& faces,
-                        const meshing::SizeField& lengths, double tolerance, Progress* progress) {
+                        meshing::SizeField& lengths, double tolerance, Progress* progress) {
     double area = 0;
     CGAL::Bbox_3 box;
     for (const BoundaryTriangle& t : faces.triangles) {
@@ -444,7 +444,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
     const BoundaryFaces faces = boundary_faces(model, cell_region, kept, threads, progress);
     Domain domain(model, faces.triangles, progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
-    const auto lengths = edge_lengths(model, faces, edge_length, tolerance, sizes);
+    auto lengths = edge_lengths(model, faces, edge_length, tolerance, sizes);
     const std::size_t most = most_points(model, faces, lengths, tolerance, progress);
     const auto on_edges = points_on_edges(model, faces.sharp_edges, lengths);
     const auto seeds = surface_seeds(model, faces.triangles, on_edges, lengths, kSeeds);

@@ -32,10 +32,12 @@ constexpr int kVainMoves = 10;         ///< rounds of moving that leave no less 
 constexpr int kVainRepairs = 40;       ///< and with those that only give up
 constexpr double kMostFailing = 0.01;  ///< heights given up, a share of elements
 constexpr double kMostMended = 0.002;  ///< how much blocks may change for that, of all volumes
+constexpr std::int32_t kMostFreeLayers = 16;  ///< where nothing is said about layers
 constexpr double kFarthest = 8;  ///< minimum thicknesses: how far heights move at what still fails
 
-/// What is mended: thin ends of layers, then steep faces, then what checkMesh would fail.
-enum class Stage { kWeak, kSteep, kFailing, kDone };
+/// What is mended: thin ends of layers, then steep faces, then what checkMesh fails with all its
+/// options, at last what it fails without any.
+enum class Stage { kWeak, kSteep, kFailing, kSkewed };
 
 /// Fills the columns of all triangles from the bottom up. A front, one height at each corner, moves
 /// up step by step; what lies between two fronts is an element. All three corners move by one
@@ -411,93 +413,162 @@ void for_corners(LayeredMesh& mesh, const Visit& visit) {
     all(mesh.quadrilaterals.corners);
 }
 
+/// Columns between levels, mended until nothing is left to mend.
+class Columns {
+public:
+    Columns(const ComplexView& model, const PlanLines& lines, const RockBlocks& blocks,
+            const PlanTopology& plan, const ColumnHeights& heights, const Progress* progress)
+        : model_(model),
+          lines_(lines),
+          blocks_(blocks),
+          plan_(plan),
+          heights_(heights),
+          progress_(progress) {}
+
+    LayeredMesh fill(const Layering& layering) {
+        PostLevels levels(plan_, lines_, blocks_, heights_, layering);
+        Repair repair;
+        is_narrow_.clear();
+        for (;;) {
+            check_total(levels.height_count(), INT32_MAX);
+            LayeredMesh made;
+            made.volumes.assign(blocks_.rock.size(), 0);
+            for (std::size_t r = 0; r < blocks_.count(); ++r) {
+                const auto own = levels.layer_blocks(static_cast<std::int32_t>(r)).size();
+                made.layers = std::max(made.layers, static_cast<std::int32_t>(own));
+            }
+            ColumnFiller filler(plan_, blocks_, heights_, levels, made, progress_);
+            const ElementQuality quality(plan_, levels, filler.columns(),
+                                         layering.minimum_thickness, progress_);
+            if (is_narrow_.empty()) is_narrow_ = narrow_strips(plan_, filler.columns());
+            if (mend(quality, layering, made, levels, repair)) continue;
+            filler.finish_steps(VerticalFaults(model_, lines_.steps));
+            number_points(levels, made);
+            return made;
+        }
+    }
+
+private:
+    struct Repair {
+        Stage stage = Stage::kWeak;
+        std::optional<PostLevels> best;
+        std::vector<double> volumes;  // before the last stage but one
+        std::size_t least = SIZE_MAX;
+        double reach = 1;
+        int round = 0, vain = 0;
+    };
+
+    /// Whether levels changed, so that columns have to be filled again.
+    bool mend(const ElementQuality& quality, const Layering& layering, LayeredMesh& made,
+              PostLevels& levels, Repair& repair) const {
+        if (repair.stage == Stage::kWeak) {
+            auto weak = quality.weak(is_narrow_);
+            if (repair.round++ < kRepairs && levels.remove(plan_, weak) > 0) return true;
+            repair.stage = Stage::kSteep;
+        }
+        if (repair.stage == Stage::kSteep) {
+            repair.stage = Stage::kFailing;
+            if (ease_steep(plan_, heights_, quality, layering.minimum_thickness, repair.reach,
+                           levels))
+                return true;
+        }
+        if (repair.stage == Stage::kFailing && mend_failing(quality, made, levels, repair))
+            return true;
+        repair.stage = Stage::kSkewed;
+        auto skewed = quality.skewed(layering.divided);
+        if (levels.remove(plan_, skewed.removals, true) > 0) return true;
+        made.skewed = {skewed.faces, skewed.most, skewed.place, std::move(skewed.tall)};
+        return false;
+    }
+
+    bool mend_failing(const ElementQuality& quality, const LayeredMesh& made, PostLevels& levels,
+                      Repair& repair) const {
+        auto& [stage, best, volumes, least, reach, round, vain] = repair;
+        auto failing = quality.failing(is_narrow_);
+        if (!best && failing.size() > kMostFailing * quality.elements()) failing.clear();
+        if (!best) volumes = made.volumes;
+        double changed = 0, total = 0;
+        for (std::size_t b = 0; b < volumes.size(); ++b) {
+            changed += std::abs(made.volumes[b] - volumes[b]);
+            total += volumes[b];
+        }
+        if (changed > kMostMended * total) vain = kVainRepairs;
+        if (!failing.empty() && vain < kVainRepairs) {
+            if (failing.size() < least) {
+                least = failing.size();
+                best = levels;
+                vain = 0;
+            } else {
+                ++vain;
+            }
+            // what moving farther does not mend is given up; at last nothing moves any more
+            if (vain == kVainMoves)
+                levels = *best;
+            else if (reach > 1)
+                levels.remove(plan_, failing);
+            reach = kFarthest;
+            if (vain < kVainMoves) stage = Stage::kSteep;
+            return true;
+        }
+        if (!best || (failing.empty() && changed <= kMostMended * total)) return false;
+        levels = *best;
+        stage = Stage::kSkewed;
+        return true;
+    }
+
+    /// Points of the mesh for those heights of nodes that elements have.
+    void number_points(const PostLevels& levels, LayeredMesh& made) const {
+        std::vector<std::int32_t> number(levels.height_count(), -1);
+        for_corners(made, [&](std::int32_t& corner) { number[index(corner)] = 0; });
+        for (std::size_t n = 0, at = 0; n < plan_.nodes(); ++n) {
+            const PlanPoint& p = plan_.mesh().vertices[n];
+            for (const double z : levels.heights(static_cast<std::int32_t>(n))) {
+                if (number[at] == 0) {
+                    number[at] = static_cast<std::int32_t>(made.points.size());
+                    made.points.push_back({p[0], p[1], z});
+                }
+                ++at;
+            }
+        }
+        for_corners(made, [&](std::int32_t& corner) { corner = number[index(corner)]; });
+    }
+
+    const ComplexView& model_;
+    const PlanLines& lines_;
+    const RockBlocks& blocks_;
+    const PlanTopology& plan_;
+    const ColumnHeights& heights_;
+    const Progress* progress_;
+    std::vector<std::uint8_t> is_narrow_;
+};
+
 }  // namespace
 
 LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t> block_rock,
-                         const PlanLines& lines, meshing::PlanarMesh mesh, const Layering& layering,
+                         const PlanLines& lines, meshing::PlanarMesh mesh, Layering layering,
                          int threads, Progress* progress) {
     const RockBlocks blocks(block_rock);
     PlanTopology plan(lines, std::move(mesh));
-    const ColumnHeights columns = post_columns(model, blocks, lines, plan, threads, progress);
-    PostLevels levels(plan, lines, blocks, columns, layering);
+    const ColumnHeights heights = post_columns(model, blocks, lines, plan, threads, progress);
+    std::vector<std::uint8_t> is_free(layering.layers.size(), 0);
+    for (std::size_t b = 0; b < is_free.size(); ++b) {
+        if (layering.layers[b] != 0 || layering.layer_thickness > 0) continue;
+        layering.layers[b] = 1;
+        is_free[b] = 1;
+    }
+    Columns columns(model, lines, blocks, plan, heights, progress);
     LayeredMesh made;
-    std::vector<std::uint8_t> is_narrow;
-    std::optional<PostLevels> best;
-    std::vector<double> volumes;  // before the last stage
-    std::size_t least = SIZE_MAX;
-    double reach = 1;
-    int round = 0, vain = 0;
-    for (auto stage = Stage::kWeak;;) {
-        check_total(levels.height_count(), INT32_MAX);
-        made = {};
-        made.volumes.assign(blocks.rock.size(), 0);
-        for (std::size_t r = 0; r < blocks.count(); ++r) {
-            made.layers = std::max(made.layers,
-                                   static_cast<std::int32_t>(
-                                       levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
-        }
-        ColumnFiller filler(plan, blocks, columns, levels, made, progress);
-        const ElementQuality quality(plan, levels, filler.columns(), layering.minimum_thickness,
-                                     progress);
-        if (is_narrow.empty()) is_narrow = narrow_strips(plan, filler.columns());
-        if (stage == Stage::kWeak) {
-            auto weak = quality.weak(is_narrow);
-            if (round++ < kRepairs && levels.remove(plan, weak) > 0) continue;
-            stage = Stage::kSteep;
-        }
-        if (stage == Stage::kSteep) {
-            stage = Stage::kFailing;
-            if (ease_steep(plan, columns, quality, layering.minimum_thickness, reach, levels))
+    for (bool again = true; again;) {
+        made = columns.fill(layering);
+        again = false;
+        for (const std::int32_t block : made.skewed.tall) {
+            if (is_free[index(block)] == 0 || layering.layers[index(block)] >= kMostFreeLayers)
                 continue;
-        }
-        if (stage == Stage::kFailing) {
-            auto failing = quality.failing(is_narrow);
-            if (!best && failing.size() > kMostFailing * quality.elements()) failing.clear();
-            if (!best) volumes = made.volumes;
-            double changed = 0, total = 0;
-            for (std::size_t b = 0; b < volumes.size(); ++b) {
-                changed += std::abs(made.volumes[b] - volumes[b]);
-                total += volumes[b];
-            }
-            if (changed > kMostMended * total) vain = kVainRepairs;
-            if (!failing.empty() && vain < kVainRepairs) {
-                if (failing.size() < least) {
-                    least = failing.size();
-                    best = levels;
-                    vain = 0;
-                } else {
-                    ++vain;
-                }
-                // what moving farther does not mend is given up; at last nothing moves any more
-                if (vain == kVainMoves)
-                    levels = *best;
-                else if (reach > 1)
-                    levels.remove(plan, failing);
-                reach = kFarthest;
-                if (vain < kVainMoves) stage = Stage::kSteep;
-                continue;
-            }
-            if (best && (!failing.empty() || changed > kMostMended * total)) {
-                levels = *best;
-                stage = Stage::kDone;
-                continue;
-            }
-        }
-        filler.finish_steps(VerticalFaults(model, lines.steps));
-        break;
-    }
-    std::vector<std::int32_t> number(levels.height_count(), -1);
-    for_corners(made, [&](std::int32_t& corner) { number[index(corner)] = 0; });
-    for (std::size_t n = 0, at = 0; n < plan.nodes(); ++n) {
-        for (const double z : levels.heights(static_cast<std::int32_t>(n))) {
-            if (number[at] == 0) {
-                number[at] = static_cast<std::int32_t>(made.points.size());
-                made.points.push_back({plan.mesh().vertices[n][0], plan.mesh().vertices[n][1], z});
-            }
-            ++at;
+            layering.layers[index(block)] *= 2;
+            again = true;
         }
     }
-    for_corners(made, [&](std::int32_t& corner) { corner = number[index(corner)]; });
+    made.block_layers = std::move(layering.layers);
     made.plan = plan.take_mesh();
     return made;
 }

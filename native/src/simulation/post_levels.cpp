@@ -229,36 +229,48 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
     first_height_ = height_;
 }
 
-std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals) {
+std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals,
+                               bool several) {
     std::sort(removals.begin(), removals.end());
-    std::vector<std::int32_t> gone(node_offset_.size() - 1, -1);  // one of a node at a time
-    std::vector<std::int32_t> kept(node_offset_.size() - 1, -1);
+    constexpr std::int32_t kKept = -1;
+    std::vector<std::int32_t> into(height_.size(), kKept);
+    std::vector<std::uint8_t> is_used(height_.size(), 0);
     std::size_t count = 0;
+    std::int32_t last = -1;
     for (const Removal& removal : removals) {
-        if (gone[index(removal.node)] >= 0) continue;
-        gone[index(removal.node)] = removal.height;
-        kept[index(removal.node)] = removal.into;
+        if (!several && removal.node == last) continue;
+        const std::size_t first = node_offset_[index(removal.node)],
+                          gone = first + index(removal.height), kept = first + index(removal.into);
+        if (is_used[gone] != 0 || is_used[kept] != 0) continue;
+        is_used[gone] = is_used[kept] = 1;
+        into[gone] = removal.into;
+        last = removal.node;
         ++count;
     }
-    for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
-        const auto n = index(plan.post_node(p));
-        if (gone[n] < 0) continue;
-        for (std::size_t l = offset_[p]; l < offset_[p + 1]; ++l) {
-            if (level_[l] == gone[n]) level_[l] = kept[n];
-            if (level_[l] > gone[n]) --level_[l];
-        }
-    }
+    // the new numbers of heights among those of their node
+    std::vector<std::int32_t> number(height_.size());
     std::size_t to = 0;
+    std::vector<std::size_t> offset{0};
+    offset.reserve(node_offset_.size());
     for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
-        const std::size_t begin = node_offset_[n];
-        node_offset_[n] = to;
-        for (std::size_t h = begin; h < node_offset_[n + 1]; ++h) {
-            if (static_cast<std::int32_t>(h - begin) == gone[n]) continue;
+        const std::size_t begin = node_offset_[n], end = node_offset_[n + 1];
+        for (std::size_t h = begin; h < end; ++h) {
+            if (into[h] != kKept) continue;
+            number[h] = static_cast<std::int32_t>(to - offset[n]);
             first_height_[to] = first_height_[h];
             height_[to++] = height_[h];
         }
+        for (std::size_t h = begin; h < end; ++h) {
+            if (into[h] != kKept) number[h] = number[begin + index(into[h])];
+        }
+        offset.push_back(to);
     }
-    node_offset_.back() = to;
+    for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
+        const std::size_t begin = node_offset_[index(plan.post_node(p))];
+        for (std::size_t l = offset_[p]; l < offset_[p + 1]; ++l)
+            level_[l] = number[begin + index(level_[l])];
+    }
+    node_offset_ = std::move(offset);
     height_.resize(to);
     first_height_.resize(to);
     return count;

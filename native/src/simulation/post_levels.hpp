@@ -42,8 +42,10 @@ public:
         std::int32_t node, height, into;
         auto operator<=>(const Removal&) const = default;
     };
-    /// Removes heights, the first of each node. @return how many
-    std::size_t remove(const PlanTopology& plan, std::vector<Removal>& removals);
+    /// Removes heights, the first of each node, or `several` that have nothing to do with one
+    /// another. @return how many
+    std::size_t remove(const PlanTopology& plan, std::vector<Removal>& removals,
+                       bool several = false);
 
     /// A height of a node that should rise by so much.
     struct Move {

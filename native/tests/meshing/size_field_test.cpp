@@ -35,7 +35,7 @@ SizeField field_of(const std::vector<SizeSource>& sources, double most_leaves = 
 
 TEST(SizeField, IsUniformWithoutSources) {
     EXPECT_TRUE(field_of({}).is_uniform());
-    const SizeField longer = field_of({{{1050, 5030}, {1050, 5030}, 9, 9}});
+    SizeField longer = field_of({{{1050, 5030}, {1050, 5030}, 9, 9}});
     EXPECT_TRUE(longer.is_uniform()) << "what asks for more than the largest asks for nothing";
     EXPECT_EQ(longer.at({1050, 5030}), largest);
 }
@@ -43,7 +43,7 @@ TEST(SizeField, IsUniformWithoutSources) {
 TEST(SizeField, GrowsFromItsSources) {
     const std::vector<SizeSource> sources{{{1020, 5010}, {1020, 5010}, 0.5, 0.5},
                                           {{1050, 5040}, {1090, 5050}, -1, 1}};
-    const SizeField size = field_of(sources);
+    SizeField size = field_of(sources);
     EXPECT_FALSE(size.is_uniform());
     EXPECT_NEAR(size.smallest(), 0.5, 0.1);
     std::mt19937 random(2);
@@ -59,13 +59,13 @@ TEST(SizeField, GrowsFromItsSources) {
 }
 
 TEST(SizeField, OutsideIsAsAtTheBorder) {
-    const SizeField size = field_of({{{1000, 5000}, {1000, 5000}, 1, 1}});
+    SizeField size = field_of({{{1000, 5000}, {1000, 5000}, 1, 1}});
     EXPECT_EQ(size.at({0, 0}), size.at(low));
 }
 
 TEST(SizeField, RefusesWhatNeedsTooManyLeaves) {
     const std::vector<SizeSource> fine{{{1000, 5000}, {1100, 5060}, 1e-3, 1e-3}};
-    const SizeField size = field_of(fine, 1000);
+    SizeField size = field_of(fine, 1000);
     const auto ask = [&] {
         for (int i = 0; i < 2000; ++i)
             size.at({1000 + 0.05 * i, 5000 + 0.03 * i});

@@ -119,5 +119,46 @@ TEST(LayeredMeshTest, BlocksOfOneRockMassStandTogether) {
     EXPECT_THROW(plan_lines(model.view, mixed, 1, {}, 1, nullptr), InputError);
 }
 
+TEST(LayeredMeshTest, ThinLayersEndAtSteepWalls) {
+    const Model model({{0, 50}, {30, 80}, {30.3, 80.3}, {60, 110}});
+    for (const bool divided : {false, true}) {
+        const LayeredMesh mesh = model.mesh(1.5, {0.1, {2, 1, 2}, 0, divided});
+        EXPECT_EQ(mesh.skewed.faces, 0u);
+        EXPECT_LT(mesh.volumes[1], 0.95 * 18);
+        EXPECT_GT(mesh.volumes[1], 0.5 * 18);  // it stays where it goes on evenly
+        EXPECT_NEAR(mesh.volumes[0] + mesh.volumes[1] + mesh.volumes[2], 3600, 1e-6);
+    }
+}
+
+TEST(LayeredMeshTest, LayersOfOneBlockJoinAtSteepWallsWithoutLoss) {
+    const Model model({{0, 50}, {10, 60}});
+    const LayeredMesh mesh = model.mesh(1.5, {0.1, {50}, 0});
+    EXPECT_EQ(mesh.skewed.faces, 0u);
+    EXPECT_NEAR(mesh.volumes[0], 600, 1e-7);
+    EXPECT_EQ(mesh.layers, 50);
+}
+
+TEST(LayeredMeshTest, BlocksThatAreTooTallForTheirTopAreDividedUnlessAskedOtherwise) {
+    const Model model({{0, 0}, {40, 70}});
+    const LayeredMesh free = model.mesh(1, {0.1, {0}, 0});
+    EXPECT_EQ(free.skewed.faces, 0u);
+    EXPECT_GT(free.block_layers[0], 1);
+    EXPECT_EQ(free.layers, free.block_layers[0]);
+    const LayeredMesh one = model.mesh(1, {0.1, {1}, 0});
+    EXPECT_EQ(one.block_layers[0], 1);
+    EXPECT_GT(one.skewed.faces, 0u);
+    EXPECT_GT(one.skewed.most, 4);
+    EXPECT_EQ(one.skewed.tall, std::vector<std::int32_t>{0});
+}
+
+TEST(LayeredMeshTest, AThinSteepModelSaysHowSkewItsFacesAre) {
+    const Model model({{0, 80}, {0.3, 80.3}});
+    const LayeredMesh mesh = model.mesh(1.5, {0.1, {1}, 0});
+    EXPECT_GT(mesh.skewed.faces, 0u);
+    EXPECT_TRUE(mesh.skewed.tall.empty());
+    const double x = mesh.skewed.place[0];
+    EXPECT_TRUE(x == 0 || x == 10) << x;
+}
+
 }  // namespace
 }  // namespace realmodel::simulation

@@ -113,6 +113,7 @@ def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
     items = [item for item in scene.objects if TAG in item or settings.DATA in item]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
+    residuals.follow_exaggeration(scene)
 
 
 def residuals_changed(scene):

@@ -17,10 +17,10 @@ SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
 
 def of_kind(current, kind):
     """{block object: body} of the bodies of a kind."""
-    return {item.parent: item for item in _listed(current, kind) if item.parent is not None}
+    return {item.parent: item for item in listed(current, kind) if item.parent is not None}
 
 
-def _listed(current, kind):
+def listed(current, kind):
     """All bodies of a kind, also those whose block was removed."""
     collection = current.realmodel.view.collection
     return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
@@ -33,7 +33,7 @@ def put(current, kind, shapes, material=None):
     """
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
-    remove(current, kind, [item for item in _listed(current, kind) if item.parent not in wanted])
+    remove(current, kind, [item for item in listed(current, kind) if item.parent not in wanted])
     for block, shape in shapes:
         item = known.get(block)
         if item is not None and item.data.users == 1:
@@ -78,7 +78,7 @@ def follow_materials(current):
 
 def remove(current, kind, items=None):
     """Removes the bodies of a kind, or of them only some, with their meshes."""
-    for item in _listed(current, kind) if items is None else items:
+    for item in listed(current, kind) if items is None else items:
         replacing.remove(item)
     remove_collection_if_empty(current)
 

@@ -78,6 +78,9 @@ def key(scene):
             continue
         if by == "PROPERTY":
             name, _ = materials.name_and_color(library, row.property_id)
+            material = item.material_slots[0].material if len(item.material_slots) else None
+            if material is not None and library_rows.find(scene, row.property_id) is None:
+                name = material.name  # as it was called when the block was built
             entries.setdefault(name, shown_color(item))
         else:
             _, color = _entry(scene, by, row)

@@ -61,6 +61,39 @@ def plane_in_model(current, matrix=None):
     return point + project_settings.model_origin(current), normal / length
 
 
+def place_text(axis):
+    """The getter of a text field: a coordinate of the plane in the model. Text, as Blender's numbers have 32
+    bits, which are too coarse for map coordinates."""
+
+    def get(view):
+        current = view.id_data
+        return "" if plane_of(current) is None else f"{plane_in_model(current)[0][axis]:.3f}"
+
+    return get
+
+
+def move_to(axis):
+    """The setter of that field: moves the plane. What is no number changes nothing."""
+
+    def set_text(view, text):
+        current = view.id_data
+        plane = plane_of(current)
+        try:
+            value = float(text.replace(",", ""))
+        except ValueError:
+            return
+        if plane is None or not np.isfinite(value):
+            return
+        point, _ = plane_in_model(current)
+        point[axis] = value
+        matrix = plane.matrix_world.copy()
+        offset = np.append(point - project_settings.model_origin(current), 1.0)
+        matrix.translation = (exaggeration.matrix(current) @ offset)[:3]
+        plane.matrix_world = matrix
+
+    return set_text
+
+
 def add_plane(current):
     """A plane through the middle of the model, upright, looking south; returns its object."""
     low, high = explosion.bounds(current)

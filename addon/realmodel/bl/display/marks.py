@@ -9,10 +9,18 @@ _OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1],
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])
 
 
-def points(places, radius):
-    """An octahedron around each place, (N, 3), as a PolygonMesh."""
-    coordinates = (places[:, None].astype(np.float32) + radius * _OCTAHEDRON).reshape(-1, 3)
+def points(places, radius, stretch):
+    """An octahedron around each place, (N, 3), as a PolygonMesh. stretch: the vertical exaggeration with
+    which it is shown as long as wide."""
+    body = np.float32(radius) * _OCTAHEDRON / np.array([1.0, 1.0, stretch], np.float32)
+    coordinates = (places[:, None].astype(np.float32) + body).reshape(-1, 3)
     return PolygonMesh(coordinates, *_repeated(_FACES, len(places), 6))
+
+
+def places_of(coordinates):
+    """(N, 3): what the coordinates of `points`, (6 N, 3), were made around."""
+    corners = coordinates.reshape(-1, len(_OCTAHEDRON), 3)
+    return np.column_stack([corners[:, 1, 0], corners[:, 0, 1], corners[:, 0, 2]])
 
 
 def lines(places, pairs, radius, sides=3):

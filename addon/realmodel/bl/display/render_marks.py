@@ -4,7 +4,7 @@ beside it, as thick as points and lines are on the screen."""
 
 import numpy as np
 
-from .. import meshes, versions
+from .. import exaggeration, meshes, versions
 from . import bodies, colors, marks, modes, viewpoints
 
 POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
@@ -20,7 +20,8 @@ def put(scene, mode):
     for item in modes.drawn(scene, "LINES" if mode == "AREAS" else mode):
         coordinates = meshes.mesh_coordinates(item.data)
         if mode == "POINTS":
-            shapes.append((item, marks.points(coordinates, POINT_RADIUS * pixel)))
+            stretch = exaggeration.factor(scene)
+            shapes.append((item, marks.points(coordinates, POINT_RADIUS * pixel, stretch)))
         else:
             shapes.append(
                 (item, marks.lines(coordinates, versions.edge_vertices(item.data), LINE_RADIUS * pixel))

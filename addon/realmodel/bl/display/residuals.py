@@ -4,16 +4,20 @@
 import json
 
 import numpy as np
+from mathutils.kdtree import KDTree
 
 from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
 from ...core.residuals import residuals
-from .. import library_rows, project_settings
+from .. import exaggeration, library_rows, meshes, project_settings
 from . import bodies, colors, explosion, marks, shown_models
 
 _MOST = 20_000  # points shown at most: those farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
-_RADIUS = 0.007  # of the model's size
+_RADIUS, _LEAST_RADIUS = 0.007, 0.0015  # of the model's size, at most and at least
+_APART = 0.1  # of the points may lie so close that their bodies overlap
+_STRETCH = "realmodel_stretch"  # on the object: the vertical exaggeration that its bodies are shaped for
+_ASKED = 2000  # points at most whose distance to the nearest other is looked at
 
 
 def show(current):
@@ -39,15 +43,44 @@ def show(current):
     points = np.concatenate([each.points for each in found]) - project_settings.model_origin(current)
     values = np.concatenate([each.values for each in found])
     order = np.sort(np.argsort(-np.abs(values), kind="stable")[:_MOST])
-    low, high = explosion.bounds(current)
-    shape = marks.points(points[order], _RADIUS * float(np.linalg.norm(high - low)))
-    mesh = bodies.add(current, bodies.RESIDUALS, "Residuals", shape).data
+    shape = _shape(current, points[order])
+    item = bodies.add(current, bodies.RESIDUALS, "Residuals", shape)
+    mesh, item[_STRETCH] = item.data, exaggeration.factor(current)
     low, high = limits(current)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
         code = library_rows.hex_color(color)
         mesh.materials.append(colors.plain_material(f"Residual {code}", code))
     mesh.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
+
+
+def _shape(current, points):
+    """Bodies around points (N, 3), as long as wide with the vertical exaggeration of the scene, and so small
+    that most do not overlap there."""
+    stretch, (low, high) = exaggeration.factor(current), explosion.bounds(current)
+    shown = points * (1.0, 1.0, stretch)
+    tree = KDTree(len(shown))
+    for number, place in enumerate(shown.tolist()):
+        tree.insert(place, number)
+    tree.balance()
+    asked = shown[:: -(-len(shown) // _ASKED)].tolist()
+    nearest = [tree.find_n(place, 2)[-1][2] for place in asked]
+    least, most = (share * float(np.linalg.norm(high - low)) for share in (_LEAST_RADIUS, _RADIUS))
+    apart = float(np.quantile(nearest, _APART)) if len(shown) > 1 else most
+    return marks.points(points, np.clip(0.5 * apart, least, most), stretch)
+
+
+def follow_exaggeration(current):
+    """Shapes the bodies for the vertical exaggeration of the scene."""
+    stretch = exaggeration.factor(current)
+    for item in bodies.listed(current, bodies.RESIDUALS):
+        if item.get(_STRETCH) == stretch:
+            continue
+        item[_STRETCH] = stretch
+        places = marks.places_of(meshes.mesh_coordinates(item.data).astype(np.float64))
+        coordinates = _shape(current, places).coordinates
+        item.data.vertices.foreach_set("co", coordinates.ravel())
+        item.data.update()
 
 
 def hide(current):

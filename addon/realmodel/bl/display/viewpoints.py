@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
 from .. import caches, exaggeration, meshes, viewports
-from . import bodies, modes
+from . import bodies, cuts, explosion, modes
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -101,10 +102,12 @@ def _remember(space):
     _at = len(_history) - 1
 
 
-def model_points(scene):
-    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world."""
+def model_points(scene, cut=False):
+    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world.
+    cut: around what a section plane has left of the blocks."""
     group = scene.realmodel
-    items = [_framed(scene, row) for row in group.results]
+    framed = modes.body_of if cut and cuts.is_shown(scene) else _framed
+    items = [framed(scene, row) for row in group.results]
     if not len(items):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
@@ -120,6 +123,18 @@ def model_points(scene):
         matrix = np.array(exaggeration.world_matrix(item), np.float64)
         found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     return np.concatenate(found) if found else np.empty((0, 3))
+
+
+def camera_sees(scene):
+    """Whether the camera of a scene has a corner or the middle of the model in its frame."""
+    if scene.camera is None:
+        return False
+    box = np.array(explosion.bounds(scene))
+    places = [box.mean(axis=0), *(box[list(corner), range(3)] for corner in np.ndindex(2, 2, 2))]
+    stretched = exaggeration.matrix(scene)
+    places = [(stretched @ np.append(place, 1.0))[:3] for place in places]
+    seen = (world_to_camera_view(scene, scene.camera, Vector(place)) for place in places)
+    return any(0.0 <= at.x <= 1.0 and 0.0 <= at.y <= 1.0 and at.z > 0.0 for at in seen)
 
 
 def _framed(scene, row):

@@ -15,12 +15,12 @@ WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
 
 
-def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):
+def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0, 0.0), stretched=None):
     """The Drawing of a scene's overlay, or None where nothing is switched on.
 
     projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
-    size: of the picture in points. margins: the widths covered by other things at the left and right, in
-    points. stretched: (4, 4), the exaggeration of the vertical, if it is not that of the scene.
+    size: of the picture in points. margins: what other things cover at the left, at the right and below,
+    in points. stretched: (4, 4), the exaggeration of the vertical, if it is not that of the scene.
     """
     group = scene.realmodel
     view_settings = group.view

@@ -31,7 +31,7 @@ def draw():
     draw_for(scene, region.width, region.height, context.region_data, scale, _margins(context.area, scale))
 
 
-def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=None):
+def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0, 0.0), projection=None):
     """Draws the overlay of a scene into the bound framebuffer, size in pixels. view: RegionView3D. scale:
     pixels per point. projection: if it is not that of the view."""
     projection = view.window_matrix if projection is None else projection
@@ -92,11 +92,16 @@ def _text(item, scale):
 
 
 def _margins(area, scale):
-    """The widths that the toolbar at the left and the sidebar at the right cover, in points."""
-    widths = {region.type: region.width for region in area.regions if region.width > 1}
+    """What the toolbar at the left, the sidebar at the right, and the panel of the last operator in the lower
+    left corner cover, in points."""
+    there = {region.type: region for region in area.regions if min(region.width, region.height) > 1}
+    low = there["HUD"].y + there["HUD"].height - there["WINDOW"].y if "HUD" in there else 0
+    if 2 * low > area.height:  # unfolded: a legend above it would have no room
+        low = 0
     if not bpy.context.preferences.system.use_region_overlap:
-        return 0.0, 0.0
-    return widths.get("TOOLS", 0) / scale, widths.get("UI", 0) / scale
+        return 0.0, 0.0, low / scale
+    left, right = (there[kind].width if kind in there else 0 for kind in ("TOOLS", "UI"))
+    return left / scale, right / scale, low / scale
 
 
 def pixel_matrix(width, height):

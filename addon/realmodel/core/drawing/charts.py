@@ -67,13 +67,11 @@ class Axes:
         x, y, width, height = self.box
         size, drawing = self.size, self.drawing
         drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6, layer=layer)
-        widest = 0.0
-        values = ticks(*self.y_range, max(3, int(height / (2.6 * size))))
-        for value, text in zip(values, tick_texts(values), strict=True):
+        values, texts, widest = _y_ticks(self.y_range, height, size)
+        for value, text in zip(values, texts, strict=True):
             ((_, at),) = self.at([(self.x_range[0], value)]).tolist()
             drawing.line([(x - _TICK, at), (x, at)], width=0.6, layer=layer)
             drawing.text(x - _TICK - 2, at - 0.36 * size, text, size, anchor="end", layer=layer)
-            widest = max(widest, text_width(text, size))
         values, texts = self._x_ticks()
         for value, text in zip(values, texts, strict=True):
             ((at, _),) = self.at([(value, self.y_range[0])]).tolist()
@@ -93,6 +91,18 @@ class Axes:
             if sum(text_width(text, self.size) + self.size for text in texts) < self.box[2]:
                 return values, texts
         return values[:1], texts[:1]
+
+
+def _y_ticks(y_range: tuple[float, float], height: float, size: float):
+    """Values and texts of the ticks of an upright axis, and how wide the widest text is."""
+    values = ticks(*y_range, max(3, int(height / (2.6 * size))))
+    texts = tick_texts(values)
+    return values, texts, max(text_width(text, size) for text in texts)
+
+
+def left_margin(y_range: tuple[float, float], height: float, size: float) -> float:
+    """The width that the numbers and the name of an upright axis take."""
+    return _TICK + 2 + _y_ticks(y_range, height, size)[2] + 1.8 * size
 
 
 def legend(

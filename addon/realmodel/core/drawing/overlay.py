@@ -85,16 +85,16 @@ def draw_overlay(
     north: bool,
     scale: bool,
     axes: bool,
-    margins: tuple[float, float] = (0.0, 0.0),
+    margins: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Drawing:
-    """A Drawing as large as the picture. keys: its legends. margins: the widths covered at the left and
-    right, in points."""
+    """A Drawing as large as the picture. keys: its legends. margins: what is covered at the left and right,
+    and below the legends, in points."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
     if axes:
         _axes(drawing, eye, shown)
     for key in keys:
-        left = _legend(drawing, key, left)
+        left = _legend(drawing, key, left, margins[2] + _MARGIN)
     if scale:
         _scale_bar(drawing, eye, shown, left, right)
     if north:
@@ -121,21 +121,21 @@ def legend_extent(key: ColorKey) -> tuple[float, float]:
     return width + 2 * _PAD, height + 2 * _PAD
 
 
-def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
-    """Draws the legend in the lower left corner; returns its right end. Entries without room are counted in
-    the last line."""
-    most = max(int((drawing.height - 2 * _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
+def _legend(drawing: Drawing, key: ColorKey, left: float, below: float) -> float:
+    """Draws the legend with its lower left corner at a place; returns its right end. Entries without room are
+    counted in the last line."""
+    most = max(int((drawing.height - below - _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
     if len(key.entries) > most:
         more = (f"and {len(key.entries) - most + 1} more", _PAPER)
         key = replace(key, entries=[*key.entries[: most - 1], more])
     width, height = legend_extent(key)
-    _paper(drawing, left, _MARGIN, width, height)
-    inner, top = left + _PAD, _MARGIN + height - _PAD
+    _paper(drawing, left, below, width, height)
+    inner, top = left + _PAD, below + height - _PAD
     if key.colors is None or key.limits is None:
         legend(drawing, inner, top, key.title, key.entries, SIZE)
     else:
         drawing.text(inner, top - SIZE, key.title, SIZE)
-        color_bar(drawing, (inner, _MARGIN + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
+        color_bar(drawing, (inner, below + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
     return left + width + _MARGIN
 
 

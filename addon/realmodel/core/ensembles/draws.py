@@ -17,7 +17,7 @@ import numpy as np
 from ..heights import Interpolation, heights
 from ..heights.from_neighbours import structure
 from ..heights.interpolation import Task
-from ..heights.on_mesh import border_nodes
+from ..heights.on_mesh import within_bounds
 from ..heights.surface_reference import heights_of
 from ..methods import SURFACE_OPTIONS, checked_options
 from ..mis_ties import without_mis_ties
@@ -66,7 +66,8 @@ class Draw:
         plain = {option: value for option, value in plain.items() if option in own.settings}
         interpolated = heights(work, drawn, nodes, own.method, plain, threads, triangles)
         z = own.result.z + (at_nodes - interpolated.z)
-        return replace(own.result, z=_bounded(z, settings, own, work, nodes, threads, triangles, surfaces))
+        bounded = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
+        return replace(own.result, z=within_bounds(bounded, z, own.result.z))
 
     def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on
@@ -129,16 +130,3 @@ class Draw:
             at_points += of_points
             at_nodes += of_nodes
         return at_points, at_nodes
-
-
-def _bounded(z, settings, own: _Known, work, nodes, threads, triangles, surfaces) -> np.ndarray:
-    """Heights limited by the surfaces that the options name, as the interpolated ones are."""
-    task = Task(work, np.empty((0, 3)), nodes, settings, threads, triangles, surfaces=surfaces or {})
-    for option, limit in (("above", np.fmax), ("below", np.fmin)):
-        if settings.get(option) is not None:
-            bound = heights_of(task, settings[option], nodes, option)
-            z = np.where(np.isnan(z), z, limit(z, bound))
-    if settings.get("border") is not None:
-        border = border_nodes(triangles, len(nodes))
-        z = np.where(border, own.result.z, z)
-    return z

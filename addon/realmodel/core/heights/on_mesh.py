@@ -11,6 +11,7 @@ from .interpolation import Result, Task
 from .surface_reference import heights_of
 
 _ARGUMENTS = {"border": "equal", "above": "least", "below": "most"}  # of native code, by options
+BOUNDS = tuple(_ARGUMENTS)
 
 
 def dsi(task: Task) -> Result:
@@ -52,6 +53,19 @@ def dsi(task: Task) -> Result:
             "much in size or shape; a more even mesh helps"
         )
     return Result(found["z"], warnings=warnings)
+
+
+def within_bounds(task: Task, z: np.ndarray, at_border: np.ndarray) -> np.ndarray:
+    """(N,) heights that are not of dsi itself, within the bounds of its options; at_border: (N,), those of
+    the nodes at the border where the option gives these."""
+    settings = task.settings
+    for option, limit in (("above", np.fmax), ("below", np.fmin)):
+        if settings.get(option) is not None:
+            bound = heights_of(task, settings[option], task.nodes, option)
+            z = np.where(np.isnan(z), z, limit(z, bound))
+    if settings.get("border") is not None:
+        z = np.where(border_nodes(task.triangles, len(task.nodes)), at_border, z)
+    return z
 
 
 def _called(reference) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..build_warning import BuildWarning
-from ..errors import InputRefused, UsageError
+from ..errors import InputRefused, UsageError, place_text
 from ..finite import is_number
 from ..mesh_sizes import check_mesher, local_lengths
 from ..method_options import check_threads
@@ -67,7 +67,9 @@ def simulation_mesh(
 
     layers: how many each block is divided into: one number, one for each block, or {block name: number}
     (1 where none is given). layer_thickness: instead into layers no thicker than this; `layers` then bounds
-    their number. elements: "prisms", or "tetrahedra": the same mesh with every element divided.
+    their number. Where neither is given a block is one layer, or more where it is so thick that solvers could
+    not use its elements at a steep top or base; a warning says how many. elements: "prisms", or
+    "tetrahedra": the same mesh with every element divided.
     size: where edges are shorter, as of mesh_region; "outline" and "constraints" mean all lines.
     mesher: of the planar mesh.
 
@@ -141,9 +143,10 @@ def simulation_mesh(
                 float(minimum_thickness),
                 numbers,
                 0.0 if layer_thickness is None else float(layer_thickness),
+                elements == "tetrahedra",
                 threads,
             )
-        return _assembled(model, made, elements)
+        return _assembled(model, made, elements, numbers)
 
     return run(fill if without_columns else task, progress, cancel)
 
@@ -151,9 +154,9 @@ def simulation_mesh(
 def layer_numbers(model, layers, layer_thickness) -> list[int]:
     """How many layers each block is divided into, at most; 0: as many as it takes. Raises UsageError."""
     names = [block.name for block in model.blocks]
-    default = 1 if layer_thickness is None else 0
     if layers is None:
-        return [default] * len(names)
+        return [0] * len(names)
+    default = 1 if layer_thickness is None else 0
     if isinstance(layers, Mapping):
         unknown = [name for name in layers if name not in names]
         if unknown:
@@ -200,7 +203,7 @@ def _of_plan(sizes: list[tuple], inner: list[np.ndarray]) -> list[Mapping]:
     return entries + of_inner  # so that messages have the numbers of the entries that were given
 
 
-def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
+def _assembled(model, made: dict, wanted: str, layers: list[int]) -> SimulationMesh:
     elements = {kind: made[kind] for kind in ("tetrahedron", "pyramid", "prism") if len(made[kind]["block"])}
     faces = {kind: made[kind] for kind in ("triangle", "quadrilateral") if len(made[kind][1])}
     if wanted == "tetrahedra" and elements:
@@ -229,12 +232,39 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         ),
         volumes=made["volumes"],
         exact_volumes=np.array([block.volume for block in model.blocks]),
-        warnings=changed_volumes(
-            model,
-            made["volumes"],
-            _CHANGES_LESS,
-        ),
+        warnings=[
+            *changed_volumes(model, made["volumes"], _CHANGES_LESS),
+            *_divided_blocks(model, layers, made["block_layers"]),
+            *_skewed_faces(model, *made["skewed"]),
+        ],
     )
+
+
+def _divided_blocks(model, asked: list[int], layers: list[int]) -> list[BuildWarning]:
+    """A warning for each block that was divided although nothing was said about layers."""
+    return [
+        BuildWarning(
+            f"block '{block.name}' is divided into {number} layers: as one it is too thick for how steep its "
+            "top or base is; give the layers, or their thickness, for others",
+            "mesh_layers",
+            model.rock_inputs[block.rock].rock.name,
+        )
+        for block, given, number in zip(model.blocks, asked, layers, strict=True)
+        if given == 0 and number > 1
+    ]
+
+
+def _skewed_faces(model, count: int, most: float, place: tuple, tall: list[int]) -> list[BuildWarning]:
+    """A warning about faces whose skewness is above the limit of OpenFOAM's checkMesh."""
+    if not count:
+        return []
+    advice = "use a shorter edge length, or a base_elevation farther below"
+    if tall:
+        blocks = ", ".join(f"'{model.blocks[number].name}'" for number in tall)
+        advice = f"use thinner layers in {blocks}"
+    faces = "1 face has" if count == 1 else f"{count} faces have"
+    text = f"{faces} a skewness above 4, up to {most:.1f} near {place_text(place)}"
+    return [BuildWarning(f"{text}: checkMesh fails them; {advice}", "mesh_skewness")]
 
 
 def _of_tetrahedra(model, made: dict) -> SimulationMesh:

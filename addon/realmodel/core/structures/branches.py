@@ -13,14 +13,11 @@ from .triangles import distances, meet, open_edges
 _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault reaches it
 
 
-def require_meeting(faults: list[Fault]) -> None:
-    """Refuses a fault that ends at one that it does not meet. All have arrays. Raises InputRefused."""
-    named = {fault.name: fault for fault in faults}
-    for fault in faults:
-        for name in fault.ends_at:
-            other = named[name]
-            both = np.concatenate([fault.vertices, other.vertices])
-            _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
+def require_meeting(fault: Fault, ends: list[Fault]) -> None:
+    """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
+    for other in ends:
+        both = np.concatenate([fault.vertices, other.vertices])
+        _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
 
 
 def _require_meeting(branch: Fault, other: Fault, near: float) -> None:

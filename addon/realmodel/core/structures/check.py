@@ -54,13 +54,10 @@ def _check_fault(project, fault: Fault) -> None:
     if not isinstance(fault.dies_out, bool):
         raise refuse(f"'dies_out' must be true or false, not {fault.dies_out!r}", "dies_out")
     _check_trace(project, fault, refuse)
-    if fault.points is None and fault.trace is None:
-        for key, given in (("extend", fault.extend), ("stick", fault.stick)):
-            if given:
-                raise refuse(f"'{key}' has no effect, as no surface is fitted through points", key)
-    elif fault.points is None and fault.stick is not None:
-        raise refuse("'stick' has no effect, as its shape is a trace", "stick")
-    elif not _is_length(fault.extend):
+    if fault.points is None and fault.stick:
+        shape = "its shape is a trace" if fault.trace is not None else "no surface is fitted through points"
+        raise refuse(f"'stick' has no effect, as {shape}", "stick")
+    if not _is_length(fault.extend):
         raise refuse(f"'extend' must be a length of at least 0, not {fault.extend!r}", "extend")
     _check_names(project, refuse, "rocks", fault.rocks, "youngest", fault.youngest)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..algebra import dot, norm, principal_axes
 from ..work import Work, run
-from .rock_structure import Triangulation
+from .rock_structure import RockStructure, Triangulation
 from .sides import fault_sides
 from .tips import trace_of
 
@@ -47,7 +47,7 @@ def _displacements(work: Work, model) -> list[Displacement]:
             at = structure.faults.numbers.index(number)
             for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
                 parts = [
-                    _along(work, model, entry, at, k, below, above)
+                    _along(work, structure, at, k, below, above, model.threads)
                     for below, above in _sheet_pairs(structure, at, k)
                 ]
                 joined = [np.concatenate(each) for each in zip(*parts, strict=True)]
@@ -72,9 +72,15 @@ def _sheet_pairs(structure, fault: int, surface: int) -> list[tuple[int, int]]:
     return list(pairs.values())
 
 
-def _along(work: Work, model, entry, fault: int, surface: int, below: int, above: int):
+def throws_between(
+    work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int, threads: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
+    return _along(work, structure, fault, surface, below, above, threads)[:2]
+
+
+def _along(work: Work, structure, fault: int, surface: int, below: int, above: int, threads: int):
     """places (N, 3), throw and heave (N,) of two sheets along a fault."""
-    structure, threads = entry.structure, model.threads
     shape = structure.faults.shapes[fault]
     rows = np.where(structure.faults.active(surface), structure.compartments[[below, above]], 0)
     wanted = np.where(rows[0] != 0, rows[0], rows[1])

@@ -43,7 +43,7 @@ class Fault(_Shape):
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
     or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
     file of either (.pol, or a table; `stick` names the column of the sticks' names). `extend`: how far
-    such a surface is continued beyond the points, model units.
+    the mesh is continued beyond its border, or the fitted surface beyond its points, model units.
 
     Or its shape is a `trace`, the line in which it cuts the ground, with a `dip` in degrees below the
     horizontal: points (N, 2) or (N, 3), several such lines, well-known text, or a file or PointFile of lines.

@@ -3,22 +3,30 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 
 from ..build_warning import BuildWarning
 from ..errors import place_text
+from ..heights.on_mesh import BOUNDS
+from ..heights.run import few_points, runs_away
+from ..local_heights import is_local
 from ..methods import METHODS
 from ..mis_ties import contradictions, mean_heights
-from ..surface_heights import give_heights, needed_surfaces, where_known
+from ..surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
+from .borrowed import as_at_fault, sheet_runs_away
 from .families import Family, keys_of
+from .few_points import are_few, of_residuals
+from .near_rows import near_rows
 from .points_at_faults import beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
-from .sides import sides_of
+from .sides import fault_sides, sides_of
+from .throws import Sheets
 from .tips import shared, trace_of, with_equal_ends
 from .triangles import edges_of
 from .within import Within
@@ -86,16 +94,74 @@ class InterpolatedSurface:
         return (self.keys == family.key).all(axis=1)
 
     def count(self, family: Family) -> int:
-        return int(self.own(family).sum())
+        return int(self._certain(family).sum())
 
     def has_data(self, family: Family) -> bool:
         return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
 
-    def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
-        """The sheet on each side of the faults that die out here, by sides."""
-        own = self.own(family)
+    def has_few_data(self, family: Family) -> bool:
+        """Whether its points do not show its shape there."""
+        if not self.surface.needs_points:
+            return False
+        points = self.points[self._certain(family)]
+        return len(points) == 0 or are_few(self.surface, points, self.entry.region[0], self._within(family))
+
+    def _certain(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
+        points of the other side are theirs."""
+        return self.own(family) & self.counts & ~self.placed.moved.any(axis=1)
+
+    def without_thickness(self) -> InterpolatedSurface:
+        """The same surface without its minimum thickness, for which the older one need not be known."""
+        other = copy(self)
+        other.surface = replace(self.surface, minimum_thickness=None)
+        surfaces = list(self.entry.rock.surfaces)
+        surfaces[self.number] = other.surface
+        other.entry = replace(self.entry, rock=replace(self.entry.rock, surfaces=surfaces))
+        return other
+
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family, across a fault, for this one: as its method continues them, or with the
+        heights that they have at the fault, where they would run away, or the points of this family agree
+        better with that."""
+        shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
+        within, points = self._within(family), self.points[self._certain(family)]
+        found: dict[int, Triangulation] = {}
+        for sheet in sheets.values():
+            if id(sheet) in found:
+                continue
+            found[id(sheet)] = sheet
+            level = as_at_fault(self.work, sheet, shape, side, self.threads)
+            if level is None:
+                continue
+            if len(points):
+                is_level = self._spread(points, level) < self._spread(points, sheet)
+            else:
+                known = fault_sides(self.work, sheet[0], shape, self.threads) == side
+                is_level = sheet_runs_away(sheet, known, within)
+            if is_level:
+                found[id(sheet)] = level
+        return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
+
+    def _spread(self, points: np.ndarray, sheet: Triangulation) -> float:
+        """How different the heights of points (P, 3) above a sheet are."""
+        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
+        off = off[np.isfinite(off)]
+        return float(off.std()) if len(off) else 0.0
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own, for which what is known of these holds, too."""
+        for sides, sheet in sheets.items():
+            self.made[id(sheet)] = (*self.made[id(others[sides])][:2], sheet)
+
+    def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
+        points are few or none."""
+        own = self.own(family) if trends is None else self._certain(family)
+        if trends is not None and not own.any():
+            return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
-        common = self._interpolated(family, first, own)
+        common = self._interpolated(family, first, own, trend=trends and trends[first])
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
@@ -118,39 +184,65 @@ class InterpolatedSurface:
             for number in met
             for side in (-1, 1)
         }
-        seen, attributes = {}, {}
+        of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
         settled = _settled(self.surface, self.made[id(common)][0])
-        for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
+        counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
+        whole_of: dict[tuple[int, ...], np.ndarray] = {}
+
+        def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
             away = np.zeros(len(own), bool)
             for number, side in zip(met, sides, strict=True):
                 if side:
                     away |= hidden[number, side]
-            whole = list(first)
-            for number, side in zip(met, sides, strict=True):
-                whole[number] = side
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            sheet = self._interpolated(family, tuple(whole), visible, settled)
-            seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
-        found = self._with_equal_ends(family, met, seen, attributes, meshed)
+            if counts_by_node:
+                return self._values_at(family, visible, settled, nodes[some])
+            if sides not in whole_of:
+                whole = list(first)
+                for number, side in zip(met, sides, strict=True):
+                    whole[number] = side
+                trend = trends and trends[of_members[sides]]
+                sheet = self._interpolated(family, tuple(whole), visible, settled, trend)
+                whole_of[sides] = self._values_on_nodes(sheet)
+            return whole_of[sides][some]
+
+        values = near_rows(
+            self.work,
+            nodes,
+            meshed,
+            self._values_on_nodes(common),
+            [faults[number] for number in met],
+            sorted(of_members),
+            values_of,
+            self.threads,
+        )
+        found = self._with_equal_ends(family, met, values, meshed, self.made[id(common)][0])
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
-    def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
+    def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
+        """Sheets without points, within the bounds of the surface."""
+        settings = self.surface.method_options()[1]
+        is_bounded = any(settings.get(option) is not None for option in BOUNDS)
+        if self.surface.minimum_thickness is None and not is_bounded:
+            return trends
+        none = np.zeros(len(self.points), bool)
+        return shared({s: self._interpolated(family, s, none, trend=trend) for s, trend in trends.items()})
+
+    def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
         if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets
         _, triangles = self.entry.region
-        heights = {sides: self._on_nodes(sheet) for sides, sheet in sheets.items()}
-        attributes = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
-        known = np.isfinite(list(heights.values())).all(axis=0)
+        values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
+        known = np.isfinite([of[:, 0] for of in values.values()]).all(axis=0)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        return self._with_equal_ends(family, range(len(family.dying)), heights, attributes, meshed)
+        result = self.made[id(next(iter(sheets.values())))][0]
+        return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
 
-    def _with_equal_ends(
-        self, family: Family, some, heights: dict, attributes: dict, meshed: np.ndarray
-    ) -> dict:
-        """Sheets with some heights at the nodes, drawn together beyond the ends of some of the faults that
-        die out. attributes: interpolation and vertex attributes of these sheets, likewise by sides."""
+    def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
+        """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
+        of some of the faults that die out. result: the interpolation that is known of them."""
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
@@ -159,7 +251,7 @@ class InterpolatedSurface:
             self.work,
             nodes,
             meshed,
-            heights,
+            {sides: np.ascontiguousarray(of[:, 0]) for sides, of in values.items()},
             [shapes[fault] for fault in faults],
             self._within(family),
             [0.0 if fault in family.settled else ramp for fault in faults],
@@ -167,7 +259,9 @@ class InterpolatedSurface:
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
-            self.made[id(sheet)] = (*attributes[sides], sheet)
+            known = np.isfinite(equal[sides])[triangles].all(axis=1)
+            its = values[sides][used_vertices(nodes, triangles[known])]
+            self.made[id(sheet)] = (result, {"variance": its[:, 1], "distance": its[:, 2]}, sheet)
         return found
 
     def _interpolated(
@@ -176,14 +270,30 @@ class InterpolatedSurface:
         sides: tuple[int, ...],
         own: np.ndarray,
         surface=None,
+        trend: Triangulation | None = None,
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. Of heights on several sides of faults that die out, at one place, the mean counts."""
+        other options. trend: a sheet that was made here, on which the points are interpolated."""
+        one = self._from_points(family, sides, own, surface or self.surface, self.entry.region, trend)
+        sheet = one.surfaces[self.number]
+        result = one.interpolations[self.number]
+        # the sheet itself is kept, too: so no other gets its id
+        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
+        if trend is None and own.sum() > self.most[0]:
+            self.most = (int(own.sum()), result)
+        for warning in one.warnings:
+            self.entry.structure.warn(list(family.members), warning)
+        return sheet
+
+    def _from_points(self, family: Family, sides, own: np.ndarray, surface, region, trend=None):
+        """The RockInput with the surface from some points on the mesh of a region, and warnings. Of heights
+        on several sides of faults that die out, at one place, the mean counts."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
-        points = np.concatenate([points, self._beyond(family, own)])
-        surfaces[self.number] = replace(surface or self.surface, points=points)
+        if trend is None:
+            points = np.concatenate([points, self._beyond(family, own)])
+        surfaces[self.number] = replace(surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
         shapes: list[Triangulation | None] = [None] * len(surfaces)
@@ -192,22 +302,51 @@ class InterpolatedSurface:
         one = replace(
             entry,
             rock=replace(entry.rock, surfaces=surfaces),
+            region=region,
             surfaces=shapes,
             interpolations=[None] * len(surfaces),
             warnings=[],
             attributes={},
             structure=None,
         )
-        give_heights(self.work, one, self.number, self.threads)
-        sheet = one.surfaces[self.number]
-        result = one.interpolations[self.number]
-        # the sheet itself is kept, too: so no other gets its id
-        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
-        if own.sum() > self.most[0]:
-            self.most = (int(own.sum()), result)
-        for warning in one.warnings:
-            entry.structure.warn(list(family.members), warning)
-        return sheet
+        give_heights(self.work, one, self.number, self.threads, trend and self._trend(trend))
+        return one
+
+    def _counts_by_node(self, surface) -> bool:
+        """Whether heights at some nodes do not depend on others, so that these need not be found."""
+        settings = surface.method_options()[1]
+        return (
+            is_local(surface)
+            and self.entry.draws is None
+            and settings.get("extrapolate") != "none"
+            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
+            and not needed_surfaces(self.entry.rock, self.number)
+        )
+
+    def _values_at(self, family: Family, own: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+        """As _values_on_nodes, at some nodes alone, from some points, of a surface that counts by node."""
+        region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
+        one = self._from_points(family, (), own, surface, region)
+        points, result = one.rock.surfaces[self.number].points, one.interpolations[self.number]
+        for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
+            warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+            self.entry.structure.warn(list(family.members), warning)
+        return np.column_stack([result.z, *one.attributes[self.number].values()])
+
+    def _values_on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
+        none."""
+        z = self._on_nodes(sheet)
+        found = np.full((len(z), 3), np.nan)
+        found[:, 0] = z
+        attributes = self.made[id(sheet)][1]
+        found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
+        return found
+
+    def _trend(self, sheet: Triangulation) -> Trend:
+        interpolation, attributes, _ = self.made[id(sheet)]
+        by = of_residuals(self.surface)
+        return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
     def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
         """(K, 3) points beyond the faults that part the family, for a method that needs them."""

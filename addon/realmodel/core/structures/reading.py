@@ -15,6 +15,7 @@ from ..readers.fault_sticks import read_fault_points
 from ..surface_input import checked_triangulation
 from ..work import Work
 from ..wrong_sides import Triangulation
+from .continued import extended
 from .entries import Body, Fault, body_item, fault_item
 from .fitted import fit_points, fit_sticks
 from .history import displaced_surfaces
@@ -53,6 +54,8 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
         else:
             vertices, triangles = _mesh_of(fault, units, warnings, fault_item(fault))
         triangles = _two_sided(vertices, triangles)
+        if fault.points is None and fault.extend > 0:
+            vertices, triangles = extended(vertices, triangles, fault.extend, not fault.dies_out)
     except InputRefused as error:
         raise _within(error, fault, fault_item(fault)) from error
     return replace(

@@ -14,6 +14,7 @@ from .families import Family, around_tips, families
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
+from .throws import Sheets
 from .tips import hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
 from .triangles import meet, overlapping_pairs, welded
 from .within import Within
@@ -66,8 +67,22 @@ class ReadyMesh:
     def has_data(self, family: Family) -> bool:
         return bool(self.own(family).any())
 
-    def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
-        """The sheet on each side of the faults that die out here, by sides."""
+    def has_few_data(self, family: Family) -> bool:
+        """Never: triangles show a slope."""
+        return False
+
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family as they are: they go on by heights of their vertices."""
+        return sheets
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own; nothing more is known of these."""
+
+    def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where there
+        are no triangles."""
+        if trends is not None:
+            return trends
         own = self.own(family)
         if not self.active.any():
             whole = self.vertices, self.triangles
@@ -148,7 +163,7 @@ class ReadyMesh:
             if place is not None:
                 raise _two_heights_beyond(faults.names[fault], place)
 
-    def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
+    def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
         if len({id(sheet) for sheet in sheets.values()}) == 1:
             return sheets

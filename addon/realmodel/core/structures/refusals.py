@@ -17,6 +17,14 @@ _ADVICE = {
 }
 
 
+def ends_inside(fault, place: tuple[float, float, float] | None) -> InputRefused:
+    """The refusal of a fault whose border is inside the rock at a place; the caller raises it."""
+    file, line = fault.shape_source()
+    what = "it ends inside the rock that it displaces" + (f" near {place_text(place)}" if place else "")
+    advice = _ADVICE["ends_inside"]
+    return InputRefused(what, file=file, line=line, item=fault_item(fault), advice=advice, place=place)
+
+
 def refused_structure(error, structures) -> InputRefused:
     """The refusal for a native InputError about structures; the caller raises it."""
     place = tuple(error.place) if error.place is not None else None
@@ -34,8 +42,8 @@ def refused_structure(error, structures) -> InputRefused:
     elif error.kind == "ends_inside" and is_fault and entry.dies_out:
         what = "beyond its tip the surfaces differ on its two sides"
         advice = "extend it, or give data beyond the tip that agree"
-    elif error.kind == "ends_inside":
-        what = "it ends inside the rock that it displaces"
+    elif error.kind == "ends_inside" and is_fault:
+        return ends_inside(entry, place)
     elif items:
         what = f"{what} (triangle{'s' if len(items) > 1 else ''} {number_list(items)})"
     item = fault_item(entry) if is_fault else body_item(entry)

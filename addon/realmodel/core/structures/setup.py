@@ -16,13 +16,13 @@ from ..project import Project
 from ..rock_input import RockInput, mesh_rock, read_rocks
 from ..surface_input import Reader, read_each
 from ..work import Work, native_module
-from .branches import require_meeting
 from .entries import Body, Fault
+from .gaps import close_gaps, tops_of_faults
 from .parts import Structures, add_compartments, box_around, divide, structures_of
 from .reading import read_structures
 from .refusals import refused_structure
 from .rock_structure import joined
-from .sheets import make_sheets
+from .sheets import make_sheets, warn_of_doubts
 from .sides import FaultShape, fault_sides
 
 _READ, _MESHED = 0.2, 0.3  # of the time
@@ -53,15 +53,28 @@ def make_structures(
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
         faults = [_facing_up(work, fault) for fault in faults]
-        require_meeting(faults)
         structures = structures_of(project, faults, bodies)
         box = box_around(inputs, structures)
+        structures = _without_gaps(work, structures, inputs, box, threads)
         structures = divide(work, structures, box, threads)
-    steps = np.linspace(first, end, len(inputs) + 1).tolist()
+    is_closed = False
     for _ in range(_ROUNDS):
         add_compartments(structures, inputs)
-        for entry, begin, finish in zip(inputs, steps[:-1], steps[1:], strict=True):
-            make_sheets(work, entry, begin, finish, threads, stage, keep)
+        tops = [tops_of_faults(structures, number, entry.rock) for number, entry in enumerate(inputs)]
+        middle = first + (end - first) * sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
+        _make_all(work, inputs, tops, first, middle, threads, stage, keep)
+        if not is_closed:
+            is_closed = True
+            closed = _without_gaps(work, structures, inputs, box, threads, has_sheets=True)
+            if closed is not structures:
+                structures = divide(work, closed, box, threads)
+                add_compartments(structures, inputs)
+                _make_all(work, inputs, tops, first, middle, threads, stage, keep)
+        _make_all(work, inputs, None, middle, end, threads, stage, keep)
+        for entry in inputs:
+            names = [surface.name for surface in entry.rock.surfaces]
+            entry.structure.warnings.sort(key=lambda each: names.index(each[1].surface))
+            warn_of_doubts(work, entry, threads, stage, keep)
         wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
             break
@@ -82,6 +95,26 @@ def make_structures(
                 if None not in sheets:  # not younger than the stage
                     entry.surfaces[number] = joined(sheets)
     return structures
+
+
+def _make_all(work: Work, inputs: list, numbers: list[set[int]] | None, start, end, threads, stage, keep):
+    """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
+    steps = np.linspace(start, end, len(inputs) + 1).tolist()
+    every = numbers or [None] * len(inputs)
+    for entry, some, begin, finish in zip(inputs, every, steps[:-1], steps[1:], strict=True):
+        make_sheets(work, entry, begin, finish, threads, stage, keep, some)
+
+
+def _without_gaps(
+    work: Work, structures: Structures, inputs: list, box, threads: int, has_sheets: bool = False
+) -> Structures:
+    """The structures with their faults continued where close_gaps does so; the same ones where it does not.
+    Its warnings are added to the first RockInput."""
+    faults, warnings = close_gaps(work, structures, inputs, box, threads, has_sheets)
+    if not warnings:
+        return structures
+    inputs[0].warnings += warnings
+    return replace(structures, faults=faults)
 
 
 def structured_inputs(

@@ -5,21 +5,22 @@ displace it, from the data in these compartments."""
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
-from ..build_warning import BuildWarning
-from ..errors import InputRefused
+from ..doubtful_heights import Compartment, doubtful_heights
 from ..mapped_arrays import Keep, as_it_is
-from ..project import surface_item
 from ..surface_heights import interpolation_order
 from ..work import Work
 from ..wrong_sides import Triangulation, points_too_low
-from .families import Family, around_tips, families
+from .compartment_sheets import CompartmentSheets, make_borrowed, named
 from .interpolated_sheets import InterpolatedSurface
 from .points_at_faults import point_sides
 from .ready_sheets import ReadyMesh
+from .sides import sides_of
+from .throws import Throws
 
 
 def make_sheets(
@@ -30,46 +31,86 @@ def make_sheets(
     threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
+    numbers: Collection[int] | None = None,
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
     Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
+    numbers: of the surfaces, with those that they need; None: of all that have no sheets yet.
 
-    Raises InputRefused for a surface that has data in no compartment.
+    Surfaces without enough data in a compartment come last, for the throw of others is needed there: also
+    that of those younger than `stage`, so that a stage is as in the whole. Raises InputRefused for a surface
+    that has data in no compartment.
     """
     rock = entry.rock
     count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
-    interpolated = interpolation_order(rock, stage)
-    ready = [number for number in range(count) if number not in interpolated]
-    steps = np.linspace(start, end, count + 1).tolist()[len(ready) :]
+    interpolated, ready = (
+        [
+            number
+            for number in each
+            if (numbers is None or number in numbers) and not _has_sheets(entry, number)
+        ]
+        for each in _by_kind(rock, stage)
+    )
+    steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
-    def sheets_of(part: Work, number: int, own_threads: int) -> list:
+    def begin(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
+        """The sheets of a surface that are not all made yet."""
+        kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
+        with named(rock, number):
+            sheets = CompartmentSheets(entry, number, kind(part, entry, number, own_threads))
+        sheets.make_own()
+        if sheets.waiting:
+            return [sheets]
+        if sheets.few:
+            few.add(number)
+        finish(sheets)
+        return []
+
+    def begin_ready(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
         with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
-            return _make_named(ReadyMesh, part, entry, number, own_threads, keep)
+            return begin(part, number, own_threads)
 
+    def finish(sheets: CompartmentSheets) -> None:
+        with named(rock, sheets.number):
+            sheets.finish()
+        _keep(entry, sheets.number, keep)
+
+    few = entry.structure.few
     # ready meshes need no others
     with work.phase(start, steps[0], "interpolating surfaces"):
-        for warnings in work.each(sheets_of, ready, threads):
-            entry.structure.warnings += warnings
-    for number, (begin, finish) in zip(interpolated, itertools.pairwise(steps), strict=True):
-        with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
-            entry.structure.warnings += _make_named(InterpolatedSurface, work, entry, number, threads, keep)
-    for number in sorted(interpolated):
-        _warn_of_points_too_low(work, entry, number, threads)
+        unfinished = list(itertools.chain(*work.each(begin_ready, ready, threads)))
+    for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
+        with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
+            unfinished += begin(work, number, threads)
+    if unfinished:
+        with work.phase(end, end, "interpolating surfaces"):
+            begun = {*ready, *interpolated}
+            for number in itertools.chain(*reversed(_by_kind(rock, None))):
+                if number not in begun and not _has_sheets(entry, number):
+                    unfinished += begin(work, number, threads)
+            for sheets in unfinished:
+                sheets.surface.work = work
+            make_borrowed(unfinished, Throws(work, entry.structure, few, threads), finish)
+        younger = {surface.name for surface in rock.surfaces[count:]}
+        warnings = entry.structure.warnings
+        entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
 
 
-def _make_named(kind, work: Work, entry, number: int, threads: int, keep: Keep) -> list:
-    """_make; its errors name the surface."""
-    rock = entry.rock
-    try:
-        warnings = _make(entry, number, kind(work, entry, number, threads))
-    except InputRefused as error:
-        if error.item is not None and error.item.startswith("rock '"):
-            raise
-        surface = rock.surfaces[number]
-        file, line = surface.shape_source()
-        raise error.within(surface_item(rock, surface), file=file, line=line) from error
-    _keep(entry, number, keep)
-    return warnings
+def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
+    """The surfaces that are interpolated, each after those that it needs, and the others."""
+    interpolated = interpolation_order(rock, stage)
+    count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
+    return interpolated, [number for number in range(count) if number not in interpolated]
+
+
+def _has_sheets(entry, number: int) -> bool:
+    return entry.structure.sheets[0][number] is not None
+
+
+def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Keep) -> None:
+    """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
+    for number in sorted(interpolation_order(entry.rock, stage)):
+        _warn_of_doubts(work, entry, number, threads, keep)
 
 
 def _keep(entry, number: int, keep: Keep) -> None:
@@ -91,15 +132,14 @@ def _keep(entry, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
-    """Adds the warnings of points_too_low, compartment by compartment."""
+def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) -> None:
+    """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
+    compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = point_sides(work, points, structure, number, threads).sides
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
-        if not own.any():
-            continue
         its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
         one = replace(
             entry,
@@ -108,71 +148,13 @@ def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
             warnings=[],
             structure=None,
         )
-        for warning in points_too_low(work, one, [number], threads):
+
+        def holds(places: np.ndarray, row=row) -> np.ndarray:
+            return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
+
+        found = points_too_low(work, one, [number], threads)
+        if keep is as_it_is:
+            of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
+            found += doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds))
+        for warning in found:
             structure.warn([compartment], warning)
-
-
-def _make(entry, number: int, surface) -> list:
-    """Makes the sheets of a surface. Returns warnings, as a RockStructure has them, of compartments without
-    data."""
-    structure, warnings = entry.structure, []
-    every = families(structure, number)
-    with_data = [family for family in every if surface.has_data(family)]
-    if not with_data:
-        raise InputRefused(
-            f"its {surface.data} lie in no compartment of the rock mass",
-            advice="check the coordinates of the surface and of the faults",
-        )
-    made = {family.key: surface.sheets(family) for family in with_data}
-    counts = {family.key: surface.count(family) for family in every}
-    lacking = [family for family in every if family.key not in made]
-    while lacking:
-        sources = {family.key: _neighbor(family.key, made, counts) for family in lacking}
-        if not any(sources.values()):  # none of them is across one fault only
-            sources = dict.fromkeys(sources, max(made, key=lambda key: (counts[key], key)))
-        for family in lacking:
-            if (source := sources[family.key]) is not None:
-                made[family.key] = _taken_over(surface, family, made[source])
-                origin = next(each for each in every if each.key == source)
-                warnings.append(_taken_over_warning(entry, number, surface, family, origin))
-        lacking = [family for family in lacking if family.key not in made]
-    for family in every:
-        for compartment, sides in family.members.items():
-            structure.sheets[compartment][number] = made[family.key][sides]
-    for together in around_tips(structure, number, every):
-        sheets = {sides: structure.sheets[each][number] for each, sides in together.members.items()}
-        drawn = _drawn_together(surface, together, sheets)
-        for compartment, sides in together.members.items():
-            structure.sheets[compartment][number] = drawn[sides]
-    surface.finish(structure.distinct(number))
-    return warnings
-
-
-def _neighbor(key, made, counts):
-    """The family with the most data among those with sheets across one fault; None where there is none."""
-    near = [other for other in made if sum(a != b for a, b in zip(key, other, strict=True)) == 1]
-    return max(near, key=lambda other: (counts[other], other), default=None)
-
-
-def _taken_over(surface, family: Family, sheets: dict) -> dict:
-    """Sheets of another family by the sides of this one, whose faults that die out may differ."""
-    first = next(iter(sheets.values()))
-    taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
-    return _drawn_together(surface, family, taken)
-
-
-def _drawn_together(surface, family: Family, sheets: dict) -> dict:
-    """Sheets by sides, equal beyond the tips; the same ones where they were."""
-    drawn = surface.drawn_together(family, sheets)
-    return {
-        sides: sheet if np.array_equal(drawn[sides][0], sheet[0]) else drawn[sides]
-        for sides, sheet in sheets.items()
-    }
-
-
-def _taken_over_warning(entry, number: int, surface, family: Family, source: Family):
-    names = entry.structure.names
-    here, there = (names[next(iter(each.members))] for each in (family, source))
-    text = f"it has no {surface.data} in compartment '{here}': there it goes on as in compartment '{there}'"
-    warning = BuildWarning(text, "compartment", entry.rock.name, entry.rock.surfaces[number].name)
-    return list(family.members), warning

@@ -17,6 +17,7 @@ import numpy as np
 from ..algebra import norm
 from ..work import Work, native_module
 from .between_sheets import places_between
+from .near_rows import triangles_met, with_neighbors
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .triangles import (
@@ -228,13 +229,15 @@ def with_equal_ends(
         inside = known & within(low) & within(high)
         whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
         doubtful = [
-            whole[_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
+            whole[triangles_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
             for fault in faults
         ]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
-    every = np.concatenate([np.column_stack([plan, z])[np.isfinite(z)] for z in heights.values()])
-    continuations = [_continued(fault, box_of(every)) for fault in faults]
+    lowest, highest = (each.reduce(list(heights.values()), axis=0) for each in (np.fmin, np.fmax))
+    some = np.isfinite(lowest)
+    box = box_of(*(np.column_stack([plan, z])[some] for z in (lowest, highest)))
+    continuations = [_continued(fault, box) for fault in faults]
     drawn = _Drawn(plan, ramps, ends, near, of_branches)
     looked_at: dict[int, np.ndarray] = {}
     while True:
@@ -267,7 +270,7 @@ def _draw_where_passed(
     places: of all sheets; some: (T, 3) int32 triangles of these. inside: (N,) bool, the nodes at which all
     sheets are in the compartment."""
     node = places.node
-    met = _met(work, fault, places.points, places.points, some, threads)
+    met = triangles_met(work, fault, places.points, places.points, some, threads)
     passes = met == _PASSES
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
@@ -365,7 +368,9 @@ def _draw_between(
     low, high = np.nan_to_num(low), np.nan_to_num(high)
     between = {}
     for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
-        some = differ[_met(work, fault, low, high, differ, threads) == _PASSES] if fault.dies_out else ()
+        if not fault.dies_out:
+            continue
+        some = differ[triangles_met(work, fault, low, high, differ, threads) == _PASSES]
         if len(some):
             between[number] = _between(work, plan, some, found, number, fault, others, within, threads)
     places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
@@ -439,23 +444,14 @@ def _pairs(sheets: dict, number: int):
                 yield one, other
 
 
-def _met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
-    """(T,) uint8: the triangles that a fault touches or passes beyond its ends, between two heights."""
-    triangles = np.ascontiguousarray(triangles)
-    return work.native(
-        native_module().structure_beyond, fault.native(), low, high, triangles, threads=threads
-    )
-
-
 def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:
     """(N,) bool: the nodes of triangles with corners on given sides of all faults, and those beside them."""
-    whole = np.ones(len(triangles), bool)
-    for own, also in zip(on_side, passed, strict=True):
-        whole &= (own | also)[triangles].any(axis=1)
-    found = np.zeros(len(on_side[0]), bool)
-    found[triangles[whole]] = True
-    found[triangles[found[triangles].any(axis=1)]] = True
-    return found
+    count = len(on_side)
+    of_node = np.packbits([own | also for own, also in zip(on_side, passed, strict=True)], axis=0)
+    a, b, c = (of_node[:, corner] for corner in triangles.T)
+    found = np.zeros(of_node.shape[1], bool)
+    found[triangles[((a | b | c) == np.packbits(np.ones((count, 1), bool), axis=0)).all(axis=0)]] = True
+    return with_neighbors(triangles, found)
 
 
 def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.ndarray]:
@@ -511,7 +507,7 @@ def _continued(fault: FaultShape, box: np.ndarray) -> np.ndarray:
 def _met_points(work: Work, fault: FaultShape, points: np.ndarray, threads: int) -> np.ndarray:
     """(P,) bool: the points at which a fault would go on beyond its ends."""
     alone = np.repeat(np.arange(len(points), dtype=np.int32)[:, None], 3, axis=1)
-    return _met(work, fault, points, points, alone, threads) > 0
+    return triangles_met(work, fault, points, points, alone, threads) > 0
 
 
 def _lie_in(

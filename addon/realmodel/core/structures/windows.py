@@ -13,7 +13,9 @@ from ..algebra import norm
 from ..mapped_arrays import Keep, as_it_is
 from ..rock_input import RockInput
 from ..tiles.grid import TileGrid, tile_grid, triangles_by_tile
+from ..tiles.tile_model import without_shape
 from ..work import Work, native_module
+from .entries import Body, Fault
 from .joining import beyond_all
 from .parts import Structures
 from .reach import Reach
@@ -238,8 +240,8 @@ class Windows:
         faults = [number for number in present if number < count]
         bodies = [number - count for number in present if number >= count]
         few = Structures(
-            [whole.faults[number] for number in faults],
-            [whole.bodies[number] for number in bodies],
+            [_mesh_alone(whole.faults[number], points=None) for number in faults],
+            [_mesh_alone(whole.bodies[number]) for number in bodies],
             [whole.displaced[number] for number in faults],
             [whole.times[number] for number in bodies],
             np.ascontiguousarray(sides),
@@ -300,11 +302,9 @@ class Windows:
             region = np.ascontiguousarray(plan.vertices[used]), triangles
         nothing = [None] * len(entry.surfaces)
         surfaces = [joined(found.distinct(k)) for k in range(len(entry.surfaces))]
-        given = [
-            replace(surface, vertices=vertices, triangles=triangles, points=None)
-            for surface, (vertices, triangles) in zip(entry.rock.surfaces, surfaces, strict=True)
-        ]
-        stub = replace(entry.rock, surfaces=given)
+        stub = without_shape(entry.rock)
+        for surface, (vertices, triangles) in zip(stub.surfaces, surfaces, strict=True):
+            surface.vertices, surface.triangles = vertices, triangles
         return RockInput(stub, surfaces, region, nothing, nothing, structure=found, torn=entry.torn)
 
     @staticmethod
@@ -358,6 +358,11 @@ def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:
     """(N,) bool: which rows (N, S) of sides may lie where the sides of all but some structures are fixed."""
     rest = np.setdiff1d(np.arange(sides.shape[1]), kept)
     return ((sides[:, rest] == fixed[rest]) | (sides[:, rest] == 0)).all(axis=1)
+
+
+def _mesh_alone(entry: Fault | Body, **more) -> Fault | Body:
+    """A fault or body with its arrays alone, and the file that they are from for messages."""
+    return replace(entry, mesh=None, source=None, shape_file=entry.shape_source()[0], **more)
 
 
 def _faults(faults: RockFaults, at: list[int], present: list[int]) -> RockFaults:

@@ -66,21 +66,24 @@ class Frame:
     off: tuple[frozenset[int], ...] = ()
 
 
+def without_shape(rock: Rock) -> Rock:
+    """A rock mass with names, rules, properties and, for messages, files alone."""
+    surfaces = [
+        Surface(
+            surface.name,
+            rule=surface.rule,
+            property=surface.property,
+            block=surface.block,
+            shape_file=surface.shape_source()[0],
+        )
+        for surface in rock.surfaces
+    ]
+    return Rock(rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.region_source()[0])
+
+
 def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
     """The project with names, rules and properties alone."""
-    rocks = []
-    for entry in inputs:
-        surfaces = [
-            Surface(
-                surface.name,
-                rule=surface.rule,
-                property=surface.property,
-                block=surface.block,
-                shape_file=surface.shape_source()[0],
-            )
-            for surface in entry.rock.surfaces
-        ]
-        rocks.append(Rock(entry.rock.name, surfaces, base_elevation=entry.rock.base_elevation))
+    rocks = [without_shape(entry.rock) for entry in inputs]
     return Project(
         project.name,
         rocks,

@@ -53,9 +53,12 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
 /// How columns are divided.
 struct Layering {
     double minimum_thickness = 0;
-    std::vector<std::int32_t> layers;  ///< of each block, at most
-    double layer_thickness = 0;        ///< 0: each block into `layers` everywhere; else into layers
-                                       ///< no thicker than this, as far as there are that many
+    std::vector<std::int32_t> layers;  ///< of each block, at most; 0: see layer_thickness
+    double layer_thickness = 0;        ///< 0: each block into `layers` everywhere, or, if these are
+                                       ///< 0, into one, and more where it is too tall for its top
+                                       ///< or base; else into layers no thicker than this, as far
+                                       ///< as there are that many
+    bool divided = false;  ///< elements will be divided into tetrahedra: these are judged
 };
 
 /// Columns of prisms, of pyramids and tetrahedra where layers end. Corners as VolumeMesh of
@@ -78,14 +81,22 @@ struct LayeredMesh {
     Faces<3> triangles;
     Faces<4> quadrilaterals;
     meshing::PlanarMesh plan;
-    std::int32_t layers = 0;      ///< of the rock mass that has most
-    std::vector<double> volumes;  ///< of each block
+    std::int32_t layers = 0;                 ///< of the rock mass that has most
+    std::vector<double> volumes;             ///< of each block
+    std::vector<std::int32_t> block_layers;  ///< of each block, as Layering::layers
+    /// Faces whose skewness, as OpenFOAM's checkMesh measures it, stays above 4.
+    struct Skewed {
+        std::size_t faces = 0;
+        double most = 0;
+        std::array<double, 3> place{};   ///< of the worst
+        std::vector<std::int32_t> tall;  ///< blocks that are too thick at the top or base for that
+    } skewed;
 };
 
 /// @param plan  a mesh of the region that contains the segments of `lines`
 /// @throws InputError kinds not_layered (place), too_large; Cancelled
 LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t> block_rock,
-                         const PlanLines& lines, meshing::PlanarMesh plan, const Layering& layering,
+                         const PlanLines& lines, meshing::PlanarMesh plan, Layering layering,
                          int threads, Progress* progress);
 
 }  // namespace realmodel::simulation

@@ -1,0 +1,354 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults whose borders all but reach where the rock ends that they displace: they are continued to it, or
+refused where they end inside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..algebra import dot, norm, principal_axes
+from ..build_warning import BuildWarning
+from ..errors import InputRefused, place_text
+from ..planar_mesh import triangulate_rings
+from ..rules import RULES
+from ..surface_heights import needed_surfaces
+from ..work import Work
+from ..wrong_sides import heights_at
+from .branches import require_meeting
+from .continued import Border, border_of, connected, continued
+from .entries import Fault, fault_item
+from .fitted import plane_axes
+from .part_models import level
+from .parts import Structures
+from .refusals import ends_inside
+from .sides import FaultShape, fault_sides, sides_of
+from .triangles import edges_of
+
+_GAP = 0.25  # of an edge length: a narrower gap is closed
+_SHARE = 0.5  # of the part of a side of the border that is in the rock: with so much near its end, it reaches
+_SAMPLES = (4, 256)  # of an edge: so many at least and at most, about two in the width of a gap
+_HALVINGS = 30  # of that width: how precisely a gap is measured
+_MARGIN = 0.25  # of the range of a surface's points: how far beyond it the surface may be
+_MEASURED = 100_000  # triangles of a mesh, for the length of its edges
+_STEPS = 50  # in which the directions of a border are smoothed, at most
+
+
+class _Samples(NamedTuple):
+    """Places on a border: points (N, 3); edge (N,) the number of the edge of each; weight (N,) the length
+    that it stands for; way (N, 3) in which the border is continued there; side (N,) the number of the side of
+    the border; inside (N,) bool, whether it is in the rock, near (N,) bool, also near where that ends."""
+
+    points: np.ndarray
+    edge: np.ndarray
+    weight: np.ndarray
+    way: np.ndarray
+    side: np.ndarray
+    inside: np.ndarray
+    near: np.ndarray
+
+    def some(self, chosen: np.ndarray) -> _Samples:
+        """Some of them, (N,) bool."""
+        return _Samples(*(each[chosen] for each in self))
+
+
+# whether points (N, 3) are in the rock, as far as one thing tells that ends it, by what it is called
+_Conditions = dict[str, Callable[[np.ndarray], np.ndarray]]
+
+
+def edge_length(entry) -> float:
+    """The median edge of the planar mesh of a RockInput; where it has none, of its surfaces, in plan."""
+    meshes = [entry.region] if entry.region is not None and entry.rock.interpolates else []
+    meshes = meshes or [shape for shape in entry.surfaces if shape is not None]
+    lengths = []
+    for vertices, triangles in meshes:
+        some = triangles[:: max(1, len(triangles) // _MEASURED)]
+        a, b = vertices[edges_of(some), :2].transpose(1, 0, 2)
+        lengths.append(norm(b - a))
+    return float(np.median(np.concatenate(lengths))) if lengths else 0.0
+
+
+def close_gaps(
+    work: Work, structures: Structures, inputs: list, box: np.ndarray, threads: int, has_sheets: bool = False
+) -> tuple[list[Fault], list[BuildWarning]]:
+    """The faults of some structures, with arrays, continued where their borders end short of the wall of a
+    rock mass (RockInput), of a fault at which they end, or, where the sheets are known, of the youngest
+    surface that they displace and of those that cut it; and a warning for each such end.
+
+    box: around all rock, (2, 3). Raises InputRefused for a fault whose border is inside the rock, as far as
+    that is certain.
+    """
+    faults, warnings = list(structures.faults), []
+    number_of = {fault.name: number for number, fault in enumerate(faults)}
+    waiting = list(range(len(faults)))
+    while waiting:  # each after those at which it ends
+        number = next(n for n in waiting if not any(number_of[each] in waiting for each in faults[n].ends_at))
+        waiting.remove(number)
+        ends = [faults[number_of[name]] for name in faults[number].ends_at]
+        around = [
+            _Around(work, structures, inputs[rock], number, last, threads)
+            for rock, last in structures.displaced[number].items()
+            if not has_sheets or None not in inputs[rock].structure.distinct(last)
+        ]
+        if not len(_outer_border(faults[number]).edges):
+            continue
+        for each in around:
+            faults[number], more = each.closed(faults[number], ends, box, has_sheets)
+            warnings += more
+        require_meeting(faults[number], ends)
+        for each in around:
+            each.require_end(faults[number], ends, box, has_sheets)
+    return faults, warnings
+
+
+def tops_of_faults(structures: Structures, number: int, rock) -> set[int]:
+    """Of one rock mass the surfaces whose sheets are made before close_gaps looks at them: the youngest ones
+    that faults displace, those that cut them later, what these need, and ready meshes."""
+    youngest = [displaced[number] for displaced in structures.displaced if number in displaced]
+    cutting = [n for n, surface in enumerate(rock.surfaces) if n >= min(youngest, default=n + 1)]
+    found = {n for n in cutting if n in youngest or RULES[rock.surfaces[n].rule].cuts}
+    found |= {n for n, surface in enumerate(rock.surfaces) if not surface.interpolated}
+    waiting = list(found)
+    while waiting:
+        more = set(needed_surfaces(rock, waiting.pop())) - found
+        found |= more
+        waiting += more
+    return found
+
+
+class _Around:
+    """A fault in one rock mass. last: the youngest surface of it that the fault displaces."""
+
+    def __init__(self, work: Work, structures: Structures, entry, number: int, last: int, threads: int):
+        self.work, self.structures, self.entry, self.threads = work, structures, entry, threads
+        self.number, self.last = number, last
+        self.width = _GAP * edge_length(entry)
+
+    def closed(
+        self, fault: Fault, ends: list[Fault], box, has_sheets: bool
+    ) -> tuple[Fault, list[BuildWarning]]:
+        """The fault, continued where its border all but reaches the end of the rock, and warnings."""
+        if fault.dies_out and not ends:
+            return fault, []
+        border, conditions = _outer_border(fault), self._conditions(fault, ends, has_sheets)
+        samples = self._looked_at(fault, border, conditions, box, ends)
+        samples = samples.some(samples.near)
+        if not len(samples.points):
+            return fault, []
+        chosen = np.zeros(len(border.edges), bool)
+        chosen[samples.edge] = True
+        try:
+            vertices, triangles = continued(fault.vertices, fault.triangles, border.some(chosen), self.width)
+        except InputRefused:  # it is not known where to: it ends where it ends
+            return fault, []
+        return replace(fault, vertices=vertices, triangles=triangles), self._warnings(
+            fault, conditions, samples
+        )
+
+    def _looked_at(
+        self, fault: Fault, border: Border, conditions: _Conditions, box, ends: list[Fault]
+    ) -> _Samples:
+        """Places on the border. A side of it is near the end of the rock if most of what it has inside is. A
+        fault that dies out may end near walls and surfaces: it only reaches those at which it ends."""
+        ending = conditions
+        if fault.dies_out:
+            ending = {fault_item(other): conditions[fault_item(other)] for other in ends}
+        ways = _smoothed(fault.vertices, border, self.width)
+        points, edge, weight = _spread(fault.vertices, border, self.width)
+        way, side = ways[edge], _sides_of_border(fault.vertices, border, ways)[edge]
+        z = points[:, 2]
+        inside = (z > box[0, 2]) & (z < box[1, 2])
+        inside[inside] = _in_all(conditions, points[inside])
+        near = inside.copy()
+        near[inside] = ~_in_all(ending, points[inside] + self.width * way[inside])
+        of_side, of_near = (np.bincount(side, weight * each) for each in (inside, near))
+        near &= (of_near >= _SHARE * of_side)[side]
+        return _Samples(points, edge, weight, way, side, inside, near)
+
+    def _conditions(self, fault: Fault, ends: list[Fault], has_sheets: bool) -> _Conditions:
+        found = self._walls() | {fault_item(other): self._side_of(fault, other) for other in ends}
+        return found | self._tops() if has_sheets else found
+
+    def _walls(self) -> _Conditions:
+        """Whether points are over the rock in plan, as far as the displaced surfaces reach."""
+        entry, shapes = self.entry, []
+        surfaces = entry.surfaces[: self.last + 1]
+        if entry.region is not None:
+            shapes = [level(triangulate_rings(entry.rock.rings()), 0.0)]
+        covers = [] if None in surfaces else surfaces
+
+        def over(points: np.ndarray) -> np.ndarray:
+            found = np.ones(len(points), bool)
+            for some in (shapes, covers):
+                if some:
+                    found &= np.any([self._heights(each, points) < np.inf for each in some], axis=0)
+            return found
+
+        return {"the wall": over}
+
+    def _side_of(self, fault: Fault, other: Fault) -> Callable[[np.ndarray], np.ndarray]:
+        """Whether points are on the side of another fault on which the larger part of this one is."""
+        shape = FaultShape(other.vertices, other.triangles, other.dies_out)
+        a, b, c = fault.vertices[fault.triangles].transpose(1, 0, 2)
+        area = norm(np.cross(b - a, c - a))
+        kept = dot(fault_sides(self.work, (a + b + c) / 3, shape, self.threads), area) > 0
+
+        def beside(points: np.ndarray) -> np.ndarray:
+            return (fault_sides(self.work, points, shape, self.threads) > 0) == kept
+
+        return beside
+
+    def _tops(self) -> _Conditions:
+        """Whether points are below the youngest surface that is displaced, if it ends what was there, and
+        below those that cut it later."""
+        rules = [surface.rule for surface in self.entry.rock.surfaces]
+        numbers = [n for n in range(self.last, len(rules)) if RULES[rules[n]].cuts]
+        return {
+            f"surface '{self.entry.rock.surfaces[n].name}'": self._below(n)
+            for n in numbers
+            if None not in self.entry.structure.distinct(n)
+        }
+
+    def _below(self, surface: int) -> Callable[[np.ndarray], np.ndarray]:
+        def below(points: np.ndarray) -> np.ndarray:
+            _, high = self.sheets_at(surface, points)
+            return ~(points[:, 2] > high)
+
+        return below
+
+    def sheets_at(self, surface: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(N,) the heights of the lower and the higher sheet of a surface on the two sides of this fault, at
+        points (N, 3); NaN where there is none."""
+        structure = self.entry.structure
+        low, high = np.full(len(points), np.nan), np.full(len(points), np.nan)
+        active = structure.faults.active(surface)
+        if self.number in structure.faults.numbers:
+            active[structure.faults.numbers.index(self.number)] = False
+        sides = sides_of(self.work, points, structure.faults, self.threads, np.flatnonzero(active).tolist())
+        for sheet in structure.distinct(surface):
+            own = [n for n, sheets in enumerate(structure.sheets) if sheets[surface] is sheet]
+            rows = np.unique(structure.compartments[own][:, active], axis=0)
+            there = (sides[:, None, active] == rows).all(axis=2).any(axis=1)
+            if not there.any():
+                continue
+            z = self._heights(sheet, points[there])
+            low[there], high[there] = np.fmin(low[there], z), np.fmax(high[there], z)
+        return low, high
+
+    def _heights(self, sheet, points: np.ndarray) -> np.ndarray:
+        return heights_at(self.work, sheet, points[:, :2], self.threads)
+
+    def require_end(self, fault: Fault, ends: list[Fault], box, has_sheets: bool) -> None:
+        """Refuses a fault whose border certainly ends inside the rock. Raises InputRefused."""
+        if fault.dies_out or self.structures.bodies:  # it may end inside a body
+            return
+        conditions = self._conditions(fault, ends, has_sheets)
+        samples = self._looked_at(fault, _outer_border(fault), conditions, box, ends)
+        if has_sheets:  # between the two sheets there is different rock on its two sides
+            low, high = self.sheets_at(self.last, samples.points)
+            found = samples.inside & (low < samples.points[:, 2]) & (samples.points[:, 2] < high)
+        else:
+            found = self._passing(fault, samples)
+        if found.any():
+            raise ends_inside(fault, tuple(samples.points[int(found.argmax())].tolist()))
+
+    def _passing(self, fault: Fault, samples: _Samples) -> np.ndarray:
+        """(N,) bool: of places on the border those of a side of it that is inside the rock from below all
+        points of a surface, some of which are on either side of the fault, to above them."""
+        shape = FaultShape(fault.vertices, fault.triangles, fault.dies_out)
+        z, found = samples.points[:, 2], np.zeros(len(samples.points), bool)
+        for surface in self.entry.rock.surfaces[: self.last + 1]:
+            if not surface.interpolated or surface.method_options()[1].get("extrapolate") == "none":
+                continue
+            points = np.asarray(surface.points, np.float64).reshape(-1, 3)
+            sides = fault_sides(self.work, points, shape, self.threads)
+            if not ((sides > 0).any() and (sides < 0).any()):
+                continue
+            low, high = points[:, 2].min(), points[:, 2].max()
+            low, high = low - _MARGIN * (high - low), high + _MARGIN * (high - low)
+            for number in np.unique(samples.side[samples.inside]):
+                own = samples.side == number
+                between = own & (z >= low) & (z <= high)
+                passes = (samples.inside & own & (z < low)).any() and (own & (z > high)).any()
+                if passes and between.any() and samples.inside[between].all():
+                    found |= between
+        return found
+
+    def _warnings(self, fault: Fault, conditions: _Conditions, samples: _Samples) -> list[BuildWarning]:
+        """One for each thing that the border did not reach, with the widest gap. samples: where it does
+        not."""
+        points, way = samples.points, samples.way
+        low, high = np.zeros(len(points)), np.full(len(points), self.width)
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            inside = _in_all(conditions, points + middle[:, None] * way)
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        warnings = []
+        for name, is_inside in conditions.items():
+            own = np.flatnonzero(~is_inside(points + high[:, None] * way))
+            if len(own):
+                widest = own[int(high[own].argmax())]
+                text = (
+                    f"{fault_item(fault)}: its border ends up to {high[widest]:.4g} before {name}, near "
+                    f"{place_text(points[widest])}: it is continued to it"
+                )
+                warnings.append(BuildWarning(text, "fault", self.entry.rock.name))
+        return warnings
+
+
+def _in_all(conditions: _Conditions, points: np.ndarray) -> np.ndarray:
+    """(N,) bool: the points that meet all conditions."""
+    found = np.ones(len(points), bool)
+    for holds in conditions.values():
+        if found.any():
+            found[found] = holds(points[found])
+    return found
+
+
+def _smoothed(vertices: np.ndarray, border: Border, width: float) -> np.ndarray:
+    """(E, 3) the directions in which edges are continued, as their mean over about a width: ragged borders go
+    to and fro."""
+    a, b = border.edges.T
+    size = norm(vertices[b] - vertices[a])
+    way = border.away
+    for _ in range(min(_STEPS, int(np.ceil((width / np.median(size)) ** 2)))):
+        total = np.zeros((len(vertices), 3))
+        for own in (a, b):
+            np.add.at(total, own, size[:, None] * way)
+        way = total[a] + total[b]
+        way /= np.maximum(norm(way), np.finfo(float).tiny)[:, None]
+    return way
+
+
+def _spread(vertices: np.ndarray, border: Border, width: float):
+    """Points (N, 3) on a border, the number (N,) of the edge of each, and the length (N,) that it stands
+    for."""
+    begin, end = vertices[border.edges].transpose(1, 0, 2)
+    size = norm(end - begin)
+    count = np.clip(np.ceil(2 * size / width), *_SAMPLES).astype(np.int64)
+    edge = np.repeat(np.arange(len(size)), count)
+    at = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
+    share = (at + 0.5) / count[edge]
+    return begin[edge] + share[:, None] * (end - begin)[edge], edge, (size / count)[edge]
+
+
+def _outer_border(fault: Fault) -> Border:
+    border = border_of(fault.vertices, fault.triangles)
+    return border.some(border.is_outer)
+
+
+def _sides_of_border(vertices: np.ndarray, border: Border, ways: np.ndarray) -> np.ndarray:
+    """(E,) the number of the side of the border that each edge is of: edges that are connected, and all
+    continued upward, downward, or to one end."""
+    along, down, _ = plane_axes(principal_axes(vertices[np.unique(border.edges)])[1][2])
+    shares = np.column_stack([sign * dot(ways, axis) for axis in (along, down) for sign in (-1, 1)])
+    kind, found, count = shares.argmax(axis=1), np.zeros(len(ways), np.int64), 0
+    for each in range(4):
+        own = np.flatnonzero(kind == each)
+        if len(own):
+            found[own] = connected(border.edges[own]) + count
+            count = int(found[own].max()) + 1
+    return found
