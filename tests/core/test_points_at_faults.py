@@ -117,10 +117,10 @@ def test_the_order_of_points_does_not_count():
     """The heights of kriging depend on it where neighbors are equally near; the sides do not."""
     points = horizon(dome, "both", 1e-9)
     order = np.random.default_rng(3).permutation(len(points))
-    structure = built(points).rock_inputs[0].structure
+    (entry,) = built(points).rock_inputs
     first, second = (
-        run(lambda work, own=own: point_sides(work, own, structure, 0)) for own in (points, points[order])
+        run(lambda work, own=own: point_sides(work, own, entry, 0)) for own in (points, points[order])
     )
-    assert first.moved.any() and first.near.sum() > first.moved.sum()
-    for one, other in zip(first, second, strict=True):
+    assert first.moved.any() and first.reach == second.reach
+    for one, other in zip(first[:2], second[:2], strict=True):
         np.testing.assert_array_equal(one[order], other)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,11 +17,11 @@ from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
 from .families import Family, keys_of
-from .points_at_faults import beyond_lips, placed_warning, point_sides
+from .points_at_faults import Lip, beyond_lips, placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import sides_of
 from .tips import shared, trace_of, with_equal_ends
-from .triangles import edges_of
+from .triangles import median_edge
 from .within import Within
 
 _RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
@@ -36,7 +37,7 @@ class InterpolatedSurface:
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         structure = entry.structure
-        self.placed = point_sides(work, self.points, structure, number, threads)
+        self.placed = point_sides(work, self.points, entry, number, threads)
         names = structure.faults.names
         warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
         if warning is not None:
@@ -130,7 +131,12 @@ class InterpolatedSurface:
                 whole[number] = side
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            sheet = self._interpolated(family, tuple(whole), visible, settled)
+            lips = [
+                Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
+                for number, side in zip(met, sides, strict=True)
+                if side
+            ]
+            sheet = self._interpolated(family, tuple(whole), visible, settled, lips)
             seen[sides], attributes[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
         found = self._with_equal_ends(family, met, seen, attributes, meshed)
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
@@ -154,7 +160,7 @@ class InterpolatedSurface:
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
-        ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
+        ramp = _RAMP * median_edge(nodes, triangles)
         equal = with_equal_ends(
             self.work,
             nodes,
@@ -176,13 +182,15 @@ class InterpolatedSurface:
         sides: tuple[int, ...],
         own: np.ndarray,
         surface=None,
+        lips: Sequence[Lip] = (),
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. Of heights on several sides of faults that die out, at one place, the mean counts."""
+        other options. lips: at faults that die out here, of these points. Of heights on several sides of
+        faults that die out, at one place, the mean counts."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
         points = mean_heights(self.points[own]) if family.dying else self.points[own]
-        points = np.concatenate([points, self._beyond(family, own)])
+        points = np.concatenate([points, self._beyond(family, own, lips)])
         surfaces[self.number] = replace(surface or self.surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
@@ -209,21 +217,19 @@ class InterpolatedSurface:
             entry.structure.warn(list(family.members), warning)
         return sheet
 
-    def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
-        """(K, 3) points beyond the faults that part the family, for a method that needs them."""
-        name, settings = self.surface.method_options()
-        shapes = self.entry.structure.faults.shapes
-        parting = {fault: shapes[fault] for fault, side in enumerate(family.key) if side in (-1, 1)}
-        if not METHODS[name].is_triangulated or settings["extrapolate"] != "method":
-            return np.empty((0, 3))
-        return beyond_lips(self.points[own], self.placed.some(own), parting)
+    def _beyond(self, family: Family, own: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
+        """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
+        points, shapes = self.points[own], self.entry.structure.faults.shapes
+        whole = np.ones(len(points), bool)
+        parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
+        return beyond_lips(points, [*parting, *lips], self.placed.reach, *self.surface.method_options())
 
     def _with_own_points(self, family: Family, surface):
         """Another surface with only its points in the family's compartments."""
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        placed = point_sides(self.work, points, self.entry.structure, self.number, self.threads)
+        placed = point_sides(self.work, points, self.entry, self.number, self.threads)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
@@ -279,8 +285,3 @@ def _settled(surface, found):
     options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
     options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
     return replace(surface, method=found.method, options=options)
-
-
-def _lengths(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    edges = edges_of(triangles)
-    return np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1)

@@ -7,103 +7,139 @@ position is that of the last bit, and a point on the wrong side bends the sheet 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from ..algebra import norm
+from ..algebra import dot, norm
 from ..build_warning import BuildWarning
 from ..errors import place_text
-from ..work import Work, native_module
-from .beyond_faults import MEAN_DISTANCES, nearest_points
-from .rock_structure import RockStructure
+from ..methods import METHODS
+from ..work import Work
+from .local_planes import mean_spacing, planes_at
 from .sides import FaultShape, sides_of
-from .triangles import crossing_pairs, distances_of_pairs
+from .triangles import median_edge, nearest_triangles, unit_normals
 
-_NEAR = 0.25  # of the mean spacing of the points: nearer to a fault, the position does not decide
-_COUNTED = 8  # points of each side, through which a plane is laid
-_SHARE = 1e-3  # of the points' spread, added so that points on a line give no slope across it
+_NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
+_MISFITS = 10.0  # of a local plane: a point farther from it does not agree
+_LEAST = 1e-6  # of the range of heights: nearer to a plane, a point agrees
 _UPRIGHT = 1e-6  # of a unit normal: with less of it in plan a fault is level
 
 
 class PointSides(NamedTuple):
     """Of points and faults: sides (P, F) int8, to which the points belong; moved (P, F) bool, where these are
-    not the sides on which they lie; near (P, F) bool, where a point is near a fault that displaces its
-    surface."""
+    not the sides on which they lie; reach: as reach_of gives it."""
 
     sides: np.ndarray
     moved: np.ndarray
-    near: np.ndarray
+    reach: float
 
     def some(self, chosen: np.ndarray) -> PointSides:
         """Of some of the points, (P,) bool."""
-        return PointSides(*(each[chosen] for each in self))
+        return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
 
 
-def point_sides(
-    work: Work, points: np.ndarray, structure: RockStructure, number: int, threads: int = 0
-) -> PointSides:
-    """The sides of the faults that points (P, 3) of surface `number` belong to.
+def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
+    """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
-    A point is near a fault that displaces the surface when it is nearer than a quarter of the points' mean
-    spacing. It gets the sides of those points, near no fault, whose local plane (weighted least squares of
-    heights) is nearest to it. Where only one side has such points, its position decides.
+    A point that is near a fault that displaces the surface (see reach_of) gets the sides of those points,
+    near no fault, whose local plane is nearest to it. Where only one side has such points, its position
+    decides, unless some of the points near the fault agree with them and others do not: these are of the
+    other side.
     """
+    structure = entry.structure
     faults = structure.faults
     sides = sides_of(work, points, faults, threads)
     active = faults.active(number)
     moved, near = np.zeros(sides.shape, bool), np.zeros(sides.shape, bool)
+    reach = reach_of(points, median_edge(*entry.region), [faults.shapes[n] for n in np.flatnonzero(active)])
     if len(points) < 2 or not active.any():
-        return PointSides(sides, moved, near)
-    spacing = _spacing(points)
+        return PointSides(sides, moved, reach)
     for fault in np.flatnonzero(active):
-        near[:, fault] = _are_near(points, faults.shapes[fault], _NEAR * spacing)
-    undecided = np.flatnonzero(near.any(axis=1))
+        near[:, fault] = _nearest(points, faults.shapes[fault], reach) >= 0
+    is_near = near.any(axis=1)
     rows = np.where(active, sides, 0)
     candidates = np.unique(np.where(active, structure.compartments, 0), axis=0)
-    groups = [np.flatnonzero(~near.any(axis=1) & (rows == row).all(axis=1)) for row in candidates]
-    groups = [group[np.argsort(points[group, 0], kind="stable")] for group in groups]
-    for point in undecided.tolist():
-        may_be = ((candidates == rows[point]) | near[point] | (candidates == 0) | (rows[point] == 0)).all(
-            axis=1
-        )
-        off = np.full(len(candidates), np.inf)
-        for candidate in np.flatnonzero(may_be).tolist():
-            if len(group := groups[candidate]):
-                off[candidate] = abs(_plane_at(points, group, point, spacing)[0] - points[point, 2])
-        is_own = (candidates == rows[point]).all(axis=1)
-        best = int(off.argmin())
-        if is_own.any() and np.isfinite(off[is_own]).all() and off[best] < off[is_own].min():
-            placed = np.where(active, candidates[best], sides[point])
-            moved[point] = placed != sides[point]
-            sides[point] = placed
-    return PointSides(sides, moved, near)
+    some = np.flatnonzero(is_near)
+    alike = (candidates == rows[some, None]) | (candidates == 0) | (rows[some, None] == 0)
+    possible = (alike | near[some, None]).all(axis=2)
+    off, misfit = np.full(possible.shape, np.inf), np.zeros(possible.shape)
+    for candidate, row in enumerate(candidates):
+        group = points[~is_near & (rows == row).all(axis=1)]
+        asked = np.flatnonzero(possible[:, candidate])
+        if len(group) and len(asked):
+            planes = planes_at(points[some[asked], :2], group)
+            off[asked, candidate] = np.abs(planes.height - points[some[asked], 2])
+            misfit[asked, candidate] = planes.misfit
+    least = _LEAST * float(np.ptp(points[:, 2]))
+    placed = _best(possible, (candidates == rows[some, None]).all(axis=2), off, _MISFITS * misfit + least)
+    some, placed = some[placed >= 0], placed[placed >= 0]
+    settled = np.where(active, candidates[placed], sides[some])
+    moved[some] = settled != sides[some]
+    sides[some] = settled
+    return PointSides(sides, moved, reach)
 
 
-def beyond_lips(points: np.ndarray, placed: PointSides, shapes: dict[int, FaultShape]) -> np.ndarray:
-    """(K, 3) points that continue a sheet beyond the faults at which it is cut off, for methods that
-    triangulate its points (P, 3).
+def _best(possible: np.ndarray, own: np.ndarray, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
+    """(N,) the compartment that each point near a fault belongs to, as a number among C; -1 where it stays
+    where it is.
+
+    possible: (N, C) bool, those that it may belong to; own: (N, C) bool, where it lies; off: (N, C) how far
+    it is from what the points of each say, infinite where they say nothing; tolerated: (N, C) how far it may
+    be and agree with them.
+    """
+    rows = np.arange(len(off))
+    best = off.argmin(axis=1)
+    is_known = np.isfinite(off[rows, best])
+    of_own = np.where(own, off, np.inf).min(axis=1, initial=np.inf)
+    placed = np.where(is_known & (np.isfinite(of_own) | ~own.any(axis=1)), best, -1)
+    agrees = is_known & (off <= tolerated).any(axis=1)
+    for other in np.flatnonzero(np.isinf(off).all(axis=0)):  # no points away from the faults
+        strange = possible[:, other] & is_known & ~agrees
+        if strange.any():
+            placed[strange & (own[:, other] | np.isfinite(of_own))] = other
+            placed[agrees & own[:, other]] = best[agrees & own[:, other]]
+    return placed
+
+
+class Lip(NamedTuple):
+    """A fault at which a sheet is cut off: shape, side (-1 or +1) of the sheet, and points (P,) bool, those
+    that may lie on its cutoff line."""
+
+    shape: FaultShape
+    side: int
+    points: np.ndarray
+
+
+def beyond_lips(
+    points: np.ndarray, lips: list[Lip], reach: float, method: str, settings: Mapping
+) -> np.ndarray:
+    """(K, 3) points that continue a sheet beyond the faults at which it is cut off, for a method that
+    triangulates its points (P, 3).
 
     Their convex outline bridges each bay of a cutoff line by triangles in the fault itself. So each point
-    near a fault has another one a mean spacing beyond it, in the plane of the points around it. shapes: the
-    faults that part the sheet, by number.
+    nearer than `reach` to a fault has another one beyond it, four times as far: in the plane of the points
+    around that are not near one, level where that plane does not leave the fault. It is level, too, where the
+    method is to take the height of the nearest point beyond them.
     """
-    spacing = _spacing(points) if len(points) else 0.0
-    order = np.argsort(points[:, 0], kind="stable")
-    found = []
-    for fault, shape in shapes.items():
-        corners = shape.vertices[shape.triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= norm(normals)[:, None]
-        for point in np.flatnonzero(placed.near[:, fault]).tolist():
-            away = distances_of_pairs(np.broadcast_to(points[point], (len(corners), 3)), corners)
-            outward = -placed.sides[point, fault] * normals[int(away.argmin()), :2]
-            level = float(norm(outward))
-            if level > _UPRIGHT:
-                shift = spacing / level * outward
-                _, slope = _plane_at(points, order[order != point], point, spacing)
-                found.append(points[point] + [*shift, slope[0] * shift[0] + slope[1] * shift[1]])
-    return np.array(found).reshape(-1, 3)
+    if not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
+        return np.empty((0, 3))
+    near = [np.where(lip.points, _nearest(points, lip.shape, reach), -1) for lip in lips]
+    ordinary = points[np.all([triangle < 0 for triangle in near], axis=0)]
+    found = [np.empty((0, 3))]
+    for lip, triangle in zip(lips, near, strict=True):
+        outward = -lip.side * unit_normals(lip.shape.vertices[lip.shape.triangles])[triangle]
+        level = norm(outward[:, :2])
+        some = (triangle >= 0) & (level > _UPRIGHT)
+        own, outward, level = points[some], outward[some], level[some]
+        away = np.column_stack([outward[:, :2] * (reach / _NEAR / level)[:, None], np.zeros(len(own))])
+        if settings["extrapolate"] == "method" and len(ordinary):
+            rise = dot(planes_at(own[:, :2], ordinary).slope, away[:, :2])
+            leaves = 2.0 * rise * outward[:, 2] > -level * reach / _NEAR
+            away[leaves, 2] = rise[leaves]
+        found.append(own + away)
+    return np.concatenate(found)
 
 
 def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock: str, surface: str):
@@ -121,40 +157,16 @@ def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock
     return BuildWarning(text, "points", rock, surface)
 
 
-def _spacing(points: np.ndarray) -> float:
-    """The mean spacing in plan; of points on a line that along it."""
-    along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)
-    return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)
+def reach_of(points: np.ndarray, length: float, shapes: list[FaultShape]) -> float:
+    """How near to a fault points (P, 3) may be on its cutoff line: nearer than a quarter of an edge length,
+    or of the mean spacing of the points farther away than that, where it is less. Cutoff lines may have many
+    points, and say nothing of that spacing."""
+    reach = _NEAR * length
+    near = [_nearest(points, shape, reach) >= 0 for shape in shapes]
+    ordinary = points[~np.any(near, axis=0)] if near else points
+    return min(reach, _NEAR * mean_spacing(ordinary[:, :2])) if len(ordinary) > 1 else reach
 
 
-def _are_near(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
-    """(P,) bool: the points that are nearer than `reach` to a fault."""
-    corners = shape.vertices[shape.triangles]
-    found = np.zeros(len(points), bool)
-    pairs = crossing_pairs(np.stack([points - reach, points + reach, points], axis=1), corners)
-    is_near = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]]) < reach
-    found[pairs[is_near, 0]] = True
-    return found
-
-
-def _plane_at(
-    points: np.ndarray, group: np.ndarray, point: int, spacing: float
-) -> tuple[float, tuple[float, float]]:
-    """The height, at a point, of the plane through those of a group, ordered by x, nearest to it; and its
-    slopes along x and y."""
-    near = nearest_points(points, group, points[group, 0], point, MEAN_DISTANCES * spacing)[:_COUNTED]
-    away = points[near] - points[point]
-    weight = 1.0 / ((away[:, :2] ** 2).sum(axis=1) + spacing**2)
-    weight /= weight.sum()
-    middle = (weight[:, None] * away).sum(axis=0)
-    x, y, z = (away - middle).T
-    xx, yy, xy = (weight * x * x).sum(), (weight * y * y).sum(), (weight * x * y).sum()
-    xz, yz = (weight * x * z).sum(), (weight * y * z).sum()
-    extra = _SHARE * (xx + yy)
-    xx, yy = xx + extra, yy + extra
-    determinant = xx * yy - xy * xy
-    if not determinant > 0:  # one point, or all at one place
-        return float(points[point, 2] + middle[2]), (0.0, 0.0)
-    slope = float(yy * xz - xy * yz) / determinant, float(xx * yz - xy * xz) / determinant
-    height = points[point, 2] + middle[2] - slope[0] * middle[0] - slope[1] * middle[1]
-    return float(height), slope
+def _nearest(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
+    """(P,) the nearest triangle of a fault; -1 where none is within `reach`."""
+    return nearest_triangles(points, np.full(len(points), reach), shape.vertices[shape.triangles])

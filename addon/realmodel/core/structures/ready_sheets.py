@@ -12,10 +12,11 @@ from ..work import Work
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
+from .points_at_faults import Lip, beyond_lips, reach_of
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
-from .tips import hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
-from .triangles import meet, overlapping_pairs, welded
+from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
+from .triangles import median_edge, meet, overlapping_pairs, welded
 from .within import Within
 
 
@@ -34,6 +35,8 @@ class ReadyMesh:
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
         for fault in np.flatnonzero(self.active):
             self._divide(int(fault), faults.shapes[fault])
+        active = [faults.shapes[fault] for fault in np.flatnonzero(self.active)]
+        self.reach = reach_of(self.vertices, median_edge(self.vertices[:, :2], self.triangles), active)
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
@@ -78,7 +81,8 @@ class ReadyMesh:
             )
         plan, triangles, known = self.tiling.around(own)
         shapes = self.entry.structure.faults.shapes
-        common = self._continued(plan, known, triangles)
+        cut = [(shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)]
+        common = self._continued(plan, known, triangles, cut)
         faults = [shapes[fault] for fault in family.dying]
         within = self._within(family)
 
@@ -98,7 +102,7 @@ class ReadyMesh:
         self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
-            common = self._continued(plan, self.tiling.heights(own), triangles)
+            common = self._continued(plan, self.tiling.heights(own), triangles, cut)
             traces = traces_on((np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
@@ -110,7 +114,8 @@ class ReadyMesh:
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
-            seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
+            dying = [(faults[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
 
@@ -170,8 +175,15 @@ class ReadyMesh:
     def _within(self, family: Family) -> Within:
         return Within(self.work, self.entry, self.number, family, self.threads)
 
-    def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-        """(N,) heights: the known ones, and where they are NaN those of the method."""
+    def _continued(
+        self,
+        plan: np.ndarray,
+        known: np.ndarray,
+        triangles: np.ndarray,
+        cut: list[tuple[FaultShape, int, Trace | None]],
+    ) -> np.ndarray:
+        """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
+        the sheet off, its side, and where one dies out its trace."""
         if self.tiling.nodes is not plan:
             same = welded(plan)
         elif self.same_places is None:
@@ -191,6 +203,9 @@ class ReadyMesh:
             else:
                 missed, nodes, tiles = missing, plan, triangles
             nodes = np.ascontiguousarray(nodes)
+            lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
+            beyond = beyond_lips(points, lips, self.reach, self.method, self.settings)
+            points = np.concatenate([points, beyond])
             found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
             of_place[missing] = found.z[missed]
             z = np.where(np.isnan(z), of_place[same], z)
@@ -200,6 +215,11 @@ class ReadyMesh:
         """The triangles of the sheets are no longer those of the file."""
         if len(sheets) > 1 or sheets[0][1] is not self.triangles:
             self.entry.file_faces[self.number] = None
+
+
+def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:
+    """(P,) bool: the points beside a fault, all where it does not die out."""
+    return np.ones(len(points), bool) if trace is None else trace.beside(points[:, :2])
 
 
 def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:

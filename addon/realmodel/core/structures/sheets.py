@@ -95,7 +95,7 @@ def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
     """Adds the warnings of points_too_low, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
-    sides = point_sides(work, points, structure, number, threads).sides
+    sides = point_sides(work, points, entry, number, threads).sides
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
         if not own.any():
