@@ -89,7 +89,7 @@ class _Places:
         length = (shares[:, 1] - shares[:, 0]) * norm(along)
         corners = shape.vertices[shape.triangles]
         reach = norm(along) + 2 * precision_of(shape)  # the ends of each segment are on the fault
-        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)]
+        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)[0]]
         level = norm(normals[:, :2])
         steep = level > _LEVEL
         self.points, self.length = points[steep], length[steep]

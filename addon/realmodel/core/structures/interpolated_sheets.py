@@ -38,6 +38,7 @@ class InterpolatedSurface:
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         structure = entry.structure
         self.placed = point_sides(work, self.points, entry, number, threads)
+        structure.points[number] = self.placed.sides
         names = structure.faults.names
         warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
         if warning is not None:
@@ -222,7 +223,8 @@ class InterpolatedSurface:
         points, shapes = self.points[own], self.entry.structure.faults.shapes
         whole = np.ones(len(points), bool)
         parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
-        return beyond_lips(points, [*parting, *lips], self.placed.reach, *self.surface.method_options())
+        lips, options = [*parting, *lips], self.surface.method_options()
+        return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
     def _with_own_points(self, family: Family, surface):
         """Another surface with only its points in the family's compartments."""

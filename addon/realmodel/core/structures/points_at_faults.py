@@ -12,24 +12,29 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..algebra import dot, norm
+from ..algebra import norm
 from ..build_warning import BuildWarning
 from ..errors import place_text
 from ..methods import METHODS
-from ..work import Work
-from .local_planes import mean_spacing, planes_at
+from ..mis_ties import mean_heights
+from ..work import Work, native_module
 from .sides import FaultShape, sides_of
 from .triangles import median_edge, nearest_triangles, unit_normals
 
 _NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
-_MISFITS = 10.0  # of a local plane: a point farther from it does not agree
-_LEAST = 1e-6  # of the range of heights: nearer to a plane, a point agrees
+_EXPECTED_BY = 16  # points: so many let expect a height
+_PLANE = 1e6  # a spline so smooth is a plane
+_LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point agrees
+_SURE = (
+    0.25  # of the distance from what another side lets expect: so near, a point counts for its side at once
+)
+_PASSES = 4  # times that points which count at once let expect more
 _UPRIGHT = 1e-6  # of a unit normal: with less of it in plan a fault is level
 
 
 class PointSides(NamedTuple):
     """Of points and faults: sides (P, F) int8, to which the points belong; moved (P, F) bool, where these are
-    not the sides on which they lie; reach: as reach_of gives it."""
+    not the sides on which they lie; reach: as near_faults gives it."""
 
     sides: np.ndarray
     moved: np.ndarray
@@ -43,42 +48,58 @@ class PointSides(NamedTuple):
 def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
     """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
-    A point that is near a fault that displaces the surface (see reach_of) gets the sides of those points,
-    near no fault, whose local plane is nearest to it. Where only one side has such points, its position
-    decides, unless some of the points near the fault agree with them and others do not: these are of the
-    other side.
+    A point that is near a fault that displaces the surface (near_faults) gets the sides of those points,
+    near no fault, that let expect a height nearest to its own. Where only one side has such points, its
+    position decides, unless some of the points near the fault agree with them and others do not: these are of
+    the other side.
     """
     structure = entry.structure
     faults = structure.faults
     sides = sides_of(work, points, faults, threads)
     active = faults.active(number)
     moved, near = np.zeros(sides.shape, bool), np.zeros(sides.shape, bool)
-    reach = reach_of(points, median_edge(*entry.region), [faults.shapes[n] for n in np.flatnonzero(active)])
-    if len(points) < 2 or not active.any():
-        return PointSides(sides, moved, reach)
-    for fault in np.flatnonzero(active):
-        near[:, fault] = _nearest(points, faults.shapes[fault], reach) >= 0
+    shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
+    reach, near[:, active] = near_faults(points, median_edge(*entry.region), shapes)
     is_near = near.any(axis=1)
     rows = np.where(active, sides, 0)
     candidates = np.unique(np.where(active, structure.compartments, 0), axis=0)
     some = np.flatnonzero(is_near)
     alike = (candidates == rows[some, None]) | (candidates == 0) | (rows[some, None] == 0)
     possible = (alike | near[some, None]).all(axis=2)
-    off, misfit = np.full(possible.shape, np.inf), np.zeros(possible.shape)
+    group = np.full(len(points), -1)
     for candidate, row in enumerate(candidates):
-        group = points[~is_near & (rows == row).all(axis=1)]
-        asked = np.flatnonzero(possible[:, candidate])
-        if len(group) and len(asked):
-            planes = planes_at(points[some[asked], :2], group)
-            off[asked, candidate] = np.abs(planes.height - points[some[asked], 2])
-            misfit[asked, candidate] = planes.misfit
-    least = _LEAST * float(np.ptp(points[:, 2]))
-    placed = _best(possible, (candidates == rows[some, None]).all(axis=2), off, _MISFITS * misfit + least)
+        group[~is_near & (rows == row).all(axis=1)] = candidate
+    for _ in range(_PASSES):
+        off, tolerated = _off(work, points, group, some, possible, threads)
+        best = np.sort(off, axis=1)[:, :2]
+        sure = np.isfinite(best).all(axis=1) & (best[:, 0] <= _SURE * best[:, -1])
+        if best.shape[1] < 2 or not sure.any():
+            break
+        group[some[sure]] = off[sure].argmin(axis=1)
+    own = (candidates == rows[some, None]).all(axis=2)
+    placed = np.where(group[some] >= 0, group[some], _best(possible, own, off, tolerated))
     some, placed = some[placed >= 0], placed[placed >= 0]
     settled = np.where(active, candidates[placed], sides[some])
     moved[some] = settled != sides[some]
     sides[some] = settled
     return PointSides(sides, moved, reach)
+
+
+def _off(
+    work: Work, points: np.ndarray, group: np.ndarray, some: np.ndarray, possible: np.ndarray, threads: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """off, tolerated (N, C), as _best has them, of some points that are in none of C groups (P,) yet."""
+    off, tolerated = np.full(possible.shape, np.inf), np.zeros(possible.shape)
+    least = _LEAST * float(np.ptp(points[:, 2]))
+    for number in range(possible.shape[1]):
+        own = points[group == number]
+        asked = np.flatnonzero(possible[:, number] & (group[some] < 0))
+        if len(own) and len(asked):
+            plan = points[some[asked], :2]
+            smooth, curved = (_expected(work, own, plan, each, threads) for each in (_PLANE, 0.0))
+            off[asked, number] = np.abs(curved - points[some[asked], 2])
+            tolerated[asked, number] = np.abs(curved - smooth) + least
+    return off, tolerated
 
 
 def _best(possible: np.ndarray, own: np.ndarray, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
@@ -113,19 +134,19 @@ class Lip(NamedTuple):
 
 
 def beyond_lips(
-    points: np.ndarray, lips: list[Lip], reach: float, method: str, settings: Mapping
+    work: Work, points: np.ndarray, lips: list[Lip], reach: float, method: str, settings: Mapping
 ) -> np.ndarray:
     """(K, 3) points that continue a sheet beyond the faults at which it is cut off, for a method that
     triangulates its points (P, 3).
 
     Their convex outline bridges each bay of a cutoff line by triangles in the fault itself. So each point
-    nearer than `reach` to a fault has another one beyond it, four times as far: in the plane of the points
-    around that are not near one, level where that plane does not leave the fault. It is level, too, where the
-    method is to take the height of the nearest point beyond them.
+    nearer than `reach` to a fault has another one beyond it, four times as far, where those that are not near
+    one let expect the sheet; at the same height where that does not leave the fault, and where the method is
+    to take the height of the nearest point beyond all.
     """
     if not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
         return np.empty((0, 3))
-    near = [np.where(lip.points, _nearest(points, lip.shape, reach), -1) for lip in lips]
+    near = [np.where(lip.points, _nearest(points, lip.shape, reach)[0], -1) for lip in lips]
     ordinary = points[np.all([triangle < 0 for triangle in near], axis=0)]
     found = [np.empty((0, 3))]
     for lip, triangle in zip(lips, near, strict=True):
@@ -135,7 +156,8 @@ def beyond_lips(
         own, outward, level = points[some], outward[some], level[some]
         away = np.column_stack([outward[:, :2] * (reach / _NEAR / level)[:, None], np.zeros(len(own))])
         if settings["extrapolate"] == "method" and len(ordinary):
-            rise = dot(planes_at(own[:, :2], ordinary).slope, away[:, :2])
+            there, here = (_expected(work, ordinary, plan[:, :2]) for plan in (own + away, own))
+            rise = there - here
             leaves = 2.0 * rise * outward[:, 2] > -level * reach / _NEAR
             away[leaves, 2] = rise[leaves]
         found.append(own + away)
@@ -157,16 +179,37 @@ def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock
     return BuildWarning(text, "points", rock, surface)
 
 
-def reach_of(points: np.ndarray, length: float, shapes: list[FaultShape]) -> float:
-    """How near to a fault points (P, 3) may be on its cutoff line: nearer than a quarter of an edge length,
-    or of the mean spacing of the points farther away than that, where it is less. Cutoff lines may have many
-    points, and say nothing of that spacing."""
+def _expected(
+    work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0, threads: int = 0
+) -> np.ndarray:
+    """(N,) the heights at plan points (N, 2) of splines through the nearest of some points (P, 3)."""
+    spline, plan = native_module().spline, np.ascontiguousarray(plan)
+    points = mean_heights(points)
+    return work.native(spline, points, plan, smoothing=smoothing, neighbours=_EXPECTED_BY, threads=threads)
+
+
+def near_faults(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+    """How near to a fault points (P, 3) may be on its cutoff line, and (P, F) bool, which are so near.
+
+    That is nearer than a quarter of an edge length, or of the mean spacing of the points farther away than
+    that, where it is less. Cutoff lines may have many points, and say nothing of that spacing.
+    """
     reach = _NEAR * length
-    near = [_nearest(points, shape, reach) >= 0 for shape in shapes]
-    ordinary = points[~np.any(near, axis=0)] if near else points
-    return min(reach, _NEAR * mean_spacing(ordinary[:, :2])) if len(ordinary) > 1 else reach
+    away = np.full((len(points), len(shapes)), np.inf)
+    for fault, shape in enumerate(shapes):
+        away[:, fault] = _nearest(points, shape, reach)[1]
+    ordinary = points[np.isinf(away).all(axis=1)]
+    if len(ordinary) > 1:
+        reach = min(reach, _NEAR * _spacing(ordinary))
+    return reach, away < reach
 
 
-def _nearest(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
-    """(P,) the nearest triangle of a fault; -1 where none is within `reach`."""
+def _spacing(points: np.ndarray) -> float:
+    """The mean spacing in plan; of points on a line that along it."""
+    along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)
+    return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)
+
+
+def _nearest(points: np.ndarray, shape: FaultShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) the nearest triangle of a fault and how far it is, as nearest_triangles gives them."""
     return nearest_triangles(points, np.full(len(points), reach), shape.vertices[shape.triangles])

@@ -12,11 +12,11 @@ from ..work import Work
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
-from .points_at_faults import Lip, beyond_lips, reach_of
+from .points_at_faults import Lip, beyond_lips, near_faults
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
-from .triangles import median_edge, meet, overlapping_pairs, welded
+from .triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
 from .within import Within
 
 
@@ -33,26 +33,36 @@ class ReadyMesh:
         faults = entry.structure.faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
+        self.reach, near = self._near(faults.shapes)
         for fault in np.flatnonzero(self.active):
-            self._divide(int(fault), faults.shapes[fault])
-        active = [faults.shapes[fault] for fault in np.flatnonzero(self.active)]
-        self.reach = reach_of(self.vertices, median_edge(self.vertices[:, :2], self.triangles), active)
+            self._divide(int(fault), faults.shapes[fault], near[:, fault])
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
-    def _divide(self, fault: int, shape: FaultShape) -> None:
-        """The sides of a fault on which each triangle has a part."""
+    def _near(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+        """How near to a fault a border of the mesh counts as its cutoff line, and (V, F) bool, the vertices
+        on borders that are so near to each fault that displaces it."""
+        near = np.zeros((len(self.vertices), len(shapes)), bool)
+        length = median_edge(self.vertices[:, :2], self.triangles)
+        some = [shapes[fault] for fault in np.flatnonzero(self.active)]
+        reach, near[:, self.active] = near_faults(self.vertices, length, some)
+        is_border = np.zeros(len(self.vertices), bool)
+        is_border[open_edges(self.vertices, self.triangles)] = True
+        return reach, near & is_border[welded(self.vertices), None]
+
+    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray) -> None:
+        """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
+        cutoff line, wherever it lies up to rounding."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
-        on = on_fault(self.vertices, shape)
-        side = np.where(on, 0, side)
+        side[on_fault(self.vertices, shape) | is_lip] = 0
         corners = side[self.triangles.T]
         mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
-        along = mask == 0  # all its corners lie on the fault
-        middles = self.vertices[self.triangles[along]].mean(axis=1)
-        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
         clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)))
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
         mask[clear[crossed]] = LEFT | RIGHT
+        along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault
+        middles = self.vertices[self.triangles[along]].mean(axis=1)
+        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
         self.masks[:, fault] = mask
 
     def own(self, family: Family) -> np.ndarray:
@@ -204,7 +214,7 @@ class ReadyMesh:
                 missed, nodes, tiles = missing, plan, triangles
             nodes = np.ascontiguousarray(nodes)
             lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
-            beyond = beyond_lips(points, lips, self.reach, self.method, self.settings)
+            beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
             found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
             of_place[missing] = found.z[missed]
@@ -215,6 +225,25 @@ class ReadyMesh:
         """The triangles of the sheets are no longer those of the file."""
         if len(sheets) > 1 or sheets[0][1] is not self.triangles:
             self.entry.file_faces[self.number] = None
+
+
+def _as_beside(vertices: np.ndarray, triangles: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """The mask (T,) of triangles, changed: those that have none get that of a triangle beside them."""
+    lacking = np.flatnonzero(mask == 0)
+    if not len(lacking):
+        return mask
+    edges = edge_numbers(edges_of(welded(vertices)[triangles]), len(vertices)).reshape(3, -1).T
+    while True:
+        order = np.argsort(edges[mask > 0].ravel(), kind="stable")
+        known, of_edge = edges[mask > 0].ravel()[order], np.repeat(mask[mask > 0], 3)[order]
+        lacking = lacking[mask[lacking] == 0]
+        if not len(known) or not len(lacking):
+            return mask
+        at = np.minimum(np.searchsorted(known, edges[lacking]), len(known) - 1)
+        found = np.where(known[at] == edges[lacking], of_edge[at], 0).max(axis=1)
+        if not found.any():
+            return mask
+        mask[lacking] = found
 
 
 def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:

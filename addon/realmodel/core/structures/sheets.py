@@ -18,7 +18,6 @@ from ..work import Work
 from ..wrong_sides import Triangulation, points_too_low
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
-from .points_at_faults import point_sides
 from .ready_sheets import ReadyMesh
 
 
@@ -95,7 +94,7 @@ def _warn_of_points_too_low(work: Work, entry, number: int, threads: int) -> Non
     """Adds the warnings of points_too_low, compartment by compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
-    sides = point_sides(work, points, entry, number, threads).sides
+    sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
         if not own.any():

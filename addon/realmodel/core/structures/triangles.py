@@ -127,19 +127,23 @@ def unit_normals(corners: np.ndarray) -> np.ndarray:
     return normals / norm(normals)[:, None]
 
 
-def nearest_triangles(points: np.ndarray, reach: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(P,) of triangles (T, 3, 3) the nearest to each point (P, 3), the first of equally near ones; -1 where
-    none is within `reach` (P,)."""
+def nearest_triangles(
+    points: np.ndarray, reach: np.ndarray, corners: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) of triangles (T, 3, 3) the nearest to each point (P, 3), the first of equally near ones, and how
+    far it is; -1 and infinite where none is nearer than `reach` (P,)."""
     boxes = np.stack([points - reach[:, None], points + reach[:, None], points], axis=1)
     pairs = pairs_at_planes(boxes, corners)
     away = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]])
-    within = away <= reach[pairs[:, 0]]
+    within = away < reach[pairs[:, 0]]
     pairs, away = pairs[within], away[within]
-    pairs = pairs[np.lexsort((pairs[:, 1], away, pairs[:, 0]))]
+    order = np.lexsort((pairs[:, 1], away, pairs[:, 0]))
+    pairs, away = pairs[order], away[order]
     is_nearest = np.diff(pairs[:, 0], prepend=-1) != 0
-    found = np.full(len(points), -1)
-    found[pairs[is_nearest, 0]] = pairs[is_nearest, 1]
-    return found
+    number, distance = np.full(len(points), -1), np.full(len(points), np.inf)
+    number[pairs[is_nearest, 0]] = pairs[is_nearest, 1]
+    distance[pairs[is_nearest, 0]] = away[is_nearest]
+    return number, distance
 
 
 def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
