@@ -28,7 +28,7 @@ _LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point ag
 _SURE = (
     0.25  # of the distance from what another side lets expect: so near, a point counts for its side at once
 )
-_PASSES = 4  # times that points which count at once let expect more
+_PASSES = 40  # times that points which count at once let expect more
 _UPRIGHT = 1e-6  # of a unit normal: with less of it in plan a fault is level
 
 
@@ -70,7 +70,7 @@ def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int
     for candidate, row in enumerate(candidates):
         group[~is_near & (rows == row).all(axis=1)] = candidate
     for _ in range(_PASSES):
-        off, tolerated = _off(work, points, group, some, possible, threads)
+        off, tolerated = _off(work, points, group, some, possible, reach, threads)
         best = np.sort(off, axis=1)[:, :2]
         sure = np.isfinite(best).all(axis=1) & (best[:, 0] <= _SURE * best[:, -1])
         if best.shape[1] < 2 or not sure.any():
@@ -86,9 +86,10 @@ def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int
 
 
 def _off(
-    work: Work, points: np.ndarray, group: np.ndarray, some: np.ndarray, possible: np.ndarray, threads: int
+    work: Work, points: np.ndarray, group: np.ndarray, some: np.ndarray, possible, reach: float, threads: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """off, tolerated (N, C), as _best has them, of some points that are in none of C groups (P,) yet."""
+    """off, tolerated (N, C), as _best has them, of some points that are in none of C groups (P,) yet. reach:
+    so far a point may be from its place on the fault."""
     off, tolerated = np.full(possible.shape, np.inf), np.zeros(possible.shape)
     least = _LEAST * float(np.ptp(points[:, 2]))
     for number in range(possible.shape[1]):
@@ -96,9 +97,12 @@ def _off(
         asked = np.flatnonzero(possible[:, number] & (group[some] < 0))
         if len(own) and len(asked):
             plan = points[some[asked], :2]
-            smooth, curved = (_expected(work, own, plan, each, threads) for each in (_PLANE, 0.0))
-            off[asked, number] = np.abs(curved - points[some[asked], 2])
-            tolerated[asked, number] = np.abs(curved - smooth) + least
+            expected = _expected(work, own, plan, threads=threads)
+            beside = (plan + reach * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])).reshape(-1, 2)
+            plane, *sloped = _expected(work, own, beside, _PLANE, threads).reshape(3, -1)
+            off[asked, number] = np.abs(expected - points[some[asked], 2])
+            rise = sum(np.abs(each - plane) for each in sloped)
+            tolerated[asked, number] = np.abs(expected - plane) + rise + least
     return off, tolerated
 
 
