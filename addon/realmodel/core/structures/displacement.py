@@ -130,11 +130,9 @@ class _Measured:
 
     def _between(self, below: int, above: int):
         """As everywhere, of two compartments."""
-        wanted = np.where(self.rows[below] != 0, self.rows[below], self.rows[above])[self.others]
         places, upper = self._places(below), self._cutoff(above, 1)
-        given = np.flatnonzero(self._are_within(places.sides, wanted))
-        place, points = _across(places, given, upper)
-        inside = self._are_within(self._sides(points), wanted)
+        place, points = _across(places, self._are_within(below, places.sides), upper)
+        inside = self._are_within(above, self._sides(points))
         place, points = place[inside], points[inside]
         away = points - places.points[place]
         order = np.lexsort((dot(away, away), place))
@@ -168,23 +166,24 @@ class _Measured:
         sides = [fault_sides(self.work, points, shapes[other], self.threads) for other in self.others]
         return np.array(sides, np.int8).reshape(len(self.others), len(points)).T
 
-    @staticmethod
-    def _are_within(sides: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    def _are_within(self, compartment: int, sides: np.ndarray) -> np.ndarray:
+        """(N,) bool of points with these sides of the other faults."""
+        wanted = self.rows[compartment, self.others]
         return ((sides == wanted) | (wanted == 0)).all(axis=1)
 
 
-def _across(places: _Places, given: np.ndarray, upper: Cutoff) -> tuple[np.ndarray, np.ndarray]:
-    """Where the vertical planes across the fault, through some places, meet the cutoff line above it: the
-    places' numbers (K,) and points (K, 3).
+def _across(places: _Places, some: np.ndarray, upper: Cutoff) -> tuple[np.ndarray, np.ndarray]:
+    """Where the vertical planes across the fault, through some places (N,) bool, meet the cutoff line above
+    it: the places' numbers (K,) and points (K, 3).
 
     The sheets on both sides lie on opposite sides of their cutoff lines. So where a fold or a low dip makes
     them meet the fault more than once, these are not taken for one another.
     """
     begin, end = upper.ends.transpose(1, 0, 2)
     numbers, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
-    some = max(1, _AT_ONCE // max(1, len(begin)))
-    for start in range(0, len(given), some):
-        part = given[start : start + some]
+    given, count = np.flatnonzero(some), max(1, _AT_ONCE // max(1, len(begin)))
+    for start in range(0, len(given), count):
+        part = given[start : start + count]
         across = places.across[part]
         along = np.column_stack([-across[:, 1], across[:, 0]])
         own = dot(along, places.points[part, :2])[:, None]

@@ -17,7 +17,8 @@ from ..work import Work
 from ..wrong_sides import heights_at
 from .beyond_faults import beyond_faults
 from .families import Family, keys_of
-from .points_at_faults import Lip, beyond_lips, placed_warning, point_sides
+from .lips import Lip, beyond_lips
+from .points_at_faults import placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import sides_of
 from .tips import shared, trace_of, with_equal_ends

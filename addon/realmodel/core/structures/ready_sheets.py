@@ -11,8 +11,9 @@ from ..methods import CONTINUATION
 from ..work import Work
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
+from .lips import Lip, beyond_lips
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
-from .points_at_faults import Lip, beyond_lips, near_faults
+from .points_at_faults import distances
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
@@ -45,7 +46,8 @@ class ReadyMesh:
         near = np.zeros((len(self.vertices), len(shapes)), bool)
         length = median_edge(self.vertices[:, :2], self.triangles)
         some = [shapes[fault] for fault in np.flatnonzero(self.active)]
-        reach, near[:, self.active] = near_faults(self.vertices, length, some)
+        reach, away = distances(self.vertices, length, some)
+        near[:, self.active] = away < reach
         is_border = np.zeros(len(self.vertices), bool)
         is_border[open_edges(self.vertices, self.triangles)] = True
         return reach, near & is_border[welded(self.vertices), None]
