@@ -87,19 +87,26 @@ def lip(shape, faults, sides, number, y):
     return (x, y, z) if 0 <= x <= 10 and all(there) else None
 
 
-def points_of(shape, faults, lips=1.0, shift=0.0, steps=(0.75, 1.0), gap=0.25):
-    """Points (P, 3) at such steps, at least `gap` away from faults, and of all lips, `shift` off these."""
+def points_and_sides(shape, faults, lips=1.0, shift=0.0, steps=(0.75, 1.0), gap=0.25):
+    """Points (P, 3) at such steps, at least `gap` away from faults, and of all lips, `shift` off these; and
+    (P, F) on which sides they are of each fault."""
     points = []
     for sides in itertools.product((-1, 1), repeat=len(faults)):
         for x, y in itertools.product(np.arange(0, 10.01, steps[0]), np.arange(0, 10.01, steps[1])):
             z = float(height(shape, faults, sides, x, y))
             if all(side * (x - fault.at(y, z)) >= gap for fault, side in zip(faults, sides, strict=True)):
-                points.append((x, y, z))
+                points.append((x, y, z, *sides))
         for number, fault in enumerate(faults):
             for y in np.arange(0, (10.0 if fault.tip is None else fault.tip) + 0.01, lips) if lips else ():
                 if (place := lip(shape, faults, sides, number, y)) is not None:
-                    points.append((place[0] + shift, *place[1:]))
-    return np.unique(np.array(points), axis=0)
+                    points.append((place[0] + shift, *place[1:], *sides))
+    points = np.unique(np.array(points), axis=0)
+    return points[:, :3], points[:, 3:].astype(int)
+
+
+def points_of(*arguments, **more):
+    """The points of points_and_sides."""
+    return points_and_sides(*arguments, **more)[0]
 
 
 def mesh_of(shape, faults, shift=0.0, count=(21, 12)):

@@ -15,8 +15,8 @@ from .points_at_faults import expected_heights
 from .sides import FaultShape
 from .triangles import nearest_triangles, unit_normals
 
-_AWAY = 4.0  # times the reach: so far beyond a fault a sheet is continued
-_UPRIGHT = 1e-6  # of a unit normal: with less of it in plan a fault is level
+_AWAY = 4.0  # times the reach: so far from a fault a sheet is continued
+_STEEP = 0.1  # of a unit normal in plan: a fault that dips less is nearly level
 
 
 class Lip(NamedTuple):
@@ -47,13 +47,13 @@ def beyond_lips(
     for lip, triangle in zip(lips, near, strict=True):
         outward = -lip.side * unit_normals(lip.shape.vertices[lip.shape.triangles])[triangle]
         level = norm(outward[:, :2])
-        some = (triangle >= 0) & (level > _UPRIGHT)
+        some = (triangle >= 0) & (level > _STEEP)
         own, outward, level = points[some], outward[some], level[some]
-        away = np.column_stack([outward[:, :2] * (_AWAY * reach / level)[:, None], np.zeros(len(own))])
+        away = np.column_stack([outward[:, :2], np.zeros(len(own))]) * (_AWAY * reach / level**2)[:, None]
         if settings["extrapolate"] == "method" and len(ordinary):
             there, here = (expected_heights(work, ordinary, plan[:, :2]) for plan in (own + away, own))
             rise = there - here
-            leaves = 2.0 * rise * outward[:, 2] > -level * _AWAY * reach
+            leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach
             away[leaves, 2] = rise[leaves]
         found.append(own + away)
     return np.concatenate(found)
