@@ -41,8 +41,8 @@ NORTHWARD = np.array([[5.0, 2.0], [5.0, 8.0]])
 
 
 def horizons(offset=(0.0, 0.0)):
-    """Points of two level surfaces, lower by THROW east of what is between x = 3 and 7."""
-    plan = [(x, y) for x in (0.5, 1, 2, 3, 7, 8, 9, 9.5) for y in np.linspace(0.25, 9.75, 6)]
+    """Points of two level surfaces, lower by THROW east of what is between x = 2 and 8."""
+    plan = [(x, y) for x in (0.5, 1, 1.5, 2, 8, 8.5, 9, 9.5) for y in np.linspace(0.25, 9.75, 6)]
     return [
         Surface(
             name, points=np.array([(x + offset[0], y + offset[1], z - THROW * (x > 5)) for x, y in plan]),

@@ -26,8 +26,7 @@ def of_model(model):
         },
         "centers": [_center(model, number) for number in range(count)],
         "faults": [
-            [each.fault, each.surface, float(each.throw.mean()), float(each.heave.mean())]
-            for each in displacements(model)
+            [each.fault, each.surface, each.mean_throw, each.mean_heave] for each in displacements(model)
         ],
     }
     return json.dumps(kept)

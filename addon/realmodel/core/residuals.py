@@ -45,7 +45,7 @@ def _heights(model: ModelData, number: int, at: int, entry, points: np.ndarray) 
     structure = entry.structure
 
     def task(work: Work) -> np.ndarray:
-        sides = point_sides(work, points, structure, at, model.threads).sides
+        sides = point_sides(work, points, entry, at, model.threads).sides
         active = structure.faults.active(at)
         found = np.full(len(points), np.nan)
         for row, sheets in zip(structure.compartments, structure.sheets, strict=True):

@@ -147,7 +147,8 @@ def _compartments(model) -> list[dict]:
 
 
 def _faults(model) -> list[dict]:
-    """Throw and heave along each fault: their means, and the largest values."""
+    """Throw and heave along each fault: their means, and the largest values; and the length of the cutoff
+    lines below it along which the surface is on both sides."""
     found = displacements(model)
     return [
         {
@@ -156,8 +157,9 @@ def _faults(model) -> list[dict]:
                 {
                     "rock": each.rock,
                     "surface": each.surface,
-                    "throw": _mean_and_largest(each.throw),
-                    "heave": _mean_and_largest(each.heave),
+                    "throw": _mean_and_largest(each.throw, each.mean_throw),
+                    "heave": _mean_and_largest(each.heave, each.mean_heave),
+                    "length": float(each.length.sum()),
                 }
                 for each in found
                 if each.fault == fault.name
@@ -178,8 +180,8 @@ def fault_entry(fault) -> dict:
     }
 
 
-def _mean_and_largest(values: np.ndarray) -> dict:
-    return {"mean": float(values.mean()), "max": float(values[np.abs(values).argmax()])}
+def _mean_and_largest(values: np.ndarray, mean: float) -> dict:
+    return {"mean": mean, "max": float(values[np.abs(values).argmax()])}
 
 
 def body_entry(body) -> dict:

@@ -9,7 +9,7 @@ from ..mis_ties import LARGEST_SHARE, heights_apart
 
 _LOOKED_AT = 16  # nearest points, whose sides are considered
 _COUNTED = 4  # points of each side, whose mean height is the expected one
-MEAN_DISTANCES = 8.0  # mean distances between points: so near the nearest ones are looked for first
+_FAR = 8.0  # mean distances between points: so near the nearest ones are looked for first
 _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
 
 
@@ -31,11 +31,11 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
     while tried:
         known = np.flatnonzero(~several & ~found)
         known = known[np.argsort(points[known, 0], kind="stable")]
-        near_by = MEAN_DISTANCES * np.sqrt(np.ptp(points[:, 0]) * np.ptp(points[:, 1]) / len(points))
+        near_by = _FAR * np.sqrt(np.ptp(points[:, 0]) * np.ptp(points[:, 1]) / len(points))
         along = points[known, 0]
         wrong, beside = [], set()
         for number in tried:
-            near = nearest_points(points, known, along, number, near_by)
+            near = _nearest(points, known, along, number, near_by)
             own, other = _off(points, row, near, number)
             if own > (other if several[number] else max(tolerated, _BETTER * other)):
                 wrong.append(number)
@@ -45,7 +45,7 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return found
 
 
-def nearest_points(
+def _nearest(
     points: np.ndarray, known: np.ndarray, along: np.ndarray, number: int, near_by: float
 ) -> np.ndarray:
     """(K,) of some points, ordered by x, `along`, the 16 nearest in plan to another one, nearest first.

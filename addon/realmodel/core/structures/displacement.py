@@ -3,24 +3,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..algebra import dot, norm, principal_axes
+from ..algebra import dot, norm
 from ..work import Work, run
-from .rock_structure import RockStructure, Triangulation
-from .sides import fault_sides
-from .tips import trace_of
+from .cutoffs import Cutoff, cutoff_of
+from .rock_structure import RockStructure
+from .sides import FaultShape, fault_sides
+from .tips import precision_of
+from .triangles import nearest_triangles, unit_normals
+from .within import box_of, parts_of_lines, walls_of
 
-_ALONG = 2.0  # distances between places on a trace: the other side is looked for so far along the fault
+_LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
+_AT_ONCE = 1 << 21  # pairs of a place and a segment
 
 
 @dataclass(frozen=True)
 class Displacement:
-    """Of one surface along one fault, at places (N, 3) where its sheet below the fault meets it: throw and
-    heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault, negative
-    at a reverse one. Heave is how far its edge is from that of the lower side in plan, across the fault."""
+    """Of one surface along one fault, at places (N, 3) on the cutoff line of its sheet below the fault: throw
+    and heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault,
+    negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
+    measured across the fault: in the vertical plane through the place and the direction in which the fault
+    dips there. length: (N,) of the part of the cutoff line that each place is the middle of."""
 
     fault: str
     rock: str
@@ -28,6 +35,21 @@ class Displacement:
     places: np.ndarray
     throw: np.ndarray
     heave: np.ndarray
+    length: np.ndarray
+
+    @property
+    def mean_throw(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.throw, self.length)
+
+    @property
+    def mean_heave(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.heave, self.length)
+
+
+def _mean(values: np.ndarray, length: np.ndarray) -> float:
+    return float((values * length).sum() / length.sum())
 
 
 def displacements(model) -> list[Displacement]:
@@ -46,93 +68,141 @@ def _displacements(work: Work, model) -> list[Displacement]:
                 continue
             at = structure.faults.numbers.index(number)
             for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
-                parts = [
-                    _along(work, structure, at, k, below, above, model.threads)
-                    for below, above in _sheet_pairs(structure, at, k)
-                ]
-                joined = [np.concatenate(each) for each in zip(*parts, strict=True)]
-                if joined and len(joined[0]):
+                measured = _Measured(work, structure, at, k, model.threads).everywhere()
+                if len(measured[0]):
                     name = entry.rock.surfaces[k].name
-                    found.append(Displacement(fault.name, entry.rock.name, name, *joined))
+                    found.append(Displacement(fault.name, entry.rock.name, name, *measured))
     return found
 
 
-def _sheet_pairs(structure, fault: int, surface: int) -> list[tuple[int, int]]:
-    """Compartments on the two sides of a fault, and on one side of each other that is on both sides of it;
-    once for each two sheets of a surface."""
-    rows = np.where(structure.faults.active(surface), structure.compartments, 0)
-    pairs = {}
-    for below in np.flatnonzero(rows[:, fault] < 0):
-        for above in np.flatnonzero(rows[:, fault] > 0):
-            same = (rows[below] == rows[above]) | (rows[below] == 0) | (rows[above] == 0)
-            same[fault] = True
-            if same.all():
-                sheets = tuple(id(structure.sheets[each][surface]) for each in (below, above))
-                pairs.setdefault(sheets, (int(below), int(above)))
-    return list(pairs.values())
+class _Places:
+    """The middles of the parts of a cutoff line that other faults leave.
+
+    points: (N, 3); sides: (N, F) int8, of those faults; inward: (N, 2), as of the cutoff; length: (N,);
+    across: (N, 2), the level direction in which the fault dips, of length 1."""
+
+    def __init__(self, cutoff: Cutoff, shape: FaultShape, walls: np.ndarray, sides_of: Callable):
+        begin, end = cutoff.ends.transpose(1, 0, 2)
+        line, shares = parts_of_lines(begin, end, walls)
+        along = (end - begin)[line]
+        points = begin[line] + shares.mean(axis=1)[:, None] * along
+        length = (shares[:, 1] - shares[:, 0]) * norm(along)
+        corners = shape.vertices[shape.triangles]
+        reach = norm(along) + 2 * precision_of(shape)  # the ends of each segment are on the fault
+        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)[0]]
+        level = norm(normals[:, :2])
+        steep = level > _LEVEL
+        self.points, self.length = points[steep], length[steep]
+        self.inward = cutoff.inward[line][steep]
+        self.across = normals[steep, :2] / level[steep, None]
+        self.sides = sides_of(self.points)
 
 
 def throws_between(
     work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int, threads: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
-    return _along(work, structure, fault, surface, below, above, threads)[:2]
+    return _Measured(work, structure, fault, surface, threads).between(below, above)[:2]
 
 
-def _along(work: Work, structure, fault: int, surface: int, below: int, above: int, threads: int):
-    """places (N, 3), throw and heave (N,) of two sheets along a fault."""
-    shape = structure.faults.shapes[fault]
-    rows = np.where(structure.faults.active(surface), structure.compartments[[below, above]], 0)
-    wanted = np.where(rows[0] != 0, rows[0], rows[1])
-    wanted[fault] = 0
+class _Measured:
+    """Measures the displacement of one surface by one fault."""
 
-    def within(points: np.ndarray) -> np.ndarray:
-        found = np.ones(len(points), bool)
-        for other in np.flatnonzero(wanted):
-            found &= fault_sides(work, points, structure.faults.shapes[other], threads) == wanted[other]
-        return found
+    def __init__(self, work: Work, structure: RockStructure, fault: int, surface: int, threads: int):
+        self.work, self.structure, self.fault, self.threads = work, structure, fault, threads
+        active = structure.faults.active(surface)
+        self.others = [other for other in np.flatnonzero(active) if other != fault]
+        self.rows = np.where(active, structure.compartments, 0)
+        self.sheets = [sheets[surface] for sheets in structure.sheets]
+        self.cutoffs: dict[tuple[int, int], Cutoff] = {}
+        self.lower: dict[int, _Places] = {}
 
-    low, high = (
-        _trace(work, structure.sheets[each][surface], shape, within, threads) for each in (below, above)
-    )
-    nothing = np.empty((0, 3)), np.empty(0), np.empty(0)
-    if len(low) < 2 or len(high) < 2:
-        return nothing
-    normal = _normals(low, shape)
-    level = norm(normal[:, :2])
-    steep = level > 1e-9
-    low, normal = low[steep], normal[steep]
-    across = normal[:, :2] / level[steep, None]
-    along = np.column_stack([-across[:, 1], across[:, 0]])
-    places, throw, heave = [], [], []
-    apart = np.diff(high[np.argsort(dot(high, principal_axes(high)[1][0]))], axis=0)
-    step = _ALONG * float(np.median(norm(apart)))
-    for place, direction, sideways in zip(low, along, across, strict=True):
-        away = high - place
-        shift = dot(away[:, :2], direction)
-        before, after = np.where(shift <= 0, shift, -np.inf), np.where(shift >= 0, shift, np.inf)
-        one, other = int(before.argmax()), int(after.argmin())
-        if before[one] < -step or after[other] > step:
-            continue
-        share = 0.0 if after[other] == before[one] else -before[one] / (after[other] - before[one])
-        there = away[one] + share * (away[other] - away[one])
-        places.append(place)
-        throw.append(-there[2])
-        heave.append(abs(dot(there[:2], sideways)))
-    return (np.array(places).reshape(-1, 3), np.array(throw), np.array(heave)) if places else nothing
+    def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """places (N, 3), throw, heave and length (N,)."""
+        nothing = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
+        parts = [nothing, *(self.between(*pair) for pair in self._pairs())]
+        return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
+
+    def _pairs(self) -> list[tuple[int, int]]:
+        """Compartments on the two sides of the fault, and on one side of each other that is on both sides of
+        it; one of those that only faults part which do not displace the surface."""
+        rows, pairs = self.rows, {}
+        for below in np.flatnonzero(rows[:, self.fault] < 0):
+            for above in np.flatnonzero(rows[:, self.fault] > 0):
+                same = (rows[below] == rows[above]) | (rows[below] == 0) | (rows[above] == 0)
+                same[self.fault] = True
+                if same.all():
+                    pairs.setdefault((*rows[below].tolist(), *rows[above].tolist()), (below, above))
+        return list(pairs.values())
+
+    def between(self, below: int, above: int):
+        """As everywhere, of two compartments."""
+        places, upper = self._places(below), self._cutoff(above, 1)
+        place, points = _across(places, self._are_within(below, places.sides), upper)
+        inside = self._are_within(above, self._sides(points))
+        place, points = place[inside], points[inside]
+        away = points - places.points[place]
+        order = np.lexsort((dot(away, away), place))
+        place, away = place[order], away[order]
+        is_nearest = np.diff(place, prepend=-1) != 0
+        place, away = place[is_nearest], away[is_nearest]
+        heave = np.abs(dot(away[:, :2], places.across[place]))
+        return places.points[place], -away[:, 2], heave, places.length[place]
+
+    def _cutoff(self, compartment: int, side: int) -> Cutoff:
+        sheet, shape = self.sheets[compartment], self.structure.faults.shapes[self.fault]
+        key = id(sheet), side
+        if key not in self.cutoffs:
+            self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side, self.threads)
+        return self.cutoffs[key]
+
+    def _places(self, compartment: int) -> _Places:
+        """On the cutoff line of a sheet below the fault."""
+        key = id(self.sheets[compartment])
+        if key not in self.lower:
+            shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
+            walls = np.empty((0, 3, 3))
+            if len(cutoff.ends):
+                walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
+            self.lower[key] = _Places(cutoff, shapes[self.fault], walls, self._sides)
+        return self.lower[key]
+
+    def _sides(self, points: np.ndarray) -> np.ndarray:
+        """(N, F) int8 of the other faults."""
+        shapes = self.structure.faults.shapes
+        sides = [fault_sides(self.work, points, shapes[other], self.threads) for other in self.others]
+        return np.array(sides, np.int8).reshape(len(self.others), len(points)).T
+
+    def _are_within(self, compartment: int, sides: np.ndarray) -> np.ndarray:
+        """(N,) bool of points with these sides of the other faults."""
+        wanted = self.rows[compartment, self.others]
+        return ((sides == wanted) | (wanted == 0)).all(axis=1)
 
 
-def _trace(work: Work, sheet: Triangulation, shape, within, threads: int) -> np.ndarray:
-    """(M, 3) places at which a sheet meets a fault, in the compartment."""
-    trace = trace_of(work, sheet, shape, within, threads)
-    places = np.column_stack([trace.points, trace.heights])
-    return places[within(places)] if len(places) else places
+def _across(places: _Places, some: np.ndarray, upper: Cutoff) -> tuple[np.ndarray, np.ndarray]:
+    """Where the vertical planes across the fault, through some places (N,) bool, meet the cutoff line above
+    it: the places' numbers (K,) and points (K, 3).
+
+    The sheets on both sides lie on opposite sides of their cutoff lines. So where a fold or a low dip makes
+    them meet the fault more than once, these are not taken for one another.
+    """
+    begin, end = upper.ends.transpose(1, 0, 2)
+    numbers, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
+    given, count = np.flatnonzero(some), max(1, _AT_ONCE // max(1, len(begin)))
+    for start in range(0, len(given), count):
+        part = given[start : start + count]
+        across = places.across[part]
+        along = np.column_stack([-across[:, 1], across[:, 0]])
+        own = dot(along, places.points[part, :2])[:, None]
+        first, last = (_products(along, each) - own for each in (begin, end))
+        inward = dot(across, places.inward[part])[:, None] * _products(across, upper.inward)
+        row, segment = np.nonzero((first * last <= 0) & (first != last) & (inward < 0))
+        share = first[row, segment] / (first[row, segment] - last[row, segment])
+        numbers.append(part[row])
+        points.append(begin[segment] + share[:, None] * (end - begin)[segment])
+    return np.concatenate(numbers), np.concatenate(points)
 
 
-def _normals(places: np.ndarray, shape: Triangulation) -> np.ndarray:
-    """(N, 3) of length 1: those of the fault's triangles whose middles are nearest."""
-    corners = shape[0][shape[1]]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= norm(normals)[:, None]
-    middles = corners.mean(axis=1)
-    return normals[[int(((middles - place) ** 2).sum(axis=1).argmin()) for place in places]]
+def _products(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(N, M) of vectors in plan, (N, 2) and (M, 2 or 3)."""
+    return one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1]

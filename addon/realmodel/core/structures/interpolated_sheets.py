@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 
@@ -22,13 +23,14 @@ from .beyond_faults import beyond_faults
 from .borrowed import as_at_fault, sheet_runs_away
 from .families import Family, keys_of
 from .few_points import are_few, of_residuals
+from .lips import Lip, beyond_lips
 from .near_rows import near_rows
-from .points_at_faults import beyond_lips, placed_warning, point_sides
+from .points_at_faults import placed_warning, point_sides
 from .rock_structure import Triangulation
 from .sides import fault_sides, sides_of
 from .throws import Sheets
 from .tips import shared, trace_of, with_equal_ends
-from .triangles import edges_of
+from .triangles import median_edge
 from .within import Within
 
 _RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
@@ -44,7 +46,8 @@ class InterpolatedSurface:
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         structure = entry.structure
-        self.placed = point_sides(work, self.points, structure, number, threads)
+        self.placed = point_sides(work, self.points, entry, number, threads)
+        structure.points[number] = self.placed.sides
         names = structure.faults.names
         warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
         if warning is not None:
@@ -196,14 +199,19 @@ class InterpolatedSurface:
                     away |= hidden[number, side]
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
+            lips = [
+                Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
+                for number, side in zip(met, sides, strict=True)
+                if side
+            ]
             if counts_by_node:
-                return self._values_at(family, visible, settled, nodes[some])
+                return self._values_at(family, self._points(family, visible, lips), settled, nodes[some])
             if sides not in whole_of:
                 whole = list(first)
                 for number, side in zip(met, sides, strict=True):
                     whole[number] = side
                 trend = trends and trends[of_members[sides]]
-                sheet = self._interpolated(family, tuple(whole), visible, settled, trend)
+                sheet = self._interpolated(family, tuple(whole), visible, settled, trend, lips)
                 whole_of[sides] = self._values_on_nodes(sheet)
             return whole_of[sides][some]
 
@@ -246,7 +254,7 @@ class InterpolatedSurface:
         nodes, triangles = self.entry.region
         shapes = self.entry.structure.faults.shapes
         faults = [family.dying[number] for number in some]
-        ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
+        ramp = _RAMP * median_edge(nodes, triangles)
         equal = with_equal_ends(
             self.work,
             nodes,
@@ -271,10 +279,13 @@ class InterpolatedSurface:
         own: np.ndarray,
         surface=None,
         trend: Triangulation | None = None,
+        lips: Sequence[Lip] = (),
     ) -> Triangulation:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
-        other options. trend: a sheet that was made here, on which the points are interpolated."""
-        one = self._from_points(family, sides, own, surface or self.surface, self.entry.region, trend)
+        other options. trend: a sheet that was made here, on which the points are interpolated. lips: at
+        faults that die out here, of these points."""
+        points = self._points(family, own, None if trend is not None else lips)
+        one = self._from_points(family, sides, points, surface or self.surface, self.entry.region, trend)
         sheet = one.surfaces[self.number]
         result = one.interpolations[self.number]
         # the sheet itself is kept, too: so no other gets its id
@@ -285,14 +296,17 @@ class InterpolatedSurface:
             self.entry.structure.warn(list(family.members), warning)
         return sheet
 
-    def _from_points(self, family: Family, sides, own: np.ndarray, surface, region, trend=None):
-        """The RockInput with the surface from some points on the mesh of a region, and warnings. Of heights
-        on several sides of faults that die out, at one place, the mean counts."""
+    def _points(self, family: Family, own: np.ndarray, lips: Sequence[Lip] | None) -> np.ndarray:
+        """(P, 3) some points as they count: the mean of heights on several sides of faults that die out, at
+        one place; and others beyond the faults at which the sheet ends, for a method that needs them. lips:
+        as of _interpolated; None: without those beyond."""
+        points = mean_heights(self.points[own]) if family.dying else self.points[own]
+        return points if lips is None else np.concatenate([points, self._beyond(family, own, lips)])
+
+    def _from_points(self, family: Family, sides, points: np.ndarray, surface, region, trend=None):
+        """The RockInput with the surface from points (P, 3) on the mesh of a region, and warnings."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
-        points = mean_heights(self.points[own]) if family.dying else self.points[own]
-        if trend is None:
-            points = np.concatenate([points, self._beyond(family, own)])
         surfaces[self.number] = replace(surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
@@ -323,11 +337,11 @@ class InterpolatedSurface:
             and not needed_surfaces(self.entry.rock, self.number)
         )
 
-    def _values_at(self, family: Family, own: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
-        """As _values_on_nodes, at some nodes alone, from some points, of a surface that counts by node."""
+    def _values_at(self, family: Family, points: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+        """As _values_on_nodes, at some nodes alone, from points (P, 3), of a surface that counts by node."""
         region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
-        one = self._from_points(family, (), own, surface, region)
-        points, result = one.rock.surfaces[self.number].points, one.interpolations[self.number]
+        one = self._from_points(family, (), points, surface, region)
+        result = one.interpolations[self.number]
         for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
             warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
             self.entry.structure.warn(list(family.members), warning)
@@ -348,21 +362,20 @@ class InterpolatedSurface:
         by = of_residuals(self.surface)
         return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
-    def _beyond(self, family: Family, own: np.ndarray) -> np.ndarray:
-        """(K, 3) points beyond the faults that part the family, for a method that needs them."""
-        name, settings = self.surface.method_options()
-        shapes = self.entry.structure.faults.shapes
-        parting = {fault: shapes[fault] for fault, side in enumerate(family.key) if side in (-1, 1)}
-        if not METHODS[name].is_triangulated or settings["extrapolate"] != "method":
-            return np.empty((0, 3))
-        return beyond_lips(self.points[own], self.placed.some(own), parting)
+    def _beyond(self, family: Family, own: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
+        """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
+        points, shapes = self.points[own], self.entry.structure.faults.shapes
+        whole = np.ones(len(points), bool)
+        parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
+        lips, options = [*parting, *lips], self.surface.method_options()
+        return beyond_lips(self.work, points, lips, self.placed.reach, *options)
 
     def _with_own_points(self, family: Family, surface):
         """Another surface with only its points in the family's compartments."""
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        placed = point_sides(self.work, points, self.entry.structure, self.number, self.threads)
+        placed = point_sides(self.work, points, self.entry, self.number, self.threads)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
@@ -418,8 +431,3 @@ def _settled(surface, found):
     options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
     options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
     return replace(surface, method=found.method, options=options)
-
-
-def _lengths(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    edges = edges_of(triangles)
-    return np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1)

@@ -12,7 +12,7 @@ from ..errors import InputRefused
 from ..meshers import DEFAULT_MESHER
 from ..planar_mesh import mesh_rings, triangulate_rings
 from ..work import Work, native_module
-from .triangles import border_loops, edge_numbers, edges_of, open_edges, welded
+from .triangles import border_loops, edge_numbers, edges_of, median_edge, open_edges, welded
 
 LEFT, RIGHT, _BOTH = 1, 2, 3  # on which sides of a fault a triangle has a part
 _AREA = 1e-9  # relative: parts that overlap by less do not
@@ -153,7 +153,7 @@ def _overlay(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.
     """Nodes (N, 2) and triangles (K, 3) of what parts that overlap in plan cover together, with the gaps; all
     their borders are edges."""
     plan = np.ascontiguousarray(vertices[:, :2])
-    length = float(np.median(np.linalg.norm(np.diff(plan[edges_of(triangles)], axis=1)[:, 0], axis=1)))
+    length = median_edge(plan, triangles)
     rows, part = np.unique(masks, axis=0, return_inverse=True)
     parts = [np.ascontiguousarray(triangles[part.ravel() == number]) for number in range(len(rows))]
     borders = [open_edges(vertices, each) for each in parts]

@@ -7,103 +7,193 @@ position is that of the last bit, and a point on the wrong side bends the sheet 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ..algebra import norm
 from ..build_warning import BuildWarning
 from ..errors import place_text
+from ..mis_ties import mean_heights
 from ..work import Work, native_module
-from .beyond_faults import MEAN_DISTANCES, nearest_points
-from .rock_structure import RockStructure
+from .beyond_faults import beyond_faults
 from .sides import FaultShape, sides_of
-from .triangles import crossing_pairs, distances_of_pairs
+from .triangles import median_edge, nearest_triangles
 
-_NEAR = 0.25  # of the mean spacing of the points: nearer to a fault, the position does not decide
-_COUNTED = 8  # points of each side, through which a plane is laid
-_SHARE = 1e-3  # of the points' spread, added so that points on a line give no slope across it
-_UPRIGHT = 1e-6  # of a unit normal: with less of it in plan a fault is level
+_NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
+_EXPECTED_BY = 16  # points: so many let expect a height
+_PLANE = 1e6  # a spline so smooth is a plane
+_LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point agrees
+_SURE = 0.25  # of the distance from what another side lets expect: so near, a point counts for its side
+_WRONG = 2.0  # times that distance: a point so far from its own side does not count
+_PASSES = 40  # times that points which count let expect more
+_SHIFTS = np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 
 class PointSides(NamedTuple):
     """Of points and faults: sides (P, F) int8, to which the points belong; moved (P, F) bool, where these are
-    not the sides on which they lie; near (P, F) bool, where a point is near a fault that displaces its
-    surface."""
+    not the sides on which they lie; reach: as distances gives it."""
 
     sides: np.ndarray
     moved: np.ndarray
-    near: np.ndarray
+    reach: float
 
     def some(self, chosen: np.ndarray) -> PointSides:
         """Of some of the points, (P,) bool."""
-        return PointSides(*(each[chosen] for each in self))
+        return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
 
 
-def point_sides(
-    work: Work, points: np.ndarray, structure: RockStructure, number: int, threads: int = 0
-) -> PointSides:
-    """The sides of the faults that points (P, 3) of surface `number` belong to.
+def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
+    """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
-    A point is near a fault that displaces the surface when it is nearer than a quarter of the points' mean
-    spacing. It gets the sides of those points, near no fault, whose local plane (weighted least squares of
-    heights) is nearest to it. Where only one side has such points, its position decides.
+    A point that is near a fault that displaces the surface (distances) gets the sides of those points, near
+    no fault, that let expect a height nearest to its own. Where only one side has such points, its position
+    decides, unless some of the points near the fault agree with them and others do not: these are of the
+    other side.
     """
+    structure = entry.structure
     faults = structure.faults
     sides = sides_of(work, points, faults, threads)
     active = faults.active(number)
-    moved, near = np.zeros(sides.shape, bool), np.zeros(sides.shape, bool)
-    if len(points) < 2 or not active.any():
-        return PointSides(sides, moved, near)
-    spacing = _spacing(points)
-    for fault in np.flatnonzero(active):
-        near[:, fault] = _are_near(points, faults.shapes[fault], _NEAR * spacing)
-    undecided = np.flatnonzero(near.any(axis=1))
-    rows = np.where(active, sides, 0)
-    candidates = np.unique(np.where(active, structure.compartments, 0), axis=0)
-    groups = [np.flatnonzero(~near.any(axis=1) & (rows == row).all(axis=1)) for row in candidates]
-    groups = [group[np.argsort(points[group, 0], kind="stable")] for group in groups]
-    for point in undecided.tolist():
-        may_be = ((candidates == rows[point]) | near[point] | (candidates == 0) | (rows[point] == 0)).all(
-            axis=1
-        )
-        off = np.full(len(candidates), np.inf)
-        for candidate in np.flatnonzero(may_be).tolist():
-            if len(group := groups[candidate]):
-                off[candidate] = abs(_plane_at(points, group, point, spacing)[0] - points[point, 2])
-        is_own = (candidates == rows[point]).all(axis=1)
-        best = int(off.argmin())
-        if is_own.any() and np.isfinite(off[is_own]).all() and off[best] < off[is_own].min():
-            placed = np.where(active, candidates[best], sides[point])
-            moved[point] = placed != sides[point]
-            sides[point] = placed
-    return PointSides(sides, moved, near)
+    away = np.full(sides.shape, np.inf)
+    shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
+    reach, away[:, active] = distances(points, median_edge(*entry.region), shapes)
+    near, beside = away < reach, np.isfinite(away)
+    agreement = _Agreement(
+        work=work,
+        points=points,
+        rows=np.where(active, sides, 0),
+        compartments=np.unique(np.where(active, structure.compartments, 0), axis=0),
+        # far from one that dies out its sides are one
+        matters=active & (beside | ~np.array(faults.dies_out, bool)),
+        counts=~near.any(axis=1),
+        reach=reach,
+        threads=threads,
+    )
+    agreement.counts &= ~beyond_faults(points, agreement.rows)
+    agreement.leave_out(beside)
+    agreement.place(near)
+    placed = np.where(active, agreement.rows, sides)
+    return PointSides(placed, placed != sides, reach)
 
 
-def beyond_lips(points: np.ndarray, placed: PointSides, shapes: dict[int, FaultShape]) -> np.ndarray:
-    """(K, 3) points that continue a sheet beyond the faults at which it is cut off, for methods that
-    triangulate its points (P, 3).
+class _Choice(NamedTuple):
+    """Of some points (N,), by number, for which the same faults matter, (F,) bool: rows (C, F) of sides that
+    compartments have, 0 for other faults; possible (N, C) bool, those that each may belong to; own (N, C)
+    bool, where it lies."""
 
-    Their convex outline bridges each bay of a cutoff line by triangles in the fault itself. So each point
-    near a fault has another one a mean spacing beyond it, in the plane of the points around it. shapes: the
-    faults that part the sheet, by number.
+    points: np.ndarray
+    matters: np.ndarray
+    rows: np.ndarray
+    possible: np.ndarray
+    own: np.ndarray
+
+
+@dataclass
+class _Agreement:
+    """Points (P, 3), and the sides of faults that they agree with.
+
+    rows: (P, F) int8, their sides, changed; matters: (P, F) bool, of which faults these count; compartments:
+    (C, F), the rows that there are; counts: (P,) bool, the points whose sides are known, changed.
     """
-    spacing = _spacing(points) if len(points) else 0.0
-    order = np.argsort(points[:, 0], kind="stable")
-    found = []
-    for fault, shape in shapes.items():
-        corners = shape.vertices[shape.triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= norm(normals)[:, None]
-        for point in np.flatnonzero(placed.near[:, fault]).tolist():
-            away = distances_of_pairs(np.broadcast_to(points[point], (len(corners), 3)), corners)
-            outward = -placed.sides[point, fault] * normals[int(away.argmin()), :2]
-            level = float(norm(outward))
-            if level > _UPRIGHT:
-                shift = spacing / level * outward
-                _, slope = _plane_at(points, order[order != point], point, spacing)
-                found.append(points[point] + [*shift, slope[0] * shift[0] + slope[1] * shift[1]])
-    return np.array(found).reshape(-1, 3)
+
+    work: Work
+    points: np.ndarray
+    rows: np.ndarray
+    compartments: np.ndarray
+    matters: np.ndarray
+    counts: np.ndarray
+    reach: float
+    threads: int
+
+    def leave_out(self, beside: np.ndarray) -> None:
+        """Lets points that lie beside faults, (P, F) bool, not count where they agree with another side: a
+        horizon may reach beyond its fault."""
+        wrong = np.zeros(len(self.points), bool)
+        for choice in self._choices(np.flatnonzero(self.counts & beside.any(axis=1)), beside):
+            off, tolerated = self._off(choice, _PLANE)
+            own = np.where(choice.own, off, np.inf).min(axis=1, initial=np.inf)
+            other = np.where(choice.own, np.inf, off)
+            best = other.argmin(axis=1)
+            least = np.take_along_axis(tolerated, best[:, None], axis=1)[:, 0]
+            wrong[choice.points[np.isfinite(own) & (own > _WRONG * other.min(axis=1) + least)]] = True
+        self.counts &= ~wrong
+
+    def place(self, near: np.ndarray) -> None:
+        """Gives points near faults, (P, F) bool, the sides that they agree with. Those that clearly do count
+        from then on."""
+        choices = self._choices(np.flatnonzero(near.any(axis=1)), near)
+        for _ in range(_PASSES):
+            found = [self._place_some(choice) for choice in choices]
+            if not any(found):
+                break
+        for choice in choices:
+            left = ~self.counts[choice.points]
+            best = _best(choice, *self._off(choice))
+            self._give(choice, left & (best >= 0), best)
+
+    def _place_some(self, choice: _Choice) -> bool:
+        """Places those that clearly agree with one side; whether there were any."""
+        if choice.possible.shape[1] < 2:
+            return False
+        off, _ = self._off(choice)
+        least = np.sort(off, axis=1)[:, :2]
+        sure = np.isfinite(least[:, 1]) & (least[:, 0] <= _SURE * least[:, 1])
+        self._give(choice, sure, off.argmin(axis=1))
+        self.counts[choice.points[sure]] = True
+        return bool(sure.any())
+
+    def _give(self, choice: _Choice, some: np.ndarray, best: np.ndarray) -> None:
+        given = choice.points[some]
+        self.rows[given] = np.where(choice.matters, choice.rows[best[some]], self.rows[given])
+
+    def _choices(self, some: np.ndarray, unclear: np.ndarray) -> list[_Choice]:
+        """unclear: (P, F) bool, the faults whose sides are to be chosen."""
+        found = []
+        patterns, which = np.unique(self.matters[some], axis=0, return_inverse=True)
+        for number, matters in enumerate(patterns):
+            points = some[which.ravel() == number]
+            rows = np.unique(np.where(matters, self.compartments, 0), axis=0)
+            own = np.where(matters, self.rows[points], 0)[:, None]
+            alike = (rows == own) | (rows == 0) | (own == 0) | unclear[points, None]
+            found.append(_Choice(points, matters, rows, alike.all(axis=2), (rows == own).all(axis=2)))
+        return found
+
+    def _off(self, choice: _Choice, smoothing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """(N, C) how far the points are from what those that count let expect, infinite where these say
+        nothing and for points that count themselves, if the expectation goes through these (smoothing 0);
+        and how far they may be and agree: what a place within reach, or another expectation, would change."""
+        off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
+        least = _LEAST * float(np.ptp(self.points[:, 2]))
+        asked = choice.possible & ((smoothing > 0) | ~self.counts[choice.points, None])
+        rows = np.where(choice.matters, self.rows, 0)
+        for number in np.flatnonzero(asked.any(axis=0)):
+            group = self.points[self.counts & (rows == choice.rows[number]).all(axis=1)]
+            if len(group):
+                some = asked[:, number]
+                plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
+                expected = expected_heights(self.work, group, plan, smoothing, self.threads)
+                beside = (plan + self.reach * _SHIFTS).reshape(-1, 2)
+                planes = expected_heights(self.work, group, beside, _PLANE, self.threads).reshape(3, -1)
+                rise = np.abs(planes[1:] - planes[0]).sum(axis=0)
+                off[some, number] = np.abs(expected - z)
+                tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
+        return off, tolerated
+
+
+def _best(choice: _Choice, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
+    """(N,) the row of sides that each point belongs to; -1 where it stays where it is."""
+    best = off.argmin(axis=1)
+    is_known = np.isfinite(off.min(axis=1))
+    of_own = np.where(choice.own, off, np.inf).min(axis=1)
+    placed = np.where(is_known & (np.isfinite(of_own) | ~choice.own.any(axis=1)), best, -1)
+    agrees = is_known & (off <= tolerated).any(axis=1)
+    for other in np.flatnonzero(np.isinf(off).all(axis=0)):  # no points that count
+        strange = choice.possible[:, other] & is_known & ~agrees
+        if strange.any():
+            placed[strange & (choice.own[:, other] | np.isfinite(of_own))] = other
+            placed[agrees & choice.own[:, other]] = best[agrees & choice.own[:, other]]
+    return placed
 
 
 def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock: str, surface: str):
@@ -121,40 +211,32 @@ def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock
     return BuildWarning(text, "points", rock, surface)
 
 
+def expected_heights(
+    work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0, threads: int = 0
+) -> np.ndarray:
+    """(N,) the heights at plan points (N, 2) of splines through the nearest of some points (P, 3)."""
+    spline, plan = native_module().spline, np.ascontiguousarray(plan)
+    points = mean_heights(points)
+    return work.native(spline, points, plan, smoothing=smoothing, neighbours=_EXPECTED_BY, threads=threads)
+
+
+def distances(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+    """How near to a fault points (P, 3) may be on its cutoff line, and (P, F) how far they are from faults,
+    if less than an edge length; else infinite.
+
+    That near is a quarter of an edge length, or of the mean spacing of the points farther away, where it is
+    less. Cutoff lines may have many points, and say nothing of that spacing.
+    """
+    away = np.full((len(points), len(shapes)), np.inf)
+    for fault, shape in enumerate(shapes):
+        corners = shape.vertices[shape.triangles]
+        away[:, fault] = nearest_triangles(points, np.full(len(points), length), corners)[1]
+    ordinary = points[(away >= _NEAR * length).all(axis=1)]
+    spacing = _spacing(ordinary) if len(ordinary) > 1 else np.inf
+    return _NEAR * min(length, spacing), away
+
+
 def _spacing(points: np.ndarray) -> float:
     """The mean spacing in plan; of points on a line that along it."""
     along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)
     return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)
-
-
-def _are_near(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
-    """(P,) bool: the points that are nearer than `reach` to a fault."""
-    corners = shape.vertices[shape.triangles]
-    found = np.zeros(len(points), bool)
-    pairs = crossing_pairs(np.stack([points - reach, points + reach, points], axis=1), corners)
-    is_near = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]]) < reach
-    found[pairs[is_near, 0]] = True
-    return found
-
-
-def _plane_at(
-    points: np.ndarray, group: np.ndarray, point: int, spacing: float
-) -> tuple[float, tuple[float, float]]:
-    """The height, at a point, of the plane through those of a group, ordered by x, nearest to it; and its
-    slopes along x and y."""
-    near = nearest_points(points, group, points[group, 0], point, MEAN_DISTANCES * spacing)[:_COUNTED]
-    away = points[near] - points[point]
-    weight = 1.0 / ((away[:, :2] ** 2).sum(axis=1) + spacing**2)
-    weight /= weight.sum()
-    middle = (weight[:, None] * away).sum(axis=0)
-    x, y, z = (away - middle).T
-    xx, yy, xy = (weight * x * x).sum(), (weight * y * y).sum(), (weight * x * y).sum()
-    xz, yz = (weight * x * z).sum(), (weight * y * z).sum()
-    extra = _SHARE * (xx + yy)
-    xx, yy = xx + extra, yy + extra
-    determinant = xx * yy - xy * xy
-    if not determinant > 0:  # one point, or all at one place
-        return float(points[point, 2] + middle[2]), (0.0, 0.0)
-    slope = float(yy * xz - xy * yz) / determinant, float(xx * yz - xy * xz) / determinant
-    height = points[point, 2] + middle[2] - slope[0] * middle[0] - slope[1] * middle[1]
-    return float(height), slope

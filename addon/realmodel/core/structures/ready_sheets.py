@@ -11,12 +11,14 @@ from ..methods import CONTINUATION
 from ..work import Work
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
+from .lips import Lip, beyond_lips
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
+from .points_at_faults import distances
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
 from .throws import Sheets
-from .tips import hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
-from .triangles import meet, overlapping_pairs, welded
+from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
+from .triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
 from .within import Within
 
 
@@ -33,24 +35,37 @@ class ReadyMesh:
         faults = entry.structure.faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
+        self.reach, near = self._near(faults.shapes)
         for fault in np.flatnonzero(self.active):
-            self._divide(int(fault), faults.shapes[fault])
+            self._divide(int(fault), faults.shapes[fault], near[:, fault])
         self.tiling: PlanTiling | None = None
         self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
 
-    def _divide(self, fault: int, shape: FaultShape) -> None:
-        """The sides of a fault on which each triangle has a part."""
+    def _near(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+        """How near to a fault a border of the mesh counts as its cutoff line, and (V, F) bool, the vertices
+        on borders that are so near to each fault that displaces it."""
+        near = np.zeros((len(self.vertices), len(shapes)), bool)
+        length = median_edge(self.vertices[:, :2], self.triangles)
+        some = [shapes[fault] for fault in np.flatnonzero(self.active)]
+        reach, away = distances(self.vertices, length, some)
+        near[:, self.active] = away < reach
+        is_border = np.zeros(len(self.vertices), bool)
+        is_border[open_edges(self.vertices, self.triangles)] = True
+        return reach, near & is_border[welded(self.vertices), None]
+
+    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray) -> None:
+        """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
+        cutoff line, wherever it lies up to rounding."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
-        on = on_fault(self.vertices, shape)
-        side = np.where(on, 0, side)
+        side[on_fault(self.vertices, shape) | is_lip] = 0
         corners = side[self.triangles.T]
         mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
-        along = mask == 0  # all its corners lie on the fault
-        middles = self.vertices[self.triangles[along]].mean(axis=1)
-        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
         clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)))
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
         mask[clear[crossed]] = LEFT | RIGHT
+        along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault
+        middles = self.vertices[self.triangles[along]].mean(axis=1)
+        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
         self.masks[:, fault] = mask
 
     def own(self, family: Family) -> np.ndarray:
@@ -93,7 +108,8 @@ class ReadyMesh:
             )
         plan, triangles, known = self.tiling.around(own)
         shapes = self.entry.structure.faults.shapes
-        common = self._continued(plan, known, triangles)
+        cut = [(shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)]
+        common = self._continued(plan, known, triangles, cut)
         faults = [shapes[fault] for fault in family.dying]
         within = self._within(family)
 
@@ -113,7 +129,7 @@ class ReadyMesh:
         self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
-            common = self._continued(plan, self.tiling.heights(own), triangles)
+            common = self._continued(plan, self.tiling.heights(own), triangles, cut)
             traces = traces_on((np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
@@ -125,7 +141,8 @@ class ReadyMesh:
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
             left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
-            seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
+            dying = [(faults[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
 
@@ -185,8 +202,15 @@ class ReadyMesh:
     def _within(self, family: Family) -> Within:
         return Within(self.work, self.entry, self.number, family, self.threads)
 
-    def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-        """(N,) heights: the known ones, and where they are NaN those of the method."""
+    def _continued(
+        self,
+        plan: np.ndarray,
+        known: np.ndarray,
+        triangles: np.ndarray,
+        cut: list[tuple[FaultShape, int, Trace | None]],
+    ) -> np.ndarray:
+        """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
+        the sheet off, its side, and where one dies out its trace."""
         if self.tiling.nodes is not plan:
             same = welded(plan)
         elif self.same_places is None:
@@ -206,6 +230,9 @@ class ReadyMesh:
             else:
                 missed, nodes, tiles = missing, plan, triangles
             nodes = np.ascontiguousarray(nodes)
+            lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
+            beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
+            points = np.concatenate([points, beyond])
             found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
             of_place[missing] = found.z[missed]
             z = np.where(np.isnan(z), of_place[same], z)
@@ -215,6 +242,30 @@ class ReadyMesh:
         """The triangles of the sheets are no longer those of the file."""
         if len(sheets) > 1 or sheets[0][1] is not self.triangles:
             self.entry.file_faces[self.number] = None
+
+
+def _as_beside(vertices: np.ndarray, triangles: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """The mask (T,) of triangles, changed: those that have none get that of a triangle beside them."""
+    lacking = np.flatnonzero(mask == 0)
+    if not len(lacking):
+        return mask
+    edges = edge_numbers(edges_of(welded(vertices)[triangles]), len(vertices)).reshape(3, -1).T
+    while True:
+        order = np.argsort(edges[mask > 0].ravel(), kind="stable")
+        known, of_edge = edges[mask > 0].ravel()[order], np.repeat(mask[mask > 0], 3)[order]
+        lacking = lacking[mask[lacking] == 0]
+        if not len(known) or not len(lacking):
+            return mask
+        at = np.minimum(np.searchsorted(known, edges[lacking]), len(known) - 1)
+        found = np.where(known[at] == edges[lacking], of_edge[at], 0).max(axis=1)
+        if not found.any():
+            return mask
+        mask[lacking] = found
+
+
+def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:
+    """(P,) bool: the points beside a fault, all where it does not die out."""
+    return np.ones(len(points), bool) if trace is None else trace.beside(points[:, :2])
 
 
 def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:

@@ -17,7 +17,8 @@ class RockStructure:
     """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there; names: of the
     compartments. sheets: for each compartment one triangulation of each surface, the same object where
     compartments share it; None until it is made. warnings: (compartments, warning); reported if one of the
-    compartments holds rock. few: the surfaces of which no compartment has enough points."""
+    compartments holds rock. few: the surfaces of which no compartment has enough points. points: of
+    interpolated surfaces (P, F) int8, the sides of their points."""
 
     faults: RockFaults
     compartments: np.ndarray
@@ -25,6 +26,7 @@ class RockStructure:
     sheets: list[list[Triangulation | None]]
     warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
     few: set[int] = field(default_factory=set)
+    points: dict[int, np.ndarray] = field(default_factory=dict)
 
     def distinct(self, surface: int) -> list[Triangulation]:
         """The different sheets of a surface, in the order of the compartments that they first serve."""

@@ -17,7 +17,6 @@ from ..work import Work
 from ..wrong_sides import Triangulation, points_too_low
 from .compartment_sheets import CompartmentSheets, make_borrowed, named
 from .interpolated_sheets import InterpolatedSurface
-from .points_at_faults import point_sides
 from .ready_sheets import ReadyMesh
 from .sides import sides_of
 from .throws import Throws
@@ -137,7 +136,7 @@ def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) ->
     compartment."""
     structure, surfaces = entry.structure, entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
-    sides = point_sides(work, points, structure, number, threads).sides
+    sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
         own = (sides == row).all(axis=1)
         its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]

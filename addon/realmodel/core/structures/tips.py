@@ -65,26 +65,49 @@ def trace_of(
     """The trace of a fault in a sheet, edge by edge. within: whether points (K, 3) lie in the compartment; a
     fault that ends elsewhere does not die out."""
     vertices, triangles = sheet
-    side = fault_sides(work, vertices, fault, threads)
-    on = on_fault(vertices, fault)
-    side = np.where(on, 0, side)
-    edges = np.sort(edges_of(triangles), axis=1)
-    edges, number = np.unique(edges, axis=0, return_inverse=True)
-    of_triangle = number.reshape(3, -1).T
-    changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
-    begin, end = vertices[edges[changing, 0]], vertices[edges[changing, 1]]
-    share = hit_shares(begin, end, fault)
+    crossed = crossed_edges(work, sheet, fault, threads)
+    on = crossed.side == 0
+    begin, end = vertices[crossed.edges[crossed.changing]].transpose(1, 0, 2)
+    share = crossed.share[crossed.changing]
     hits = np.isfinite(share)
     passed = _where_sides_change(work, begin[~hits], end[~hits], fault, threads)
-    missed = np.zeros(len(edges), bool)
-    missed[changing[~hits][within(passed)]] = True
-    goes_on = missed[of_triangle].any(axis=1)
+    missed = np.zeros(len(crossed.edges), bool)
+    missed[crossed.changing[~hits][within(passed)]] = True
+    goes_on = missed[crossed.of_triangle].any(axis=1)
     beyond = np.zeros(len(vertices), bool)
     beyond[triangles[goes_on]] = True
-    at_end = np.zeros(len(edges), bool)
-    at_end[of_triangle[goes_on]] = True
+    at_end = np.zeros(len(crossed.edges), bool)
+    at_end[crossed.of_triangle[goes_on]] = True
     places = np.concatenate([begin[hits] + share[hits, None] * (end - begin)[hits], vertices[on]])
-    return Trace(places[:, :2], places[:, 2], np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
+    is_end = np.concatenate([at_end[crossed.changing[hits]], beyond[on]])
+    return Trace(places[:, :2], places[:, 2], is_end, beyond)
+
+
+class CrossedEdges(NamedTuple):
+    """The edges of a sheet at a fault. side: (V,) int8 of its vertices, 0 on the fault. edges: (E, 2), and
+    of_triangle: (T, 3) int64, those from corner 0 to 1 of each triangle, 1 to 2, 2 to 0. changing: (K,) the
+    edges with ends on both sides. share: (E,) where the fault meets these, from the first end to the second;
+    NaN where it does not."""
+
+    side: np.ndarray
+    edges: np.ndarray
+    of_triangle: np.ndarray
+    changing: np.ndarray
+    share: np.ndarray
+
+
+def crossed_edges(work: Work, sheet: Triangulation, fault: FaultShape, threads: int = 0) -> CrossedEdges:
+    """Where a fault meets the edges of a sheet."""
+    vertices, triangles = sheet
+    side = fault_sides(work, vertices, fault, threads)
+    side[on_fault(vertices, fault)] = 0
+    edges = np.sort(edges_of(triangles), axis=1)
+    edges, number = np.unique(edges, axis=0, return_inverse=True)
+    changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
+    share = np.full(len(edges), np.nan)
+    begin, end = vertices[edges[changing]].transpose(1, 0, 2)
+    share[changing] = hit_shares(begin, end, fault)
+    return CrossedEdges(side, edges, number.reshape(3, -1).T, changing, share)
 
 
 def _where_sides_change(
@@ -100,10 +123,15 @@ def _where_sides_change(
     return begin + high[:, None] * (end - begin)
 
 
+def precision_of(fault: FaultShape) -> float:
+    """How near to a fault points count as on it."""
+    return _ON * float(norm(np.ptp(fault.vertices[np.unique(fault.triangles)], axis=0)))
+
+
 def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
     vertices, triangles = fault.vertices, fault.triangles
-    near = _ON * float(norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
+    near = precision_of(fault)
     boxes = np.stack([points - near, points + near, points], axis=1)
     found = np.zeros(len(points), bool)
     low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
@@ -491,7 +519,8 @@ def torn_beyond(
     begin, end = (np.concatenate([low[:, end], high[:, end]]) for end in range(2))
     box = box_of(low, high)
     walls = np.concatenate([within.walls(box), _continued(fault, box)])
-    line, share = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
+    line, shares = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
+    share = shares.mean(axis=1)
     low, high = (each[line, 0] + share[:, None] * (each[:, 1] - each[:, 0])[line] for each in (low, high))
     on = np.all([_met_points(work, fault, places, threads) for places in (low, high)], axis=0)
     middles = (low + high)[on] / 2

@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 
-from ..algebra import dot
+from ..algebra import dot, norm
 from .exact import orient2d
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
@@ -47,6 +47,12 @@ def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
 def edges_of(triangles: np.ndarray) -> np.ndarray:
     """(3 T, 2) the directed edges: those from corner 0 to 1 of all triangles, then 1 to 2, then 2 to 0."""
     return np.concatenate([triangles[:, pair] for pair in _EDGES])
+
+
+def median_edge(plan: np.ndarray, triangles: np.ndarray) -> float:
+    """The median length of the edges of triangles in plan."""
+    begin, end = plan[edges_of(triangles)].transpose(1, 0, 2)
+    return float(np.median(norm(end - begin)))
 
 
 def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:
@@ -113,6 +119,31 @@ def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
         found = np.minimum(found, np.linalg.norm(points - nearest, axis=1))
     return np.where(inside, np.abs(height), found)
+
+
+def unit_normals(corners: np.ndarray) -> np.ndarray:
+    """(T, 3) the normals of triangles (T, 3, 3), of length 1."""
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normals / norm(normals)[:, None]
+
+
+def nearest_triangles(
+    points: np.ndarray, reach: np.ndarray, corners: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) of triangles (T, 3, 3) the nearest to each point (P, 3), the first of equally near ones, and how
+    far it is; -1 and infinite where none is nearer than `reach` (P,)."""
+    boxes = np.stack([points - reach[:, None], points + reach[:, None], points], axis=1)
+    pairs = pairs_at_planes(boxes, corners)
+    away = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]])
+    within = away < reach[pairs[:, 0]]
+    pairs, away = pairs[within], away[within]
+    order = np.lexsort((pairs[:, 1], away, pairs[:, 0]))
+    pairs, away = pairs[order], away[order]
+    is_nearest = np.diff(pairs[:, 0], prepend=-1) != 0
+    number, distance = np.full(len(points), -1), np.full(len(points), np.inf)
+    number[pairs[is_nearest, 0]] = pairs[is_nearest, 1]
+    distance[pairs[is_nearest, 0]] = away[is_nearest]
+    return number, distance
 
 
 def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:

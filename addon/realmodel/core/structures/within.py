@@ -10,7 +10,7 @@ import numpy as np
 from ..algebra import norm
 from ..work import Work, native_module
 from .families import DIES_OUT, Family, keys_of, parting
-from .sides import sides_of
+from .sides import FaultShape, sides_of
 from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
 _ON = 1e-9  # of the extent of a line: nearer points are in a plane
@@ -48,21 +48,26 @@ class Within:
             return np.empty((0, 3, 3))
         if self.known is None or (box[0] < self.known[0][0]).any() or (box[1] > self.known[0][1]).any():
             wider = box if self.known is None else box_of(box, self.known[0])
-            found = []
-            for shape in faults.shapes:
-                beyond = native_module().structure_continuation(shape.native(), np.ascontiguousarray(wider))
-                corners = np.concatenate([shape.vertices[shape.triangles], beyond.reshape(-1, 3, 3)])
-                low, high = extents(corners)
-                found.append(corners[((low <= wider[1]) & (high >= wider[0])).all(axis=1)])
-            self.known = wider, np.concatenate(found)
+            self.known = wider, walls_of(faults.shapes, wider)
         return self.known[1]
+
+
+def walls_of(shapes: list[FaultShape], box: np.ndarray) -> np.ndarray:
+    """(M, 3, 3) triangles of faults and of what continues them in a box (2, 3)."""
+    found = [np.empty((0, 3, 3))]
+    for shape in shapes:
+        beyond = native_module().structure_continuation(shape.native(), np.ascontiguousarray(box))
+        corners = np.concatenate([shape.vertices[shape.triangles], beyond.reshape(-1, 3, 3)])
+        low, high = extents(corners)
+        found.append(corners[((low <= box[1]) & (high >= box[0])).all(axis=1)])
+    return np.concatenate(found)
 
 
 def parts_of_lines(
     begin: np.ndarray, end: np.ndarray, walls: np.ndarray, number: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Of lines from begin to end (K, 3) the parts between two places where they meet triangles (M, 3, 3): the
-    number of the line of each part, and the share (N,) of the line at which its middle is.
+    number (N,) of the line of each part, and the shares (N, 2) of the line at which it begins and ends.
 
     A line in the plane of a triangle is divided where it passes the planes through its edges. number: (K,) of
     lines; those with one number are divided alike.
@@ -91,13 +96,13 @@ def parts_of_lines(
     order = np.lexsort((share, owner))
     owner, share = owner[order], share[order]
     kept = (owner[1:] == owner[:-1]) & (share[1:] - share[:-1] > _LEAST)
-    return owner[1:][kept], (share[:-1] + share[1:])[kept] / 2
+    return owner[1:][kept], np.stack([share[:-1], share[1:]], axis=1)[kept]
 
 
 def middles_of_parts(begin: np.ndarray, end: np.ndarray, walls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As parts_of_lines, with the midpoints (N, 3) themselves."""
-    line, share = parts_of_lines(begin, end, walls)
-    return line, begin[line] + share[:, None] * (end - begin)[line]
+    """As parts_of_lines, with the midpoints (N, 3) of the parts."""
+    line, shares = parts_of_lines(begin, end, walls)
+    return line, begin[line] + shares.mean(axis=1)[:, None] * (end - begin)[line]
 
 
 def box_of(*places: np.ndarray) -> np.ndarray:
