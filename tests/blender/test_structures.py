@@ -628,10 +628,10 @@ class Live(StructureCase):
         bpy.context.view_layer.update()
         self.live_is_done()
         self.assertNotAlmostEqual(self.volumes()["ore"], before["ore"], places=3)
-        raise_by(fault, -60.0)  # it ends within the rock
+        raise_by(fault, -65.0)  # it ends within the rock, farther from its top than a quarter of an edge
         self.live_is_done()
         self.assertIn("F1", bpy.context.window_manager.realmodel.problem)
-        raise_by(fault, 60.0)
+        raise_by(fault, 65.0)
         self.live_is_done()
         self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
         self.model.bodies[0].void = True

@@ -13,7 +13,7 @@ from .build_options import check_cells, check_stage
 from .build_warning import BuildWarning
 from .built_cells import BuiltCells
 from .cell_complex import CellComplex
-from .model_data import ModelData
+from .model_data import ModelData, SomeModel
 from .rock_input import RockInput
 from .stack_refusals import refused_stack
 from .structures.joining import build_joined
@@ -25,12 +25,12 @@ _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
 
 def build_stage(
-    model: ModelData,
+    model: SomeModel,
     m: int,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     cells: str | None = None,
-) -> ModelData:
+) -> SomeModel:
     """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
     check_stage(model.project, m)
     kind = model.cell_kind if cells is None else cells
@@ -44,11 +44,13 @@ def build_stage(
     given = model.project
     project = replace(given, rocks=[entry.rock for entry in inputs])
 
-    def task(work: Work) -> ModelData:
+    def task(work: Work) -> SomeModel:
         structures = None if model.structures is None else model.structures.stage(m)
         built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
         timings = {"intersect": time.perf_counter() - began}
-        return assemble(work, project, inputs, built, model.threads, timings, _STAGE_INTERSECTED, structures)
+        return type(model).of(
+            assemble(work, project, inputs, built, model.threads, timings, _STAGE_INTERSECTED, structures)
+        )
 
     began = time.perf_counter()
     return run(task, progress, cancel)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from pathlib import Path
 
 from . import cutting
@@ -24,11 +23,6 @@ from .work import Cancel, Progress
 
 class Model(ModelData):
     """A built model: blocks of polyhedral cells that share faces."""
-
-    @classmethod
-    def of(cls, data: ModelData) -> Model:
-        """The model that these are the data of."""
-        return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
 
     def save(
         self,
@@ -62,8 +56,7 @@ class Model(ModelData):
         surfaces up to m."""
         if self.is_cut:
             raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
-        stage = build_stage(self, m, progress, cancel)
-        return self if stage is self else Model.of(stage)
+        return build_stage(self, m, progress, cancel)
 
     def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
         """What each surface removed of each block when it came: (S, B) volumes, and their sums.

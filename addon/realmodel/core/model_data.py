@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import colorsys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -49,6 +49,11 @@ class ModelData:
     compartment_names: list[str] = field(default_factory=list)
     compartment_sides: np.ndarray | None = field(default=None, repr=False)
     structures: Structures | None = field(default=None, repr=False)
+
+    @classmethod
+    def of(cls, data: ModelData) -> Self:
+        """The same as an object of this class."""
+        return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
 
     def __post_init__(self) -> None:
         if self.surface_kind is None:

@@ -25,7 +25,7 @@ class RockStructure:
     names: list[str]
     sheets: list[list[Triangulation | None]]
     warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
-    few: set[int] = field(default_factory=set)
+    few: list[int] = field(default_factory=list)
     points: dict[int, np.ndarray] = field(default_factory=dict)
 
     def distinct(self, surface: int) -> list[Triangulation]:

@@ -61,7 +61,7 @@ def make_sheets(
         if sheets.waiting:
             return [sheets]
         if sheets.few:
-            few.add(number)
+            few.append(number)
         finish(sheets)
         return []
 

@@ -84,12 +84,12 @@ class Throws:
     """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
     to it. few: the surfaces of those that are there which few points show."""
 
-    def __init__(self, work: Work, structure: RockStructure, few: set[int], threads: int):
+    def __init__(self, work: Work, structure: RockStructure, few: list[int], threads: int):
         self.work, self.threads = work, threads
         self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
         known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
         self.rank = np.where(known, OWN, UNKNOWN)
-        self.rank[:, sorted(few)] = FEW
+        self.rank[:, few] = FEW
         self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
 
     def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
