@@ -123,7 +123,7 @@ def test_a_surface_that_meets_a_low_fault_several_times():
         return np.sin(1.5 * x) + 0.0 * y
 
     fault = Displacing("F", leaning(lean=3.0), 0.3)
-    points = points_of(waves, [fault], lips=None, steps=(0.15, 1.0), gap=0.1)
+    points = points_of(waves, [fault], lips=None, steps=(0.15, 1.0), gap=0.25)
     (found,) = displacements(built([fault], Surface("top", points=points, method="kriging"), 0.25))
     lines = {4.34: 4.51, 6.68: 6.39, 7.65: 7.89}  # where the sheets meet the fault, below and above it
     for below, above in lines.items():

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..algebra import norm
 from ..methods import METHODS
+from ..mis_ties import mean_heights
 from ..work import Work
 from .points_at_faults import expected_heights
 from .sides import FaultShape
@@ -39,10 +40,10 @@ def beyond_lips(
     one let expect the sheet; at the same height where that does not leave the fault, and where the method is
     to take the height of the nearest point beyond all.
     """
-    if not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
+    if not lips or not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
         return np.empty((0, 3))
     near = [np.where(lip.points, _nearest(points, lip.shape, reach), -1) for lip in lips]
-    ordinary = points[np.all([triangle < 0 for triangle in near], axis=0)]
+    ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
     found = [np.empty((0, 3))]
     for lip, triangle in zip(lips, near, strict=True):
         outward = -lip.side * unit_normals(lip.shape.vertices[lip.shape.triangles])[triangle]

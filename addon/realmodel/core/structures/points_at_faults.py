@@ -16,7 +16,6 @@ from ..build_warning import BuildWarning
 from ..errors import place_text
 from ..mis_ties import mean_heights
 from ..work import Work, native_module
-from .beyond_faults import beyond_faults
 from .sides import FaultShape, sides_of
 from .triangles import median_edge, nearest_triangles
 
@@ -25,8 +24,8 @@ _EXPECTED_BY = 16  # points: so many let expect a height
 _PLANE = 1e6  # a spline so smooth is a plane
 _LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point agrees
 _SURE = 0.25  # of the distance from what another side lets expect: so near, a point counts for its side
-_WRONG = 2.0  # times that distance: a point so far from its own side does not count
 _PASSES = 40  # times that points which count let expect more
+_FEW = 0.01  # of the points: so few let expect nothing more
 _SHIFTS = np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 
@@ -46,7 +45,7 @@ class PointSides(NamedTuple):
 def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
     """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
-    A point that is near a fault that displaces the surface (distances) gets the sides of those points, near
+    A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
     no fault, that let expect a height nearest to its own. Where only one side has such points, its position
     decides, unless some of the points near the fault agree with them and others do not: these are of the
     other side.
@@ -66,13 +65,11 @@ def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int
         compartments=np.unique(np.where(active, structure.compartments, 0), axis=0),
         # far from one that dies out its sides are one
         matters=active & (beside | ~np.array(faults.dies_out, bool)),
-        counts=~near.any(axis=1),
+        counts=~beside.any(axis=1),
         reach=reach,
         threads=threads,
     )
-    agreement.counts &= ~beyond_faults(points, agreement.rows)
-    agreement.leave_out(beside)
-    agreement.place(near)
+    agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
     return PointSides(placed, placed != sides, reach)
 
@@ -80,13 +77,14 @@ def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int
 class _Choice(NamedTuple):
     """Of some points (N,), by number, for which the same faults matter, (F,) bool: rows (C, F) of sides that
     compartments have, 0 for other faults; possible (N, C) bool, those that each may belong to; own (N, C)
-    bool, where it lies."""
+    bool, where it lies. reach: how far they may be from their place on a fault."""
 
     points: np.ndarray
     matters: np.ndarray
     rows: np.ndarray
     possible: np.ndarray
     own: np.ndarray
+    reach: float
 
 
 @dataclass
@@ -106,48 +104,51 @@ class _Agreement:
     reach: float
     threads: int
 
-    def leave_out(self, beside: np.ndarray) -> None:
-        """Lets points that lie beside faults, (P, F) bool, not count where they agree with another side: a
-        horizon may reach beyond its fault."""
-        wrong = np.zeros(len(self.points), bool)
-        for choice in self._choices(np.flatnonzero(self.counts & beside.any(axis=1)), beside):
-            off, tolerated = self._off(choice, _PLANE)
-            own = np.where(choice.own, off, np.inf).min(axis=1, initial=np.inf)
-            other = np.where(choice.own, np.inf, off)
-            best = other.argmin(axis=1)
-            least = np.take_along_axis(tolerated, best[:, None], axis=1)[:, 0]
-            wrong[choice.points[np.isfinite(own) & (own > _WRONG * other.min(axis=1) + least)]] = True
-        self.counts &= ~wrong
-
-    def place(self, near: np.ndarray) -> None:
-        """Gives points near faults, (P, F) bool, the sides that they agree with. Those that clearly do count
-        from then on."""
-        choices = self._choices(np.flatnonzero(near.any(axis=1)), near)
+    def place(self, near: np.ndarray, beside: np.ndarray) -> None:
+        """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
+        not count where they agree with another: a horizon may reach beyond its fault. near, beside: (P, F)
+        bool. Points that clearly agree with a side count from then on, for what the others may expect."""
+        is_near = near.any(axis=1)
+        places = self._choices(np.flatnonzero(is_near), near, self.reach)
+        others = self._choices(np.flatnonzero(beside.any(axis=1) & ~is_near), beside, 0.0)
         for _ in range(_PASSES):
-            found = [self._place_some(choice) for choice in choices]
-            if not any(found):
+            if not (self._count_some(others) or self._place_some(places) or self._count_some(others, True)):
                 break
-        for choice in choices:
+        for choice in places:
             left = ~self.counts[choice.points]
             best = _best(choice, *self._off(choice))
             self._give(choice, left & (best >= 0), best)
 
-    def _place_some(self, choice: _Choice) -> bool:
+    def _place_some(self, choices: list[_Choice]) -> bool:
         """Places those that clearly agree with one side; whether there were any."""
-        if choice.possible.shape[1] < 2:
-            return False
-        off, _ = self._off(choice)
-        least = np.sort(off, axis=1)[:, :2]
-        sure = np.isfinite(least[:, 1]) & (least[:, 0] <= _SURE * least[:, 1])
-        self._give(choice, sure, off.argmin(axis=1))
-        self.counts[choice.points[sure]] = True
-        return bool(sure.any())
+        new = 0
+        for choice in choices:
+            off, tolerated = self._off(choice)
+            sure = _are_sure(off, tolerated)
+            self._give(choice, sure, off.argmin(axis=1))
+            self.counts[choice.points[sure]] = True
+            new += int(sure.sum())
+        return new > _FEW * sum(len(choice.points) for choice in choices)
+
+    def _count_some(self, choices: list[_Choice], doubtful: bool = False) -> bool:
+        """Lets those count that clearly agree with their own side; doubtful: those that agree with it at all,
+        or of whose own side nothing is known. Whether there were any."""
+        new = 0
+        for choice in choices:
+            off, tolerated = self._off(choice)
+            own = np.where(choice.own, off, np.inf).min(axis=1)
+            other = np.where(choice.own, np.inf, off).min(axis=1)
+            agree = (own <= other) | np.isinf(own) if doubtful else _are_sure(off, tolerated) & (own < other)
+            agree &= ~self.counts[choice.points]
+            self.counts[choice.points[agree]] = True
+            new += int(agree.sum())
+        return new > _FEW * sum(len(choice.points) for choice in choices)
 
     def _give(self, choice: _Choice, some: np.ndarray, best: np.ndarray) -> None:
         given = choice.points[some]
         self.rows[given] = np.where(choice.matters, choice.rows[best[some]], self.rows[given])
 
-    def _choices(self, some: np.ndarray, unclear: np.ndarray) -> list[_Choice]:
+    def _choices(self, some: np.ndarray, unclear: np.ndarray, reach: float) -> list[_Choice]:
         """unclear: (P, F) bool, the faults whose sides are to be chosen."""
         found = []
         patterns, which = np.unique(self.matters[some], axis=0, return_inverse=True)
@@ -156,29 +157,41 @@ class _Agreement:
             rows = np.unique(np.where(matters, self.compartments, 0), axis=0)
             own = np.where(matters, self.rows[points], 0)[:, None]
             alike = (rows == own) | (rows == 0) | (own == 0) | unclear[points, None]
-            found.append(_Choice(points, matters, rows, alike.all(axis=2), (rows == own).all(axis=2)))
+            is_own = (rows == own).all(axis=2)
+            found.append(_Choice(points, matters, rows, alike.all(axis=2), is_own, reach))
         return found
 
-    def _off(self, choice: _Choice, smoothing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    def _off(self, choice: _Choice) -> tuple[np.ndarray, np.ndarray]:
         """(N, C) how far the points are from what those that count let expect, infinite where these say
-        nothing and for points that count themselves, if the expectation goes through these (smoothing 0);
-        and how far they may be and agree: what a place within reach, or another expectation, would change."""
+        nothing and for points that count themselves; and how far they may be and agree: what a place within
+        reach would change, or a plane instead of a spline."""
         off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
         least = _LEAST * float(np.ptp(self.points[:, 2]))
-        asked = choice.possible & ((smoothing > 0) | ~self.counts[choice.points, None])
+        asked = choice.possible & ~self.counts[choice.points, None]
         rows = np.where(choice.matters, self.rows, 0)
         for number in np.flatnonzero(asked.any(axis=0)):
-            group = self.points[self.counts & (rows == choice.rows[number]).all(axis=1)]
+            group = mean_heights(self.points[self.counts & (rows == choice.rows[number]).all(axis=1)])
             if len(group):
                 some = asked[:, number]
                 plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
-                expected = expected_heights(self.work, group, plan, smoothing, self.threads)
-                beside = (plan + self.reach * _SHIFTS).reshape(-1, 2)
-                planes = expected_heights(self.work, group, beside, _PLANE, self.threads).reshape(3, -1)
+                expected = expected_heights(self.work, group, plan, threads=self.threads)
+                around = (plan + choice.reach * _SHIFTS[: 3 if choice.reach else 1]).reshape(-1, 2)
+                planes = expected_heights(self.work, group, around, _PLANE, self.threads)
+                planes = planes.reshape(-1, len(plan))
                 rise = np.abs(planes[1:] - planes[0]).sum(axis=0)
                 off[some, number] = np.abs(expected - z)
                 tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
         return off, tolerated
+
+
+def _are_sure(off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
+    """(N,) bool: the points that clearly agree with one side: they are far from others, farther than it is
+    known what to expect."""
+    if off.shape[1] < 2:
+        return np.zeros(len(off), bool)
+    order = np.argsort(off, axis=1)[:, :2]
+    (best, second), known = (np.take_along_axis(each, order, axis=1).T for each in (off, tolerated))
+    return np.isfinite(second) & (best <= _SURE * second) & (second > known.sum(axis=0))
 
 
 def _best(choice: _Choice, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
@@ -214,9 +227,9 @@ def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock
 def expected_heights(
     work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0, threads: int = 0
 ) -> np.ndarray:
-    """(N,) the heights at plan points (N, 2) of splines through the nearest of some points (P, 3)."""
+    """(N,) the heights at plan points (N, 2) of splines through the nearest of points (P, 3), no two of which
+    are at one place."""
     spline, plan = native_module().spline, np.ascontiguousarray(plan)
-    points = mean_heights(points)
     return work.native(spline, points, plan, smoothing=smoothing, neighbours=_EXPECTED_BY, threads=threads)
 
 
