@@ -32,7 +32,8 @@ void check(const TriangleMesh& mesh, int surface) {
 
 }  // namespace
 
-Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress) {
+Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress)
+    : progress_(progress) {
     for (std::uint8_t source = 0; source < 2; ++source) {
         const TriangleMesh& mesh = surfaces[source];
         check(mesh, source);
@@ -64,7 +65,7 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const P
                         for (std::size_t i = begin; i < end; ++i)
                             boxes[i] = box(whole_[i].corners);
                     });
-    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes));
+    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), progress);
 }
 
 void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
@@ -80,7 +81,7 @@ void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
     std::vector<spatial::Box> boxes(own.pieces.size());
     std::transform(own.pieces.begin(), own.pieces.end(), boxes.begin(),
                    [this](const Piece& piece) { return box(piece.corners); });
-    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes));
+    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), progress_);
 }
 
 }  // namespace realmodel::booleans

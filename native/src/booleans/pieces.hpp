@@ -93,6 +93,7 @@ private:
         std::vector<Piece> pieces;
         std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
     };
+    const Progress* progress_;
     std::vector<Piece> whole_;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
     std::vector<List> lists_;

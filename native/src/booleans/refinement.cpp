@@ -22,7 +22,7 @@ constexpr std::size_t kChunk = 1 << 10;
 /// rounds do not settle.
 constexpr double kNearest = 64;
 constexpr double kGrowth = 32;
-constexpr int kExactRounds = 4;
+constexpr int kExactRounds = 4, kSnapRounds = 4;  ///< before that
 constexpr int kMostRounds = 40;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
@@ -73,8 +73,7 @@ private:
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
     State state_ = State::kWhole;
     double ulps_ = kNearest;
-    std::size_t last_meetings_ = SIZE_MAX;  ///< when edges and triangles last got vertices
-    int exact_rounds_ = 0;
+    int exact_rounds_ = 0, snap_rounds_ = 0;
 };
 
 bool Refiner::is_flat(const Corners& c) const {
@@ -197,9 +196,8 @@ bool Refiner::round() {
 bool Refiner::snap_shallow(ExactDivision& division, Numbers& touched) {
     const Nearness nearness(pieces_.points, ulps_);
     std::vector<FacetPair> pairs;
-    std::size_t n = 0;
     for (const auto& met : division.meetings()) {
-        poll(progress_, n++);
+        if (progress_ != nullptr) progress_->check();  // points take time
         const FacetPair pair = pair_of(division, met);
         if (nearness.is_shallow(pair) && !division.is_in_doubles(met)) pairs.push_back(pair);
     }
@@ -243,12 +241,10 @@ void Refiner::divide_or_snap(ExactDivision& division, Numbers& touched) {
         }
     }
     if (apart.empty()) {
-        const std::size_t count = pairs.size();
         const auto changed = snap(std::move(pairs));
         touched.insert(touched.end(), changed.begin(), changed.end());
         if (!changed.empty()) {
-            if (2 * count > last_meetings_) ulps_ *= kGrowth;
-            last_meetings_ = count;
+            if (++snap_rounds_ % kSnapRounds == 0) ulps_ *= kGrowth;
             return;
         }
         apart = meetings;
@@ -318,6 +314,7 @@ Parts Refiner::result() const {
     Parts parts;
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
+        poll(progress_, i);
         const auto input = static_cast<std::int32_t>(i);
         for (const Piece& piece : pieces_.of(input)) {
             Part part{{}, pieces_.row(input), pieces_.source(input)};
