@@ -23,6 +23,7 @@ constexpr std::size_t kChunk = 1 << 10;
 constexpr double kNearest = 64;
 constexpr double kGrowth = 32;
 constexpr int kExactRounds = 4, kSnapRounds = 4;  ///< before that
+constexpr int kLocalRounds = 16;
 constexpr int kMostRounds = 40;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
@@ -73,6 +74,7 @@ private:
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
     State state_ = State::kWhole;
     double ulps_ = kNearest;
+    std::size_t last_meetings_ = SIZE_MAX;  ///< that were brought together
     int exact_rounds_ = 0, snap_rounds_ = 0;
 };
 
@@ -241,10 +243,12 @@ void Refiner::divide_or_snap(ExactDivision& division, Numbers& touched) {
         }
     }
     if (apart.empty()) {
+        const std::size_t count = pairs.size();
         const auto changed = snap(std::move(pairs));
         touched.insert(touched.end(), changed.begin(), changed.end());
         if (!changed.empty()) {
-            if (++snap_rounds_ % kSnapRounds == 0) ulps_ *= kGrowth;
+            if (++snap_rounds_ % kSnapRounds == 0 || count >= last_meetings_) ulps_ *= kGrowth;
+            last_meetings_ = count;
             return;
         }
         apart = meetings;
@@ -275,7 +279,9 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
     Numbers changed;
     while (!pairs.empty()) {
         sort_unique(pairs);
-        Snapping snapping(pieces_, pairs, ulps_, threads_, progress_);
+        // first only what does not settle, then all that is near it
+        const double of_the_rest = snap_rounds_ < kLocalRounds ? kNearest : ulps_;
+        Snapping snapping(pieces_, pairs, {ulps_, of_the_rest}, threads_, progress_);
         const auto own = snapping.apply();
         changed.insert(changed.end(), own.begin(), own.end());
         if (!snapping.merges()) break;

@@ -51,9 +51,13 @@ void cancel_folds(std::vector<Piece>& pieces) {
 
 /// What gets new vertices hands them on to all that is near it, so that layers that lie upon one
 /// another are divided alike: from the pairs on, in waves.
-Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, double ulps, int threads,
-                   const Progress* progress)
-    : pieces_(pieces), nearness_(pieces.points, ulps), threads_(threads), progress_(progress) {
+Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
+                   int threads, const Progress* progress)
+    : pieces_(pieces),
+      wide_(pieces.points, radius.of_pairs),
+      narrow_(pieces.points, radius.of_the_rest),
+      threads_(threads),
+      progress_(progress) {
     std::vector<std::int32_t> facets;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         poll(progress, i);
@@ -61,6 +65,7 @@ Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, double ulps
             facets.push_back(facets_.add(corners));
     }
     sort_unique(facets);
+    first_ = facets_.size();
     NearParts found;
     Waves waves;
     for (std::int32_t wave = 0; !facets.empty(); ++wave) {
@@ -77,11 +82,15 @@ Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, double ulps
 
 Snapping::Snapping(Pieces& pieces, std::span<const Corners> flat, int threads,
                    const Progress* progress)
-    : pieces_(pieces), nearness_(pieces.points, 0), threads_(threads), progress_(progress) {
+    : pieces_(pieces),
+      wide_(pieces.points, 0),
+      narrow_(pieces.points, 0),
+      threads_(threads),
+      progress_(progress) {
     for (const Corners& t : flat) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
-            if (!nearness_.is_between(t[(k + 2) % 3], edge)) continue;
+            if (!narrow_.is_between(t[(k + 2) % 3], edge)) continue;
             const std::int32_t number = edges_.add(edge);
             on_edges_.resize(edges_.size());
             on_edges_[index(number)].points.push_back(t[(k + 2) % 3]);
@@ -94,7 +103,6 @@ Snapping::Snapping(Pieces& pieces, std::span<const Corners> flat, int threads,
 std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::int32_t> facets,
                                                            Waves& waves) {
     constexpr std::size_t kAtOnce = 1 << 14;
-    const double within = nearness_.distance_at(pieces_.largest_coordinate());
     std::vector<FacetNumbers> pairs;
     std::vector<std::vector<Corners>> around(std::min(kAtOnce, facets.size()));
     for (std::size_t first = 0; first < facets.size(); first += kAtOnce) {
@@ -105,7 +113,7 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
                                 auto& own = around[i];
                                 own.clear();
                                 spatial::Box box = pieces_.box(facets_[facets[first + i]]);
-                                box.widen(within);
+                                box.widen(reach(facets[first + i]));
                                 pieces_.find(box, [&own](const Piece& piece) {
                                     own.push_back(in_order(piece.corners).first);
                                 });
@@ -141,10 +149,11 @@ std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pair
         NearParts parts;
         for (std::size_t i = begin; i < end; ++i) {
             const FacetPair pair = pair_of(facets_[pairs[i][0]], facets_[pairs[i][1]]);
-            nearness_.find(pair, parts);
+            const Nearness& own_nearness = nearness(pairs[i]);
+            own_nearness.find(pair, parts);
             if (parts.empty()) continue;
             own.near.push_back(pairs[i]);
-            own.moved = std::max(own.moved, nearness_.distance_of(pair));
+            own.moved = std::max(own.moved, own_nearness.distance_of(pair));
             own.parts.take(parts);
         }
         own.parts.make_unique();
@@ -220,7 +229,7 @@ void Snapping::place(NearParts&& found) {
         give(edge, p);
     sort_unique(found.crossings);
     if (!found.crossings.empty()) {
-        VertexGrid grid(pieces_.points, nearness_.distance_at(pieces_.largest_coordinate()));
+        VertexGrid grid(pieces_.points, wide_.distance_at(pieces_.largest_coordinate()));
         for (std::size_t f = 0; f < facets_.size(); ++f) {
             poll(progress_, f);
             for (const SpacePointId p : facets_[static_cast<std::int32_t>(f)])
@@ -234,7 +243,7 @@ void Snapping::place(NearParts&& found) {
                 grid.add(p);
             }
             for (const Edge& edge : {crossing.one, crossing.other}) {
-                if (p != edge[0] && p != edge[1] && nearness_.is_between(p, edge)) give(edge, p);
+                if (p != edge[0] && p != edge[1] && narrow_.is_between(p, edge)) give(edge, p);
             }
         }
     }
@@ -295,9 +304,10 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
     Place& place = places_[index(facet)];
     const Corners& t = facets_[facet];
     spatial::Box box = pieces_.box(t);
-    box.widen(nearness_.distance_at(pieces_.largest_coordinate()));
+    box.widen(wide_.distance_at(pieces_.largest_coordinate()));
     for (const std::int32_t near : place.near) {
-        const double within = nearness_.distance_of({t, facets_[near]});
+        const Nearness& own_nearness = nearness({facet, near});
+        const double within = own_nearness.distance_of({t, facets_[near]});
         for (const std::int32_t e : places_[index(near)].edges) {
             const Divided& edge = on_edges_[index(e)];
             for (std::size_t i = edge.old; i < edge.points.size(); ++i) {
@@ -308,11 +318,11 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
                 place.seen.insert(at, p);
                 bool is_on_edge = false;
                 for (const std::int32_t own : place.edges) {
-                    if (!nearness_.is_near_edge(p, edges_[own], within)) continue;
+                    if (!own_nearness.is_near_edge(p, edges_[own], within)) continue;
                     found.emplace_back(own, p);
                     is_on_edge = true;
                 }
-                if (!is_on_edge && nearness_.is_over(p, t, within)) place.over.push_back(p);
+                if (!is_on_edge && own_nearness.is_over(p, t, within)) place.over.push_back(p);
             }
         }
     }

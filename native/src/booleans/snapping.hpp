@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -23,9 +24,13 @@ namespace realmodel::booleans {
 /// exactly.
 class Snapping {
 public:
+    /// How near, in units in the last place of the largest coordinate of two facets.
+    struct Radius {
+        double of_pairs;    ///< around the facets of the pairs
+        double of_the_rest; ///< where these have handed on vertices
+    };
     /// @param pairs  facets that meet, in order
-    /// @param ulps   how near, in units in the last place of the largest coordinate of a pair
-    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, double ulps, int threads,
+    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius, int threads,
              const Progress* progress);
 
     /// Folds triangles without area onto their longest edges: the corner across it becomes a vertex
@@ -59,6 +64,16 @@ private:
 
     using Waves = std::vector<std::int32_t>;  ///< of facets: when asked what is around them, or -1
 
+    const Nearness& nearness(std::int32_t facet) const {
+        return index(facet) < first_ ? wide_ : narrow_;
+    }
+    const Nearness& nearness(const FacetNumbers& pair) const {
+        return nearness(std::min(pair[0], pair[1]));
+    }
+    /// How far from a facet others may be near it.
+    double reach(std::int32_t facet) const {
+        return nearness(facet).distance_at(pieces_.largest_coordinate());
+    }
     std::vector<FacetNumbers> pairs_around(std::span<const std::int32_t> facets, Waves& waves);
     std::vector<std::int32_t> find_near(std::span<const FacetNumbers> pairs, const Waves& waves,
                                         NearParts& all);
@@ -76,10 +91,11 @@ private:
     std::vector<std::int32_t> inputs_to_change();
 
     Pieces& pieces_;
-    Nearness nearness_;
+    Nearness wide_, narrow_;
     int threads_;
     const Progress* progress_;
-    NumberTable<Corners> facets_;
+    NumberTable<Corners> facets_;     ///< those of the pairs first
+    std::size_t first_ = 0;           ///< so many
     NumberTable<Edge> edges_;            ///< of facets that are near others, and divided ones
     std::vector<FacetNumbers> near_;  ///< facets that are near one another
     std::vector<Place> places_;       ///< of facets
