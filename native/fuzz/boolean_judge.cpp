@@ -412,8 +412,7 @@ private:
             if (!is_closed(results[i])) return add("result", "one is open");
             volumes[i] = volume(r, results[i]);
         }
-        if (const auto& kept = results[random_.below(4)]; !kept.empty())
-            result_ = mesh_of(r, kept);
+        if (const auto& kept = results[random_.below(4)]; !kept.empty()) result_ = mesh_of(r, kept);
         const double whole = std::pow(extent(), 3);
         if (std::abs(volumes[0] - volumes[1] - volumes[2] - volumes[3]) > 1e-12 * whole)
             return add("volumes", "those of the parts do not make up the union's");

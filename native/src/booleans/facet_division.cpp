@@ -219,7 +219,8 @@ private:
         TriangleId t = static_cast<TriangleId>(triangles_.size()) - 1;
         for (std::size_t step = 0; step < triangles_.size() && t >= 0; ++step) {
             if (has_place(t)) return {t, 0};
-            const auto least = std::find_if(turns.begin(), turns.end(), [](int n) { return n < 0; });
+            const auto least =
+                std::find_if(turns.begin(), turns.end(), [](int n) { return n < 0; });
             t = at(t).across[static_cast<std::size_t>(least - turns.begin())];
         }
         for (t = 0; index(t) < triangles_.size(); ++t) {

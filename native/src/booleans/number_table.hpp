@@ -32,7 +32,9 @@ public:
     }
 
 private:
-    static std::uint64_t word(exact::SpacePointId p) { return static_cast<std::uint64_t>(p.number()); }
+    static std::uint64_t word(exact::SpacePointId p) {
+        return static_cast<std::uint64_t>(p.number());
+    }
     static std::uint64_t word(std::int64_t number) { return static_cast<std::uint64_t>(number); }
     static std::uint32_t hash(const Key& key) {
         std::array<std::uint64_t, std::tuple_size_v<Key>> words;

@@ -26,8 +26,8 @@ class Snapping {
 public:
     /// How near, in units in the last place of the largest coordinate of two facets.
     struct Radius {
-        double of_pairs;    ///< around the facets of the pairs
-        double of_the_rest; ///< where these have handed on vertices
+        double of_pairs;     ///< around the facets of the pairs
+        double of_the_rest;  ///< where these have handed on vertices
     };
     /// @param pairs  facets that meet, in order
     Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius, int threads,
@@ -96,7 +96,7 @@ private:
     const Progress* progress_;
     NumberTable<Corners> facets_;     ///< those of the pairs first
     std::size_t first_ = 0;           ///< so many
-    NumberTable<Edge> edges_;            ///< of facets that are near others, and divided ones
+    NumberTable<Edge> edges_;         ///< of facets that are near others, and divided ones
     std::vector<FacetNumbers> near_;  ///< facets that are near one another
     std::vector<Place> places_;       ///< of facets
     std::vector<Divided> on_edges_;   ///< of edges

@@ -143,8 +143,8 @@ void CellFinder::join_along_rays() {
         bool found = false;
         for (std::size_t attempt = 0; !found; ++attempt) {
             if (progress_ != nullptr) progress_->check();
-            found = cast(facets[attempt % facets.size()],
-                         static_cast<int>(attempt / facets.size()), find, whole);
+            found = cast(facets[attempt % facets.size()], static_cast<int>(attempt / facets.size()),
+                         find, whole);
         }
     }
 }

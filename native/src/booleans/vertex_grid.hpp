@@ -42,8 +42,8 @@ public:
             bool is_new = true;
             for (std::size_t k = 0; k < 3; ++k) {
                 place[k] += within * ((corner >> k & 1) != 0 ? 1 : -1);
-                is_new = is_new && ((corner >> k & 1) == 0 ||
-                                    cell(at[k] + within) != cell(at[k] - within));
+                is_new = is_new &&
+                         ((corner >> k & 1) == 0 || cell(at[k] + within) != cell(at[k] - within));
             }
             if (!is_new) continue;
             const std::int32_t number = cells_.find(cell_of(place));

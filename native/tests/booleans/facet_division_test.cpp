@@ -75,10 +75,12 @@ TEST(FacetDivision, ManyPointsAndAChainOfEdges) {
     }
     while (sample.facet.within.size() < kInside) {
         const double s = uniform(), t = uniform();
-        if (s + t < 0.99 && s > 0.01 && t > 0.31) sample.facet.within.push_back(sample.inside(s, t));
+        if (s + t < 0.99 && s > 0.01 && t > 0.31)
+            sample.facet.within.push_back(sample.inside(s, t));
     }
     for (std::size_t i = 1; i <= kOnEdge; ++i)
-        sample.facet.on_edges[0].push_back(sample.inside(static_cast<double>(i) / (kOnEdge + 1), 0));
+        sample.facet.on_edges[0].push_back(
+            sample.inside(static_cast<double>(i) / (kOnEdge + 1), 0));
     const auto triangles = divided(sample.points, sample.facet, nullptr);
     EXPECT_EQ(triangles.size(), 1 + 2 * kInside + kOnEdge);
     expect_tiled(sample, triangles);
@@ -117,7 +119,8 @@ TEST(FacetDivision, WhicheverCornerIsFirst) {
     std::mt19937 random(6);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
     for (std::size_t i = 0; i < 60; ++i)
-        sample.facet.within.push_back(sample.inside(0.05 + 0.4 * uniform(), 0.05 + 0.4 * uniform()));
+        sample.facet.within.push_back(
+            sample.inside(0.05 + 0.4 * uniform(), 0.05 + 0.4 * uniform()));
     sample.facet.on_edges[0] = {sample.inside(0.25, 0), sample.inside(0.5, 0)};
     const auto sorted = [](std::vector<Corners> triangles) {
         for (Corners& t : triangles)

@@ -155,8 +155,8 @@ TEST(Intersect, ASurfaceThatCrossesItself) {
     EXPECT_TRUE(r.loops.empty());
 }
 
-/// Inside is where the winding number is not zero: what is covered twice is inside once, a part that
-/// is turned inside out is solid by itself, and a hole in another part.
+/// Inside is where the winding number is not zero: what is covered twice is inside once, a part
+/// that is turned inside out is solid by itself, and a hole in another part.
 TEST(Intersect, WhatIsInsideOfASolidThatOverlapsItself) {
     const auto turned = [](Mesh mesh) {
         for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)

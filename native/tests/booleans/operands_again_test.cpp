@@ -22,7 +22,8 @@ Mesh scan(int rings) {
     Mesh mesh = sphere({0.1, -0.2, 0.3}, 1, rings);
     for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
         double* p = &mesh.vertices[i];
-        const double by = 1 + 0.1 * std::sin(5 * p[0] + 1) * std::cos(4 * p[1]) * std::sin(3 * p[2]);
+        const double by =
+            1 + 0.1 * std::sin(5 * p[0] + 1) * std::cos(4 * p[1]) * std::sin(3 * p[2]);
         for (std::size_t k = 0; k < 3; ++k)
             p[k] *= by;
     }
@@ -94,7 +95,8 @@ TEST(OperandsAgain, TheSameForAnyNumberOfThreads) {
     const Mesh a = scan(8), b = jittered(a, 1e-6);
     const Refinement first = intersect(a.view(), b.view());
     const Mesh both = mesh_of(first, first.boundary(Operation::kUnion));
-    const Refinement one = intersect(both.view(), a.view(), 1), five = intersect(both.view(), a.view(), 5);
+    const Refinement one = intersect(both.view(), a.view(), 1),
+                     five = intersect(both.view(), a.view(), 5);
     EXPECT_EQ(one.vertices, five.vertices);
     EXPECT_EQ(one.triangles, five.triangles);
     EXPECT_EQ(one.is_in, five.is_in);
