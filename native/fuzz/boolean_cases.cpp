@@ -38,9 +38,7 @@ Point any_point(RandomSource& random) {
     return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
-/// A ball with few corners, which lies anyhow.
-Mesh ball(RandomSource& random, const Point& middle, double radius) {
-    const int rings = random.between(2, 6), around = random.between(3, 9);
+Mesh ball(int rings, int around, const Point& middle, double radius) {
     Mesh mesh;
     mesh.vertices.push_back({middle[0], middle[1], middle[2] - radius});
     for (int i = 1; i < rings; ++i) {
@@ -64,6 +62,25 @@ Mesh ball(RandomSource& random, const Point& middle, double radius) {
             if (i + 1 < rings)
                 mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
         }
+    }
+    return mesh;
+}
+
+/// A ball with few corners, which lies anyhow.
+Mesh ball(RandomSource& random, const Point& middle, double radius) {
+    const int rings = random.between(2, 6), around = random.between(3, 9);
+    return ball(rings, around, middle, radius);
+}
+
+/// A bumpy ball: triangles of all directions, no two in one plane.
+Mesh scan(RandomSource& random) {
+    const int rings = random.between(4, 8), around = random.between(6, 14);
+    Mesh mesh = ball(rings, around, {0, 0, 0}, 1);
+    const double height = random.uniform(0.01, 0.2), phase = random.uniform(0, 6);
+    for (Point& p : mesh.vertices) {
+        const double by = 1 + height * std::sin(5 * p[0] + phase) * std::cos(4 * p[1] + 3 * p[2]);
+        for (double& x : p)
+            x *= by;
     }
     return mesh;
 }
@@ -125,6 +142,33 @@ void rotate(RandomSource& random, Mesh& mesh) {
     }
 }
 
+/// Moves a surface, or each of its vertices, by less than its edges are long.
+void move_less_than_edges(RandomSource& random, Mesh& mesh) {
+    const Triangle& t = mesh.triangles[random.below(mesh.triangles.size())];
+    const Point &a = mesh.vertices[static_cast<std::size_t>(t[0])],
+                &b = mesh.vertices[static_cast<std::size_t>(t[1])];
+    const double edge = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]),
+                 by = edge * random.one_of({1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5});
+    switch (random.below(4)) {
+        case 0: {
+            const Point shift{random.uniform(-by, by), random.uniform(-by, by),
+                              random.uniform(-by, by)};
+            for (Point& p : mesh.vertices)
+                p = {p[0] + shift[0], p[1] + shift[1], p[2] + shift[2]};
+            return;
+        }
+        case 1:
+            change_all(mesh, [&](double x) { return x + random.uniform(-by, by); });
+            return;
+        case 2:
+            change_all(mesh, [&](double x) { return x * (1 + by); });
+            return;
+        default:
+            for (Point& p : mesh.vertices)
+                p = {p[0] - by * p[1], p[1] + by * p[0], p[2]};
+    }
+}
+
 void turn_over(Mesh& mesh) {
     for (Triangle& t : mesh.triangles)
         std::swap(t[1], t[2]);
@@ -132,7 +176,7 @@ void turn_over(Mesh& mesh) {
 
 /// A surface of one of the families.
 Mesh any_surface(RandomSource& random, std::string& label) {
-    switch (random.below(8)) {
+    switch (random.below(9)) {
         case 0: {
             label += "boxes ";
             Mesh mesh;
@@ -164,6 +208,9 @@ Mesh any_surface(RandomSource& random, std::string& label) {
         case 3:
             label += "ball ";
             return ball(random, any_point(random), random.uniform(0.3, 1.5));
+        case 8:
+            label += "scan ";
+            return scan(random);
         case 4:
             label += "lattice ball ";
             return ball(random, lattice_point(random, 2), 1.0 * random.between(1, 2));
@@ -182,7 +229,12 @@ Mesh any_surface(RandomSource& random, std::string& label) {
 /// A surface that has to do with the first one.
 Mesh second_surface(RandomSource& random, const Mesh& first, std::string& label) {
     Mesh mesh = first;
-    switch (random.below(8)) {
+    switch (random.below(10)) {
+        case 8:
+        case 9:
+            label += "moved less than edges ";
+            move_less_than_edges(random, mesh);
+            return mesh;
         case 0:
             label += "copied ";
             return mesh;

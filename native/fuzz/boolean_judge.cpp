@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -208,6 +209,15 @@ public:
         return std::move(defects_);
     }
 
+    /// One of the results and one of the surfaces that it was made of; none where there is none.
+    std::optional<StackCase> result_with_operand() {
+        if (!result_) return std::nullopt;
+        StackCase pair;
+        pair.rocks.emplace_back();
+        pair.rocks[0].surfaces = {std::move(*result_), inputs_[random_.below(2)]};
+        return pair;
+    }
+
 private:
     void add(const char* kind, std::string sentence) {
         defects_.push_back({kind, std::move(sentence)});
@@ -402,6 +412,7 @@ private:
             if (!is_closed(results[i])) return add("result", "one is open");
             volumes[i] = volume(r, results[i]);
         }
+        if (const auto& kept = results[random_.below(4)]; !kept.empty()) result_ = mesh_of(r, kept);
         const double whole = std::pow(extent(), 3);
         if (std::abs(volumes[0] - volumes[1] - volumes[2] - volumes[3]) > 1e-12 * whole)
             return add("volumes", "those of the parts do not make up the union's");
@@ -441,6 +452,24 @@ private:
         }
     }
 
+    /// Triangles of a refinement with the vertices that they have.
+    static Mesh mesh_of(const Refinement& r, const std::vector<Row>& triangles) {
+        const Crossings crossings(r);
+        Mesh mesh;
+        std::map<std::int32_t, std::int32_t> number;
+        for (const Row& row : triangles) {
+            Triangle own;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto next = static_cast<std::int32_t>(mesh.vertices.size());
+                const auto [at, is_new] = number.emplace(row[k], next);
+                if (is_new) mesh.vertices.push_back(crossings.vertex(row[k]));
+                own[k] = at->second;
+            }
+            mesh.triangles.push_back(own);
+        }
+        return mesh;
+    }
+
     void look_again(const Refinement& r) {
         if (r.triangles.empty()) return;
         Flat all{r.vertices, {}};
@@ -457,12 +486,22 @@ private:
     Point low_{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     double largest_ = 0;
     std::vector<Defect> defects_;
+    std::optional<Mesh> result_;  ///< of one of the operations
 };
 
 }  // namespace
 
 std::vector<Defect> boolean_defects(const StackCase& pair, std::uint64_t seed) {
-    return Judge(pair, seed).run();
+    Judge judge(pair, seed);
+    std::vector<Defect> defects = judge.run();
+    if (!defects.empty()) return defects;
+    // results are inputs of the next operation
+    if (const auto again = judge.result_with_operand()) {
+        defects = Judge(*again, seed).run();
+        for (Defect& defect : defects)
+            defect.sentence = "a result with an operand: " + defect.sentence;
+    }
+    return defects;
 }
 
 }  // namespace realmodel::fuzz

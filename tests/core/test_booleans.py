@@ -418,3 +418,49 @@ def test_progress_and_cancel():
     assert calls[-1][0] < 1
     others = [thread for thread in threading.enumerate() if thread.name == "realmodel work"]
     assert len(others) <= 1, "only the one that frees what it has taken"
+
+
+def moved_less_than_edges(mesh, way, by):
+    """A copy; by: in edges."""
+    vertices, triangles = mesh
+    edge = np.linalg.norm(vertices[triangles[:, 0]] - vertices[triangles[:, 1]], axis=1).mean()
+    if way == "shifted":
+        return vertices + by * edge * np.array([0.6, 0.64, 0.48]), triangles
+    if way == "scaled":
+        return vertices * (1 + 2 * by * edge), triangles
+    return vertices + by * edge * np.random.default_rng(1).uniform(-1, 1, vertices.shape), triangles
+
+
+# before: three times the pieces after three rounds, and no end
+@pytest.mark.skipif(not solids.SOLIDS.is_dir(), reason=places.DATA_ABSENT)
+@pytest.mark.parametrize(
+    "way, by",
+    # with more for each vertex the copy would cross itself
+    [("shifted", 1e-6), ("shifted", 0.3), ("scaled", 1e-3), ("each vertex", 1e-6), ("each vertex", 0.03)],
+)
+def test_a_result_of_nearly_coinciding_scans_with_its_operands(way, by):
+    a = scan("cow")
+    b = moved_less_than_edges(a, way, by)
+    first = intersect(a, b)
+    whole = solids.volume(*first.union())
+    for operand in (a, b):
+        again = check_identities(first.union(), operand)
+        assert solids.volume(*again.union()) == pytest.approx(whole, abs=1e-12)
+        assert len(again.triangles) <= 1.1 * len(first.triangles)
+    check_identities(first.difference(), b)
+
+
+def test_inside_of_solids_that_overlap_themselves():
+    """Where the winding number is not zero. Manifold, which asks for solids without overlaps, counts layers."""
+    two = solids.together(solids.box((0, 0, 0), (2, 2, 2)), solids.box((1, 1, 1), (3, 3, 3)))
+    vertices, triangles = solids.box((5, 0, 0), (6, 1, 1))
+    inside_out = solids.together(solids.box((0, 0, 0), (2, 2, 2)), (vertices, triangles[:, [0, 2, 1]]))
+    around = solids.box((-1, -1, -1), (9, 9, 9))
+    for solid, ours, theirs in ((two, 15, 16), (inside_out, 9, 7)):
+        assert volumes(intersect(solid, around))["intersection"] == pytest.approx(ours)
+        one = manifold3d.Manifold(
+            manifold3d.Mesh64(
+                np.ascontiguousarray(solid[0], float), np.ascontiguousarray(solid[1], np.uint64)
+            )
+        )
+        assert one.volume() == pytest.approx(theirs)

@@ -6,7 +6,7 @@ import threading
 import time
 
 import pytest
-from realmodel.core import Cancelled, InputRefused
+from realmodel.core import BuildFailed, Cancelled, InputRefused
 from realmodel.core.work import POLL_SECONDS, run, start
 
 ENDLESS = 6000  # steps of 10 ms: a test that takes all of them has failed
@@ -117,6 +117,14 @@ def test_errors_of_the_work_reach_the_caller():
 
     with pytest.raises(InputRefused, match=r"^f:3: here: so; do that$"):
         run(task)
+
+
+def test_a_defect_of_the_native_part_is_told_as_one():
+    def broken(control):
+        raise RuntimeError("an edge has no end")  # as pybind11 has what C++ takes for impossible
+
+    with pytest.raises(BuildFailed, match=r"defect: an edge has no end; please report it"):
+        run(lambda work: work.native(broken))
 
 
 def test_the_last_call_is_the_end():

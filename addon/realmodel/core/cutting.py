@@ -145,6 +145,7 @@ _ADVICE = {
     "one_sided": "remove triangles until it has one upper and one lower side",
     "two_sides": "cut by each part in turn",
     "no_block": "choose a block that has cells",
+    "open_cell": "move the surface that cuts a little, or repair the model",
 }
 
 

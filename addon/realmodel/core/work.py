@@ -98,6 +98,10 @@ class Work:
             raise BuildFailed(
                 "not enough memory for this model; use fewer triangles or a longer edge length"
             ) from error
+        except RuntimeError as error:  # what the native part takes for impossible
+            raise BuildFailed(
+                f"RealModel has a defect: {error}; please report it, with the input that shows it"
+            ) from error
         finally:
             with self._lock:
                 self._control = None

@@ -180,6 +180,12 @@ std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersecti
         one, other, false, {from_b ? of_b.down : of_a.up, to_b ? of_b.up : of_a.down}};
 }
 
+SpacePointId TriangleArrangement::point_of(const End& end) {
+    if (end.to == kNone) return end.from;
+    const auto& plane = triangles_[index(end.plane)].corners;
+    return points_.intersection(end.from, end.to, plane[0], plane[1], plane[2]);
+}
+
 void TriangleArrangement::insert(const Intersection& intersection) {
     if (intersection.in_one_plane) {
         clip_edges(intersection.one, intersection.other);
@@ -187,15 +193,8 @@ void TriangleArrangement::insert(const Intersection& intersection) {
         in_one_plane_.push_back({intersection.one, intersection.other});
         return;
     }
-    std::array<SpacePointId, 2> ends;
-    for (std::size_t i = 0; i < 2; ++i) {
-        const End& end = intersection.ends[i];
-        const auto& plane = triangles_[index(end.plane)].corners;
-        ends[i] = end.to == kNone
-                      ? end.from
-                      : points_.intersection(end.from, end.to, plane[0], plane[1], plane[2]);
-    }
-    add_segment(intersection.one, intersection.other, ends[0], ends[1]);
+    const SpacePointId from = point_of(intersection.ends[0]), to = point_of(intersection.ends[1]);
+    add_segment(intersection.one, intersection.other, from, to);
 }
 
 /// Where the edges of one triangle run over another in its plane.

@@ -62,6 +62,8 @@ public:
     /// Where two triangles intersect beside the corners and edges that they share. May be asked by
     /// several threads at once.
     std::optional<Intersection> intersection(std::int32_t one, std::int32_t other) const;
+    /// The point that an end is.
+    SpacePointId point_of(const End& end);
     /// Adds its points and its segment to both triangles.
     void insert(const Intersection& intersection);
     /// Divides all triangles. With it no more can be added.

@@ -101,7 +101,7 @@ void ExactDivision::find_candidates() {
     // the tree of the inputs is that of their pieces, as long as none is divided
     const bool all = pieces_.are_whole() && count == pieces_.input_count();
     const std::optional<BoxTree> own =
-        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes);
+        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, progress_);
     const BoxTree& tree = own ? *own : pieces_.tree();
     std::vector<std::vector<std::array<std::int32_t, 2>>> found((tree.leaf_count() + kChunk - 1) /
                                                                 kChunk);
@@ -139,6 +139,7 @@ void ExactDivision::find_meetings() {
             triangle_of[index(i)] = 0;
     }
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
+        poll(progress_, i);
         if (triangle_of[i] < 0) continue;
         triangle_of[i] = arrangement_.add(pieces_[chosen_[i]].corners);
         piece_of_.push_back(static_cast<std::int32_t>(i));
@@ -227,9 +228,9 @@ std::vector<Corners> ExactDivision::divided(const Region& region) const {
 
 void ExactDivision::divide(const std::vector<Meeting>& at) {
     pieces_.points.reserve_intersections(at.size());  // each is an end of two segments
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        poll(progress_, i);
-        arrangement_.insert(at[i]);
+    for (const Meeting& met : at) {
+        if (progress_ != nullptr) progress_->check();  // points take time
+        arrangement_.insert(met);
     }
     arrangement_.divide(threads_, progress_);
     divide_regions();
@@ -251,6 +252,7 @@ void ExactDivision::divide_regions() {
     KeyTable table;
     std::vector<std::uint64_t> words;
     for (std::size_t r = 0; r < regions.size(); ++r) {
+        poll(progress_, r);
         if (outlines[r].empty()) continue;
         words.clear();
         for (const SpacePointId p : outlines[r])
@@ -293,6 +295,7 @@ void ExactDivision::divide_regions() {
     std::vector<std::pair<PieceId, std::vector<Piece>>> changed;
     std::size_t r = 0;
     for (std::size_t t = 0; t < piece_of_.size(); ++t) {
+        poll(progress_, t);
         const PieceId id = piece(static_cast<std::int32_t>(t));
         std::vector<Piece> made;
         for (; r < regions.size() && index(regions.triangles[r]) == t; ++r) {
@@ -317,6 +320,7 @@ void ExactDivision::divide_regions() {
     std::sort(changed.begin(), changed.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < changed.size();) {
+        poll(progress_, i);
         const std::int32_t input = changed[i].first.input;
         std::vector<Piece> all;
         const auto old = pieces_.of(input);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -23,6 +24,13 @@ public:
     const std::vector<Meeting>& meetings() const { return meetings_; }
     const PieceId& piece(std::int32_t triangle) const {
         return chosen_[index(piece_of_[index(triangle)])];
+    }
+
+    /// Whether triangles meet in one plane, or along a segment that doubles can give.
+    bool is_in_doubles(const Meeting& met) {
+        return met.in_one_plane || std::all_of(met.ends.begin(), met.ends.end(), [&](auto& end) {
+                   return pieces_.points.is_double(arrangement_.point_of(end));
+               });
     }
 
     /// Divides the pieces at some of the meetings, and rounds the new points. Pieces with such a

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exact/space_points.hpp"
+#include "realmodel/base/progress.hpp"
 
 namespace realmodel::booleans {
 
@@ -31,6 +32,8 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
 /// decided where they are moved onto the edges and into the plane of the triangle, exactly; points
 /// within that fall outside or together there are left out. The same for the same triangle and
 /// points, however its corners are ordered. Each part of an edge has one triangle.
-std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet);
+/// @throws Cancelled
+std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet,
+                             const Progress* progress);
 
 }  // namespace realmodel::booleans

@@ -37,11 +37,13 @@ void find_facets(const Parts& parts, FacetMesh& mesh, int threads, const Progres
     parallel_sort(keyed, std::less<>(), threads, progress);
     std::vector<std::int32_t> first(count);  // of the parts that coincide
     for (std::size_t i = 0, begin = 0; i < count; ++i) {
+        poll(progress, i);
         if (keyed[i].sorted != keyed[begin].sorted) begin = i;
         first[index(keyed[i].part)] = keyed[begin].part;
     }
     mesh.of_part.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
+        poll(progress, i);
         const Part& part = parts.triangles[i];
         if (first[i] == static_cast<std::int32_t>(i)) {
             mesh.of_part[i] = static_cast<std::int32_t>(mesh.facets.size());
@@ -68,6 +70,7 @@ FacetMesh facets_of(const Parts& parts, int threads, const Progress* progress) {
     FacetMesh mesh;
     find_facets(parts, mesh, threads, progress);
     const std::size_t count = mesh.facets.size();
+    checked_number(2 * count, "sides of triangles");  // those who ask number them
     std::vector<EdgeUse> uses(3 * count);
     parallel_ranges(count, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
@@ -84,6 +87,7 @@ FacetMesh facets_of(const Parts& parts, int threads, const Progress* progress) {
     mesh.uses.reserve(uses.size());
     mesh.edges_of.resize(count);
     for (std::size_t i = 0; i < uses.size(); ++i) {
+        poll(progress, i);
         if (i == 0 || uses[i].edge != uses[i - 1].edge) {
             if (i > 0) mesh.use_begins.push_back(i);
             checked_number(mesh.edges.size(), "edges");

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
 #include "booleans/facets.hpp"
 #include "booleans/loops.hpp"
 #include "booleans/refinement.hpp"
@@ -18,9 +19,10 @@ namespace {
 using exact::DoubleDoubleInterval;
 
 /// Whether a surface has no border: it passes each edge as often one way as the other.
-std::array<bool, 2> closed_surfaces(const FacetMesh& mesh) {
+std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Progress* progress) {
     std::array<bool, 2> is_closed{true, true};
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        poll(progress, e);
         std::array<int, 2> net{0, 0};
         for (const FacetUse& use : mesh.uses_of(e)) {
             const Facet& facet = mesh.facets[index(use.facet)];
@@ -35,11 +37,12 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh) {
 
 /// The parts of each surface that hang together across edges that are in no loop.
 void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCells& cells,
-                       Refinement& result) {
+                       Refinement& result, const Progress* progress) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        poll(progress, e);
         if (loops.of_edge[e] >= 0) continue;
         std::array<std::int32_t, 2> first{-1, -1};
         for (const FacetUse& use : mesh.uses_of(e)) {
@@ -56,6 +59,7 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
     }
     std::vector<std::int32_t> number(2 * count, -1);
     for (std::size_t t = 0; t < result.triangles.size(); ++t) {
+        poll(progress, t);
         const auto source = static_cast<std::int32_t>(result.source[t]);
         const std::int32_t facet = mesh.of_part[t];
         std::int32_t& own = number[index(joined.find(2 * facet + source))];
@@ -93,9 +97,10 @@ DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
 }
 
 void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
-                     const SpaceCells& cells, Refinement& result) {
+                     const SpaceCells& cells, Refinement& result, const Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        poll(progress, f);
         const auto& [below, above] = cells.of_facet[f];
         if (below == above) continue;
         const auto& [a, b, c] = mesh.facets[f].corners;
@@ -105,10 +110,14 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
             result.sub_blocks[index(above) - 1].triangles.push_back({a, c, b});
     }
     for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
+        if (progress != nullptr) progress->check();
         SubBlock& block = result.sub_blocks[i];
         DoubleDoubleInterval sum = 0.0;
-        for (const auto& t : block.triangles)
-            sum = sum + volume_below(vertices, t, vertices[index(block.triangles[0][0])]);
+        for (std::size_t t = 0; t < block.triangles.size(); ++t) {
+            poll(progress, t);
+            sum = sum + volume_below(vertices, block.triangles[t],
+                                     vertices[index(block.triangles[0][0])]);
+        }
         block.volume = (sum.high + sum.low) / 6;
         for (std::size_t source = 0; source < 2; ++source)
             block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
@@ -137,14 +146,15 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
     const FacetMesh mesh = facets_of(parts, threads, progress);
     if (progress != nullptr) progress->begin(0.9, 0.99, "finding what is inside");
     const SpaceCells cells = cells_of(parts.vertices, mesh, threads, progress);
-    Loops loops = find_loops(mesh);
+    Loops loops = find_loops(mesh, progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());
     for (const Position& p : parts.vertices)
         result.vertices.insert(result.vertices.end(), p.begin(), p.end());
     std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
-    result.is_closed = closed_surfaces(mesh);
+    result.is_closed = closed_surfaces(mesh, progress);
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
+        poll(progress, t);
         const Part& part = parts.triangles[t];
         result.triangles.push_back(part.corners);
         result.source.push_back(part.source);
@@ -155,6 +165,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
     }
     result.is_in.resize(parts.triangles.size());
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
+        poll(progress, t);
         // the first part of a facet is turned as that is, the others are not asked
         const auto& sides = cells.of_facet[index(mesh.of_part[t])];
         for (std::size_t side = 0; side < 2; ++side) {
@@ -163,8 +174,8 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
                     result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
         }
     }
-    find_sub_surfaces(mesh, loops, cells, result);
-    find_sub_blocks(parts.vertices, mesh, cells, result);
+    find_sub_surfaces(mesh, loops, cells, result, progress);
+    find_sub_blocks(parts.vertices, mesh, cells, result, progress);
     result.loops = std::move(loops.loops);
     if (progress != nullptr) progress->report(1.0, nullptr);
     return result;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/parallel.hpp"
+
 namespace realmodel::booleans {
 
 namespace {
@@ -22,9 +24,10 @@ bool is_intersection(const FacetMesh& mesh, std::size_t edge) {
 /// The intersection edges as a graph.
 class LoopGraph {
 public:
-    explicit LoopGraph(const FacetMesh& mesh) : mesh_(mesh) {
+    LoopGraph(const FacetMesh& mesh, const Progress* progress) : mesh_(mesh), progress_(progress) {
         result_.of_edge.assign(mesh.edges.size(), -1);
         for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+            poll(progress_, e);
             if (!is_intersection(mesh, e)) continue;
             for (const std::int32_t v : mesh.edges[e])
                 ends_.emplace_back(v, static_cast<std::int32_t>(e));
@@ -36,6 +39,7 @@ public:
     Loops run() {
         for (const bool paths : {true, false}) {
             for (const auto& [vertex, edge] : ends_) {
+                poll(progress_, index(edge));
                 if (result_.of_edge[index(edge)] < 0 && (degree(vertex) != 2) == paths)
                     follow(vertex, edge);
             }
@@ -77,14 +81,15 @@ private:
     }
 
     const FacetMesh& mesh_;
+    const Progress* progress_;
     Loops result_;
     std::vector<End> ends_;  ///< in order
 };
 
 }  // namespace
 
-Loops find_loops(const FacetMesh& mesh) {
-    return LoopGraph(mesh).run();
+Loops find_loops(const FacetMesh& mesh, const Progress* progress) {
+    return LoopGraph(mesh, progress).run();
 }
 
 }  // namespace realmodel::booleans

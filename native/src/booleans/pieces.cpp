@@ -12,6 +12,7 @@ namespace realmodel::booleans {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 12;
+constexpr std::size_t kMany = 1 << 6;  ///< so many pieces of one triangle are found by a tree
 
 void check(const TriangleMesh& mesh, int surface) {
     if (mesh.triangle_count() == 0)
@@ -31,7 +32,8 @@ void check(const TriangleMesh& mesh, int surface) {
 
 }  // namespace
 
-Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress) {
+Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress)
+    : progress_(progress) {
     for (std::uint8_t source = 0; source < 2; ++source) {
         const TriangleMesh& mesh = surfaces[source];
         check(mesh, source);
@@ -63,7 +65,7 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const P
                         for (std::size_t i = begin; i < end; ++i)
                             boxes[i] = box(whole_[i].corners);
                     });
-    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes));
+    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), progress);
 }
 
 void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
@@ -72,7 +74,14 @@ void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
         list = static_cast<std::int32_t>(lists_.size());
         lists_.emplace_back();
     }
-    lists_[index(list)] = std::move(pieces);
+    List& own = lists_[index(list)];
+    own.pieces = std::move(pieces);
+    own.tree.reset();
+    if (own.pieces.size() < kMany) return;
+    std::vector<spatial::Box> boxes(own.pieces.size());
+    std::transform(own.pieces.begin(), own.pieces.end(), boxes.begin(),
+                   [this](const Piece& piece) { return box(piece.corners); });
+    own.tree = std::make_unique<spatial::BoxTree>(std::move(boxes), progress_);
 }
 
 }  // namespace realmodel::booleans

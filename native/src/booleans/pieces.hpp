@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -44,12 +45,13 @@ public:
     }
     std::span<const Piece> of(std::int32_t input) const {
         const std::int32_t list = list_[index(input)];
-        return list < 0 ? std::span(&whole_[index(input)], 1) : std::span(lists_[index(list)]);
+        return list < 0 ? std::span(&whole_[index(input)], 1)
+                        : std::span(lists_[index(list)].pieces);
     }
     const Piece& operator[](const PieceId& id) const { return of(id.input)[index(id.piece)]; }
     Piece& operator[](const PieceId& id) {
         const std::int32_t list = list_[index(id.input)];
-        return list < 0 ? whole_[index(id.input)] : lists_[index(list)][index(id.piece)];
+        return list < 0 ? whole_[index(id.input)] : lists_[index(list)].pieces[index(id.piece)];
     }
     void replace(std::int32_t input, std::vector<Piece>&& pieces);
 
@@ -65,15 +67,36 @@ public:
         near.widen(reach_);
         tree_->find(near, visit);
     }
+    /// Calls visit(piece) for the pieces that may meet a box.
+    template <class Visit>
+    void find(const spatial::Box& near, const Visit& visit) const {
+        find_inputs(near, [&](std::int32_t input) {
+            const std::int32_t list = list_[index(input)];
+            if (list >= 0 && lists_[index(list)].tree != nullptr) {
+                lists_[index(list)].tree->find(near, [&](std::int32_t piece) {
+                    visit(lists_[index(list)].pieces[index(piece)]);
+                });
+                return;
+            }
+            for (const Piece& piece : of(input)) {
+                if (near.meets(box(piece.corners))) visit(piece);
+            }
+        });
+    }
     const spatial::BoxTree& tree() const { return *tree_; }
     /// Notes that pieces may have moved by so much.
     void moved_by(double distance) { reach_ += distance; }
     double largest_coordinate() const { return largest_; }
 
 private:
+    struct List {
+        std::vector<Piece> pieces;
+        std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
+    };
+    const Progress* progress_;
     std::vector<Piece> whole_;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
-    std::vector<std::vector<Piece>> lists_;
+    std::vector<List> lists_;
     std::size_t second_ = 0;  ///< the first triangle of the second surface
     std::unique_ptr<spatial::BoxTree> tree_;
     double reach_ = 0;  ///< how far pieces may be outside of the boxes in the tree
@@ -93,6 +116,12 @@ inline std::pair<Corners, bool> in_order(Corners corners) {
     exchange(1, 2);
     exchange(0, 1);
     return {corners, odd};
+}
+
+template <class Item>
+void sort_unique(std::vector<Item>& items) {
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 inline bool has_equal_corners(const Corners& c) {

@@ -18,11 +18,12 @@ namespace realmodel::booleans {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 10;
-/// What is nearer than so many units in the last place comes together, twice as many with every
-/// time that rounding makes pieces cross.
+/// What is nearer than so many units in the last place comes together, kGrowth times as many where
+/// rounds do not settle.
 constexpr double kNearest = 64;
 constexpr double kGrowth = 32;
-constexpr int kExactRounds = 4;
+constexpr int kExactRounds = 4, kSnapRounds = 4;  ///< before that
+constexpr int kLocalRounds = 16;
 constexpr int kMostRounds = 40;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
@@ -38,21 +39,43 @@ public:
     Parts run();
 
 private:
+    using Numbers = std::vector<std::int32_t>;
+
     void drop_flat();
     bool is_flat(const Corners& corners) const;
     std::vector<PieceId> pieces_near_fresh() const;
-    void find_fresh(const std::vector<std::int32_t>& among);
+    void find_fresh(const Numbers& among);
+    void set_fresh(const ExactDivision& division, const ExactDivision::Meeting& met) {
+        for (const std::int32_t triangle : {met.one, met.other})
+            pieces_[division.piece(triangle)].is_fresh = true;
+    }
+    FacetPair pair_of(const ExactDivision& division, const ExactDivision::Meeting& met) const {
+        return booleans::pair_of(pieces_[division.piece(met.one)].corners,
+                                 pieces_[division.piece(met.other)].corners);
+    }
     bool round();
+    bool snap_shallow(ExactDivision& division, Numbers& touched);
+    void divide_first(ExactDivision& division);
+    void divide_or_snap(ExactDivision& division, Numbers& touched);
+    std::vector<std::uint8_t> near_meetings(const ExactDivision& division) const;
+    Numbers snap(std::vector<FacetPair>&& pairs);
     Parts result() const;
+
+    /// What has been done so far.
+    enum class State : std::uint8_t {
+        kWhole,    ///< nothing
+        kSnapped,  ///< what is shallow was brought together
+        kDivided,  ///< the inputs were divided along one another
+    };
 
     Pieces pieces_;
     int threads_;
     Progress* progress_;
-    std::vector<std::int32_t> fresh_;  ///< triangles of the inputs that have fresh pieces
-    bool is_first_ = true;
+    Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
+    State state_ = State::kWhole;
     double ulps_ = kNearest;
-    std::size_t last_meetings_ = SIZE_MAX;  ///< when edges and triangles last got vertices
-    int exact_rounds_ = 0;
+    std::size_t last_meetings_ = SIZE_MAX;  ///< that were brought together
+    int exact_rounds_ = 0, snap_rounds_ = 0;
 };
 
 bool Refiner::is_flat(const Corners& c) const {
@@ -87,15 +110,13 @@ void Refiner::drop_flat() {
         std::vector<Corners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             flat.insert(flat.end(), found[i].begin(), found[i].end());
-            if (is_first_ && !found[i].empty()) pieces_.replace(fresh_[i], {});
+            if (state_ == State::kWhole && !found[i].empty()) pieces_.replace(fresh_[i], {});
         }
-        if (is_first_ || flat.empty()) return;
-        std::sort(flat.begin(), flat.end());
-        flat.erase(std::unique(flat.begin(), flat.end()), flat.end());
-        std::vector<std::int32_t> changed = Snapping(pieces_, flat).apply(threads_, progress_);
+        if (state_ == State::kWhole || flat.empty()) return;
+        sort_unique(flat);
+        Numbers changed = Snapping(pieces_, flat, threads_, progress_).apply();
         changed.insert(changed.end(), fresh_.begin(), fresh_.end());
-        std::sort(changed.begin(), changed.end());
-        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+        sort_unique(changed);
         find_fresh(changed);
     }
 }
@@ -103,8 +124,8 @@ void Refiner::drop_flat() {
 /// All pieces that may meet a fresh one, in order.
 std::vector<PieceId> Refiner::pieces_near_fresh() const {
     std::vector<PieceId> found;
-    std::vector<std::int32_t> inputs;
-    if (is_first_) {
+    Numbers inputs;
+    if (state_ == State::kWhole) {
         inputs = fresh_;
     } else {
         std::vector<std::vector<std::int32_t>> near((fresh_.size() + 63) / 64);
@@ -117,14 +138,12 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
                         pieces_.find_inputs(pieces_.box(piece.corners),
                                             [&](std::int32_t input) { own.push_back(input); });
                     }
-                    std::sort(own.begin(), own.end());
-                    own.erase(std::unique(own.begin(), own.end()), own.end());
                 }
+                sort_unique(own);
             });
         for (const auto& some : near)
             inputs.insert(inputs.end(), some.begin(), some.end());
-        std::sort(inputs.begin(), inputs.end());
-        inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+        sort_unique(inputs);
     }
     for (const std::int32_t input : inputs) {
         for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
@@ -133,7 +152,7 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
     return found;
 }
 
-void Refiner::find_fresh(const std::vector<std::int32_t>& among) {
+void Refiner::find_fresh(const Numbers& among) {
     fresh_.clear();
     for (const std::int32_t input : among) {
         const auto own = pieces_.of(input);
@@ -147,74 +166,141 @@ void Refiner::find_fresh(const std::vector<std::int32_t>& among) {
 bool Refiner::round() {
     drop_flat();
     auto near = pieces_near_fresh();
-    std::vector<std::int32_t> inputs, touched;
+    Numbers inputs, touched;
     for (const PieceId& id : near) {
         if (inputs.empty() || inputs.back() != id.input) inputs.push_back(id.input);
     }
     std::set_union(fresh_.begin(), fresh_.end(), inputs.begin(), inputs.end(),
                    std::back_inserter(touched));
     ExactDivision division(pieces_, std::move(near), threads_, progress_);
-    const auto& meetings = division.meetings();
     for (const std::int32_t input : fresh_) {
         for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
             pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = false;
     }
-    if (meetings.empty()) return false;
-    if (is_first_) {
-        is_first_ = false;
-        division.divide(meetings);
-        // a corner that touches a triangle within divides nothing: the next round gives it to that
-        for (const auto& met : meetings) {
-            if (met.in_one_plane || met.ends[0].to != kNone || met.ends[1].to != kNone ||
-                met.ends[0].from != met.ends[1].from)
-                continue;
-            for (const std::int32_t triangle : {met.one, met.other}) {
-                const std::int32_t input = division.piece(triangle).input;
-                for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
-                    pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = true;
-            }
-        }
-        find_fresh(touched);
-        return true;
-    }
-    std::vector<FacetPair> pairs;
-    const auto pair_of = [&](const ExactDivision::Meeting& met) {
-        FacetPair pair{in_order(pieces_[division.piece(met.one)].corners).first,
-                       in_order(pieces_[division.piece(met.other)].corners).first};
-        if (pair[1] < pair[0]) std::swap(pair[0], pair[1]);
-        return pair;
-    };
-    for (const auto& met : meetings)
-        pairs.push_back(pair_of(met));
-    Snapping snapping(pieces_, std::move(pairs), ulps_);
-    std::vector<ExactDivision::Meeting> apart;
-    for (const auto& met : meetings) {
-        const auto at =
-            std::lower_bound(snapping.pairs().begin(), snapping.pairs().end(), pair_of(met)) -
-            snapping.pairs().begin();
-        if (!snapping.is_near()[static_cast<std::size_t>(at)]) {
-            apart.push_back(met);
-            continue;
-        }
-        for (const std::int32_t triangle : {met.one, met.other})
-            pieces_[division.piece(triangle)].is_fresh = true;
-    }
-    if (!apart.empty()) {
-        if (++exact_rounds_ % kExactRounds == 0) ulps_ *= kGrowth;
-    } else if (!snapping.merges()) {
-        if (2 * meetings.size() > last_meetings_) ulps_ *= kGrowth;
-        last_meetings_ = meetings.size();
-    }
-    if (!apart.empty()) {
-        division.divide(apart);
+    if (division.meetings().empty()) return false;
+    if (state_ == State::kWhole && snap_shallow(division, touched)) {
+        state_ = State::kSnapped;
+    } else if (state_ != State::kDivided) {
+        divide_first(division);
+        state_ = State::kDivided;
     } else {
-        const auto changed = snapping.apply(threads_, progress_);
-        touched.insert(touched.end(), changed.begin(), changed.end());
-        std::sort(touched.begin(), touched.end());
-        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        divide_or_snap(division, touched);
     }
+    sort_unique(touched);
     find_fresh(touched);
     return true;
+}
+
+/// Brings together where triangles of the inputs meet in something that doubles cannot keep: new
+/// vertices would be rounded, and one of the triangles passes through the other by less than is
+/// brought together. Such are the facets of a result and those of its operands. Divided first, they
+/// would come out in splinters that cross again once they are rounded.
+bool Refiner::snap_shallow(ExactDivision& division, Numbers& touched) {
+    const Nearness nearness(pieces_.points, ulps_);
+    std::vector<FacetPair> pairs;
+    for (const auto& met : division.meetings()) {
+        if (progress_ != nullptr) progress_->check();  // points take time
+        const FacetPair pair = pair_of(division, met);
+        if (nearness.is_shallow(pair) && !division.is_in_doubles(met)) pairs.push_back(pair);
+    }
+    if (pairs.empty()) return false;
+    for (const auto& met : division.meetings())
+        set_fresh(division, met);
+    const auto changed = snap(std::move(pairs));
+    touched.insert(touched.end(), changed.begin(), changed.end());
+    return !changed.empty();
+}
+
+/// Divides the inputs along one another.
+void Refiner::divide_first(ExactDivision& division) {
+    const auto& meetings = division.meetings();
+    division.divide(meetings);
+    // a corner that touches a triangle within divides nothing: the next round gives it to that
+    for (const auto& met : meetings) {
+        if (met.in_one_plane || met.ends[0].to != kNone || met.ends[1].to != kNone ||
+            met.ends[0].from != met.ends[1].from)
+            continue;
+        for (const std::int32_t triangle : {met.one, met.other}) {
+            const std::int32_t input = division.piece(triangle).input;
+            for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
+                pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = true;
+        }
+    }
+}
+
+/// After rounding: divides where pieces meet that are not near there; else brings all together.
+void Refiner::divide_or_snap(ExactDivision& division, Numbers& touched) {
+    const auto& meetings = division.meetings();
+    const std::vector<std::uint8_t> is_near = near_meetings(division);
+    std::vector<ExactDivision::Meeting> apart;
+    std::vector<FacetPair> pairs;
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+        if (is_near[i] == 0) {
+            apart.push_back(meetings[i]);
+        } else {
+            pairs.push_back(pair_of(division, meetings[i]));
+            set_fresh(division, meetings[i]);
+        }
+    }
+    if (apart.empty()) {
+        const std::size_t count = pairs.size();
+        const auto changed = snap(std::move(pairs));
+        touched.insert(touched.end(), changed.begin(), changed.end());
+        if (!changed.empty()) {
+            if (++snap_rounds_ % kSnapRounds == 0 || count >= last_meetings_) ulps_ *= kGrowth;
+            last_meetings_ = count;
+            return;
+        }
+        apart = meetings;
+    }
+    if (++exact_rounds_ % kExactRounds == 0) ulps_ *= kGrowth;
+    division.divide(apart);
+}
+
+/// Whether something is near where triangles meet, for all meetings.
+std::vector<std::uint8_t> Refiner::near_meetings(const ExactDivision& division) const {
+    const auto& meetings = division.meetings();
+    const Nearness nearness(pieces_.points, ulps_);
+    std::vector<std::uint8_t> is_near(meetings.size());
+    parallel_ranges(meetings.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            NearParts found;
+                            nearness.find(pair_of(division, meetings[i]), found);
+                            is_near[i] = found.empty() ? 0 : 1;
+                        }
+                    });
+    return is_near;
+}
+
+/// Brings pairs of facets together, vertices first.
+/// @return the triangles of the inputs whose pieces have changed
+Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
+    Numbers changed;
+    while (!pairs.empty()) {
+        sort_unique(pairs);
+        // first only what does not settle, then all that is near it
+        const double of_the_rest = snap_rounds_ < kLocalRounds ? kNearest : ulps_;
+        Snapping snapping(pieces_, pairs, {ulps_, of_the_rest}, threads_, progress_);
+        const auto own = snapping.apply();
+        changed.insert(changed.end(), own.begin(), own.end());
+        if (!snapping.merges()) break;
+        // what remains of the pairs, with the vertices that remain
+        std::vector<FacetPair> left;
+        for (FacetPair pair : pairs) {
+            bool has_area = true;
+            for (Corners& corners : pair) {
+                for (SpacePointId& p : corners)
+                    p = snapping.merged(p);
+                has_area = has_area && !has_equal_corners(corners);
+            }
+            if (has_area) left.push_back(booleans::pair_of(pair[0], pair[1]));
+        }
+        std::erase_if(left, [](const FacetPair& pair) { return pair[0] == pair[1]; });
+        pairs = std::move(left);
+    }
+    sort_unique(changed);
+    return changed;
 }
 
 Parts Refiner::run() {
@@ -234,6 +320,7 @@ Parts Refiner::result() const {
     Parts parts;
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
+        poll(progress_, i);
         const auto input = static_cast<std::int32_t>(i);
         for (const Piece& piece : pieces_.of(input)) {
             Part part{{}, pieces_.row(input), pieces_.source(input)};

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <map>
-#include <set>
+#include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "booleans/nearness.hpp"
+#include "booleans/number_table.hpp"
 #include "booleans/pieces.hpp"
 
 namespace realmodel::booleans {
-
-/// Two triangles, by their corners in order.
-using FacetPair = std::array<Corners, 2>;
 
 /// Brings together what is closer than rounding can keep apart, where pieces meet out of order:
 /// vertices become one, edges and triangles get the vertices that are near them, and edges that
@@ -23,58 +24,84 @@ using FacetPair = std::array<Corners, 2>;
 /// exactly.
 class Snapping {
 public:
-    /// @param ulps  how near, in units in the last place of the largest coordinate of a pair
-    Snapping(Pieces& pieces, std::vector<FacetPair>&& pairs, double ulps);
+    /// How near, in units in the last place of the largest coordinate of two facets.
+    struct Radius {
+        double of_pairs;     ///< around the facets of the pairs
+        double of_the_rest;  ///< where these have handed on vertices
+    };
+    /// @param pairs  facets that meet, in order
+    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius, int threads,
+             const Progress* progress);
 
     /// Folds triangles without area onto their longest edges: the corner across it becomes a vertex
     /// of all that have the edge, and the triangle is gone.
-    Snapping(Pieces& pieces, const std::vector<Corners>& flat);
-
-    /// Whether something of a pair is so near to the other one; pairs() has them in order.
-    const std::vector<FacetPair>& pairs() const { return pairs_; }
-    const std::vector<bool>& is_near() const { return is_near_; }
+    Snapping(Pieces& pieces, std::span<const Corners> flat, int threads, const Progress* progress);
 
     /// Whether vertices become one: then this is all that apply() does.
     bool merges() const { return !merged_.empty(); }
+    SpacePointId merged(SpacePointId p) const;
     /// Changes the pieces; those that change are fresh.
     /// @return the triangles of the inputs whose pieces have changed, in order
-    std::vector<std::int32_t> apply(int threads, const Progress* progress);
+    std::vector<std::int32_t> apply();
 
 private:
-    struct Addition {
-        std::vector<SpacePointId> within;
-        std::vector<Corners> near;  ///< triangles whose edges it is to get
+    struct Merge {
+        SpacePointId from, to;
     };
-    double distance_of(const FacetPair& pair) const;
-    std::vector<FacetPair> pairs_near(std::vector<Corners>& facets);
-    void add_vertex(SpacePointId p);
-    bool find_merges(const FacetPair& pair);
-    void merge_vertices();
-    bool find_near(const FacetPair& pair);
-    bool is_near_edge(SpacePointId p, const Edge& edge, double within) const;
-    bool find_near_edges(SpacePointId p, const Corners& t, double within);
-    void find_crossing(const Edge& e, const Edge& f, double within, bool& found);
-    SpacePointId vertex_near(const exact::SpacePosition& at, double within);
-    bool is_between(SpacePointId p, const Edge& edge) const;
-    bool is_over(SpacePointId p, const Corners& t, double within) const;
+    /// A facet that is near others.
+    struct Place {
+        std::array<std::int32_t, 3> edges;
+        std::vector<std::int32_t> near;  ///< facets whose edges it is to get, in order
+        std::vector<SpacePointId> over;  ///< vertices that it is to get within, in order
+        std::vector<SpacePointId> seen;  ///< vertices on edges of those facets, in order
+    };
+    /// Vertices that an edge is to get.
+    struct Divided {
+        std::vector<SpacePointId> points;  ///< in the order along the edge in the end
+        std::size_t old = 0;               ///< so many were there before the last pass
+    };
+    using FacetNumbers = std::array<std::int32_t, 2>;
+
+    using Waves = std::vector<std::int32_t>;  ///< of facets: when asked what is around them, or -1
+
+    const Nearness& nearness(std::int32_t facet) const {
+        return index(facet) < first_ ? wide_ : narrow_;
+    }
+    const Nearness& nearness(const FacetNumbers& pair) const {
+        return nearness(std::min(pair[0], pair[1]));
+    }
+    /// How far from a facet others may be near it.
+    double reach(std::int32_t facet) const {
+        return nearness(facet).distance_at(pieces_.largest_coordinate());
+    }
+    std::vector<FacetNumbers> pairs_around(std::span<const std::int32_t> facets, Waves& waves);
+    std::vector<std::int32_t> find_near(std::span<const FacetNumbers> pairs, const Waves& waves,
+                                        NearParts& all);
+    void merge_vertices(const std::vector<Edge>& same);
+    void place(NearParts&& found);
     void spread_points();
+    using OnEdge = std::pair<std::int32_t, SpacePointId>;
+    void take_points(std::int32_t facet, std::vector<OnEdge>& found);
+    bool add_points(std::vector<OnEdge>&& found);
     void order_points();
-    SpacePointId merged(SpacePointId p) const;
+    std::span<const SpacePointId> points_on(const Edge& edge) const;
+    const Place* place_of(const Corners& in_order) const;
+    bool is_divided(const Corners& in_order) const;
     std::vector<Corners> divided(const Corners& in_order) const;
-    std::vector<SpacePointId> points_between(SpacePointId from, SpacePointId to) const;
+    std::vector<std::int32_t> inputs_to_change();
 
     Pieces& pieces_;
-    std::vector<FacetPair> pairs_;
-    std::vector<bool> is_near_;
-    double ulps_ = 0;
-    std::map<SpacePointId, SpacePointId> merged_;  ///< what becomes another vertex
-    std::set<Corners> asked_;                      ///< triangles whose neighbors are known
-    std::set<SpacePointId> vertices_;              ///< of all pairs
-    std::multimap<double, SpacePointId> by_x_;     ///< these and new ones
-    std::vector<Edge> same_;                       ///< vertices that are to become one
-    std::map<Edge, std::vector<SpacePointId>> on_edges_;
-    std::map<Corners, Addition> additions_;
-    double moved_ = 0;  ///< how far at most
+    Nearness wide_, narrow_;
+    int threads_;
+    const Progress* progress_;
+    NumberTable<Corners> facets_;     ///< those of the pairs first
+    std::size_t first_ = 0;           ///< so many
+    NumberTable<Edge> edges_;         ///< of facets that are near others, and divided ones
+    std::vector<FacetNumbers> near_;  ///< facets that are near one another
+    std::vector<Place> places_;       ///< of facets
+    std::vector<Divided> on_edges_;   ///< of edges
+    std::vector<Merge> merged_;       ///< what becomes another vertex, in order
+    double moved_ = 0;                ///< how far at most
 };
 
 }  // namespace realmodel::booleans

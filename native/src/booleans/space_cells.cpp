@@ -7,6 +7,7 @@
 #include "arrangement/edge_fan.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "exact/rational_point.hpp"
 #include "exact/space_predicates.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -84,7 +85,8 @@ void CellFinder::join_around_edges() {
                 std::vector<arrangement::HalfPlane> items;
                 for (const FacetUse& use : uses) {
                     const auto& c = mesh_.facets[index(use.facet)].corners;
-                    const std::int32_t tip = c[0] + c[1] + c[2] - edge[0] - edge[1];
+                    // the corner that is no end of the edge
+                    const std::int32_t tip = c[0] ^ c[1] ^ c[2] ^ edge[0] ^ edge[1];
                     items.push_back({point(tip), -1, use.direction});
                 }
                 const auto fan = fan_around(points, point(edge[0]), point(edge[1]), items);
@@ -100,6 +102,7 @@ void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
     DisjointSets connected(count);
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
+        poll(progress_, e);
         const auto uses = mesh_.uses_of(e);
         for (const FacetUse& use : uses)
             connected.join(uses[0].facet, use.facet);
@@ -107,6 +110,7 @@ void CellFinder::join_along_rays() {
     std::vector<Box> boxes(count);
     Box whole;
     for (std::size_t f = 0; f < count; ++f) {
+        poll(progress_, f);
         for (const std::int32_t v : mesh_.facets[f].corners)
             boxes[f].include(vertices_[index(v)]);
         whole.include(boxes[f]);
@@ -116,6 +120,7 @@ void CellFinder::join_along_rays() {
     std::vector<std::int32_t> part_of(count, -1);
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
+        poll(progress_, f);
         const auto root = index(connected.find(static_cast<std::int32_t>(f)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(parts.size());
@@ -126,7 +131,7 @@ void CellFinder::join_along_rays() {
     }
     // for a few rays a tree is not worth its while
     std::optional<spatial::BoxTree> tree;
-    if (parts.size() > kFewRays) tree.emplace(boxes);
+    if (parts.size() > kFewRays) tree.emplace(boxes, progress_);
     const auto find = [&](const Box& ray, std::vector<std::int32_t>& near) {
         if (tree) return tree->find(ray, [&](std::int32_t other) { near.push_back(other); });
         for (std::size_t f = 0; f < count; ++f) {
@@ -134,12 +139,28 @@ void CellFinder::join_along_rays() {
         }
     };
     for (const auto& facets : parts) {
-        if (progress_ != nullptr) progress_->check();
+        // ends: of the places that are tried in a facet two at most are in line with an edge
         bool found = false;
-        for (int attempt = 0; !found; ++attempt)
-            found = cast(facets[static_cast<std::size_t>(attempt) % facets.size()], attempt, find,
-                         whole);
+        for (std::size_t attempt = 0; !found; ++attempt) {
+            if (progress_ != nullptr) progress_->check();
+            found = cast(facets[attempt % facets.size()], static_cast<int>(attempt / facets.size()),
+                         find, whole);
+        }
     }
+}
+
+/// Places within a triangle: the middle, then others on a conic through it, which a line crosses
+/// twice at most.
+exact::RationalPoint place_within(const SpacePoints& points,
+                                  const std::array<SpacePointId, 3>& corners, int attempt) {
+    const std::array<mpz_class, 3> weights{1, attempt + 1, mpz_class(attempt + 1) * (attempt + 1)};
+    exact::RationalPoint place;
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i)
+            place[k] += weights[i] * mpq_class(points.rounded(corners[i])[k]);
+        place[k] /= weights[0] + weights[1] + weights[2];
+    }
+    return place;
 }
 
 /// From a point within a facet along an axis to the outside. False where it passes two facets in
@@ -151,11 +172,7 @@ bool CellFinder::cast(std::int32_t facet, int attempt, const Find& find, const B
     std::size_t axis = 0;
     while (exact::orient2d(points, axis, start[0], start[1], start[2]) == 0)
         ++axis;
-    // other points with every attempt: the middle of the triangle between the last one and an edge
-    SpacePointId p = points.middle(start);
-    for (int i = 0; i < attempt; ++i)
-        p = points.middle({p, start[static_cast<std::size_t>(i) % 3],
-                           start[static_cast<std::size_t>(i + i / 3 + 1) % 3]});
+    const SpacePointId p = points.add(place_within(points, start, attempt));
     struct Crossing {
         SpacePointId at;
         std::int32_t facet;
@@ -210,6 +227,7 @@ SpaceCells CellFinder::number_cells() {
     std::int32_t next = 1;
     cells.of_facet.resize(count);
     for (std::size_t f = 0; f < count; ++f) {
+        poll(progress_, f);
         for (std::size_t side = 0; side < 2; ++side) {
             std::int32_t& cell =
                 number[index(sides_.find(side_number(static_cast<std::int32_t>(f), side)))];
@@ -219,6 +237,7 @@ SpaceCells CellFinder::number_cells() {
     }
     std::vector<std::vector<std::int32_t>> facets_around(index(next));
     for (std::size_t f = 0; f < count; ++f) {
+        poll(progress_, f);
         const auto& [below, above] = cells.of_facet[f];
         if (below == above) continue;
         facets_around[index(below)].push_back(static_cast<std::int32_t>(f));
@@ -228,7 +247,8 @@ SpaceCells CellFinder::number_cells() {
     std::vector<std::uint8_t> is_known(index(next), 0);
     std::vector<std::int32_t> open{SpaceCells::kOutside};
     is_known[SpaceCells::kOutside] = 1;
-    while (!open.empty()) {
+    for (std::size_t n = 0; !open.empty(); ++n) {
+        poll(progress_, n);
         const std::int32_t cell = open.back();
         open.pop_back();
         for (const std::int32_t f : facets_around[index(cell)]) {

@@ -3,7 +3,6 @@
 #include "cutting/surface_parts.hpp"
 
 #include <cassert>
-#include <stdexcept>
 
 #include "arrangement/joined_polygons.hpp"
 #include "base/counting_sort.hpp"
@@ -354,7 +353,9 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
             start = i + 1;
         }
     }
-    if (sum != 0) throw std::logic_error("a part of a cell is not closed");
+    if (sum != 0)
+        throw InputError("open_cell", "a cell of the model does not close around an edge", -1,
+                         {uses[0].cell});
     std::vector<std::int32_t> begun;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const Step& step = steps[(start + i) % steps.size()];

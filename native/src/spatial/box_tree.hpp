@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "realmodel/base/progress.hpp"
 
 namespace realmodel::spatial {
 
@@ -57,7 +58,8 @@ struct Box {
 /// longest side of their middles.
 class BoxTree {
 public:
-    explicit BoxTree(std::vector<Box> boxes) {
+    /// @throws Cancelled
+    explicit BoxTree(std::vector<Box> boxes, const Progress* progress = nullptr) {
         // the boxes and their middles lie together while they are put in order
         std::vector<Item> items(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -67,7 +69,7 @@ public:
         }
         order_.resize(boxes.size());
         boxes_.resize(boxes.size());
-        if (!boxes.empty()) build(items, boxes, 0, items.size());
+        if (!boxes.empty()) build(items, boxes, 0, items.size(), progress);
     }
 
     /// Calls visit(number) for each, in no particular but always the same order.
@@ -130,7 +132,9 @@ private:
     };
 
     std::size_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::size_t begin,
-                      std::size_t end) {
+                      std::size_t end, const Progress* progress) {
+        constexpr std::size_t kUnasked = 1 << 10;  // so few are soon done
+        if (progress != nullptr && end - begin > kUnasked) progress->check();
         const std::size_t number = nodes_.size();
         nodes_.push_back({{}, begin, end});
         if (end - begin <= kLeaf) {
@@ -159,8 +163,8 @@ private:
             const double p = a.twice_middle[axis], q = b.twice_middle[axis];
             return p != q ? p < q : a.number < b.number;
         });
-        build(items, boxes, begin, middle);
-        const std::size_t second = build(items, boxes, middle, end);
+        build(items, boxes, begin, middle, progress);
+        const std::size_t second = build(items, boxes, middle, end, progress);
         nodes_[number].second = second;
         nodes_[number].box = nodes_[number + 1].box;
         nodes_[number].box.include(nodes_[second].box);

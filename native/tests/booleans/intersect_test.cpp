@@ -155,6 +155,28 @@ TEST(Intersect, ASurfaceThatCrossesItself) {
     EXPECT_TRUE(r.loops.empty());
 }
 
+/// Inside is where the winding number is not zero: what is covered twice is inside once, a part
+/// that is turned inside out is solid by itself, and a hole in another part.
+TEST(Intersect, WhatIsInsideOfASolidThatOverlapsItself) {
+    const auto turned = [](Mesh mesh) {
+        for (std::size_t t = 0; t < mesh.triangles.size(); t += 3)
+            std::swap(mesh.triangles[t + 1], mesh.triangles[t + 2]);
+        return mesh;
+    };
+    const auto volume_with = [](Mesh mesh, const Mesh& part) {
+        mesh.add(part);
+        const Mesh around = cube({-1, -1, -1}, 8);
+        return volumes(intersect(mesh.view(), around.view())).common;
+    };
+    const Mesh a = cube({0, 0, 0}, 3);
+    EXPECT_DOUBLE_EQ(volume_with(a, cube({2, 2, 2}, 3)), 27 + 27 - 1);          // parity: 52
+    EXPECT_DOUBLE_EQ(volume_with(a, cube({1, 1, 1}, 1)), 27);                   // parity: 26
+    EXPECT_DOUBLE_EQ(volume_with(a, turned(cube({1, 1, 1}, 1))), 26);           // a hole
+    EXPECT_DOUBLE_EQ(volume_with(a, turned(cube({5, 5, 5}, 1))), 28);           // solid by itself
+    EXPECT_DOUBLE_EQ(volume_with(a, turned(cube({2, 2, 2}, 3))), 27 + 27 - 2);  // cancels
+    EXPECT_DOUBLE_EQ(volume_with(turned(a), turned(cube({2, 2, 2}, 3))), 53);
+}
+
 TEST(Intersect, TheSameForAnyNumberOfThreads) {
     const Mesh a = sphere({0, 0, 0}, 1, 24), b = sphere({0.3, 0.2, 0.1}, 0.9, 31);
     const Refinement one = intersect(a.view(), b.view(), 1), two = intersect(a.view(), b.view(), 2);

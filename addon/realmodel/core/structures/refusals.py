@@ -13,6 +13,7 @@ _ADVICE = {
     "branching": "make a fault of its own of each branch, and set 'ends_at'",
     "folded": "make a fault of its own of each part of it that lies beside another one",
     "does_not_meet": "extend it to that fault, or take it out of 'ends_at'",
+    "open_cell": "move the fault or body that cuts there a little",
     "ends_inside": "extend it beyond the rock, set 'dies_out' or 'ends_at', or choose an older 'youngest'",
 }
 

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "booleans/facet_division.hpp"
+
+namespace realmodel::booleans {
+
+/// Two triangles, by their corners in order; the lesser first.
+using FacetPair = std::array<Corners, 2>;
+
+FacetPair pair_of(Corners one, Corners other);
+
+/// What of two triangles is nearer than rounding can keep apart.
+struct NearParts {
+    /// Two edges that pass each other, and where.
+    struct Crossing {
+        Edge one, other;  ///< in order
+        exact::SpacePosition at;
+        double within;
+        auto operator<=>(const Crossing&) const = default;
+    };
+    std::vector<Edge> same;  ///< vertices that are to become one
+    std::vector<std::pair<Edge, SpacePointId>> on_edges;
+    std::vector<std::pair<Corners, SpacePointId>> over;  ///< vertices over the inside of triangles
+    std::vector<Crossing> crossings;
+
+    /// Takes over the parts of another one, which is empty then.
+    void take(NearParts& other);
+    void make_unique();
+    bool empty() const {
+        return same.empty() && on_edges.empty() && over.empty() && crossings.empty();
+    }
+};
+
+/// What is near: within so many units in the last place of the largest coordinate of a pair. In
+/// doubles, as this decides how an exact result is rounded, and nothing else.
+class Nearness {
+public:
+    Nearness(const SpacePoints& points, double ulps) : points_(points), ulps_(ulps) {}
+
+    double distance_of(const FacetPair& pair) const;
+    /// The largest one where no coordinate is larger than this.
+    double distance_at(double coordinate) const;
+    /// Adds what is near in a pair.
+    void find(const FacetPair& pair, NearParts& found) const;
+    /// Whether one of two triangles passes through the plane of the other by so little that all of
+    /// it on one side of that plane is near the plane.
+    bool is_shallow(const FacetPair& pair) const;
+
+    bool is_near_edge(SpacePointId p, const Edge& edge, double within) const;
+    bool is_over(SpacePointId p, const Corners& t, double within) const;
+    /// Whether a point is between the ends of an edge, along its longest axis.
+    bool is_between(SpacePointId p, const Edge& edge) const;
+
+private:
+    void find_same(const FacetPair& pair, double within, NearParts& found) const;
+    void find_crossing(const Edge& e, const Edge& f, double within, NearParts& found) const;
+    bool passes_little(const Corners& own, const Corners& plane, double within) const;
+
+    const SpacePoints& points_;
+    double ulps_;
+};
+
+inline Edge edge_of(SpacePointId a, SpacePointId b) {
+    return a < b ? Edge{a, b} : Edge{b, a};
+}
+
+inline std::array<Edge, 3> edges_of(const Corners& c) {
+    return {edge_of(c[0], c[1]), edge_of(c[1], c[2]), edge_of(c[2], c[0])};
+}
+
+}  // namespace realmodel::booleans
