@@ -113,7 +113,8 @@ class _Measured:
     def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """places (N, 3), throw, heave and length (N,)."""
         nothing = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
-        parts = [nothing, *(self._between(*pair) for pair in self._pairs())]
+        met = [pair for pair in self._pairs() if self._both_meet(*pair)]
+        parts = [nothing, *(self._between(*pair) for pair in met)]
         return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
 
     def _pairs(self) -> list[tuple[int, int]]:
@@ -127,6 +128,10 @@ class _Measured:
                 if same.all():
                     pairs.setdefault((*rows[below].tolist(), *rows[above].tolist()), (below, above))
         return list(pairs.values())
+
+    def _both_meet(self, below: int, above: int) -> bool:
+        """Whether the sheets of two compartments meet the fault at all."""
+        return all(len(self._cutoff(*each).ends) for each in ((below, -1), (above, 1)))
 
     def _between(self, below: int, above: int):
         """As everywhere, of two compartments."""
@@ -154,9 +159,7 @@ class _Measured:
         key = id(self.sheets[compartment])
         if key not in self.lower:
             shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
-            walls = np.empty((0, 3, 3))
-            if len(cutoff.ends):
-                walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
+            walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
             self.lower[key] = _Places(cutoff, shapes[self.fault], walls, self._sides)
         return self.lower[key]
 
