@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Throw and heave along faults, compared with surfaces in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from displaced_surfaces import (
@@ -166,6 +168,18 @@ def test_a_branch_displaces_where_the_other_fault_has_two_blocks():
     assert found["F"].length.sum() == pytest.approx(9.76, abs=0.02)
     assert found["B"].throw == pytest.approx(0.6, abs=0.01)
     assert found["B"].length.sum() == pytest.approx(5.0, abs=0.02)
+
+
+def test_a_fault_that_a_surface_does_not_meet():
+    """One that ends below it, and one that dies out beside it."""
+    deep = Fault("deep", *plane_fault(lean=0.5, z=(-9.0, -4.0)))
+    beside = Fault("beside", *plane_fault(x=14.0, z=(-9.0, 9.0)))
+    surfaces = [
+        Surface(name, points=[(1, 1, z), (9, 1, z), (5, 9, z)]) for name, z in (("S0", -2.0), ("S1", 0.0))
+    ]
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-8.0)
+    faults = [replace(deep, dies_out=True), replace(beside, dies_out=True)]
+    assert displacements(build(Project("p", [rock], faults=faults))) == []
 
 
 def test_means_in_the_report_are_those_along_the_line():

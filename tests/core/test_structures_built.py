@@ -100,9 +100,10 @@ FAULTED = [
 @pytest.mark.parametrize("lean", [0.0, 0.4, -0.4])
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 def test_one_fault(lean, cells, tmp_path):
-    project = Project(
-        "p", [rock(surfaces(*FAULTED))], faults=[Fault("F", *plane_fault(lean=lean), youngest="S1")]
-    )
+    given = surfaces(*FAULTED)
+    for surface in given[:2]:  # those within 1 of x = 5 would be on the wrong side of one that leans
+        surface.points = surface.points[np.abs(surface.points[:, 0] - 5) > 1]
+    project = Project("p", [rock(given)], faults=[Fault("F", *plane_fault(lean=lean), youngest="S1")])
     model = assert_right(project, tmp_path, cells=cells)
     assert model.surface_kind.tolist() == [0, 0, 0, 1] and model.surface_names[3] == "F"
     assert sorted(model.compartment_names) == ["above F", "below F", "r"]

@@ -161,9 +161,7 @@ class _Measured:
         key = id(self.sheets[compartment])
         if key not in self.lower:
             shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
-            walls = np.empty((0, 3, 3))
-            if len(cutoff.ends):
-                walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
+            walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
             self.lower[key] = _Places(cutoff, shapes[self.fault], walls, self._sides)
         return self.lower[key]
 
