@@ -451,7 +451,7 @@ def test_a_result_of_nearly_coinciding_scans_with_its_operands(way, by):
 
 
 def test_inside_of_solids_that_overlap_themselves():
-    """Where the winding number is not zero. Manifold, which asks for solids without overlaps, counts layers."""
+    """Where the winding number is not zero. Manifold, which asks for no overlaps, counts layers."""
     two = solids.together(solids.box((0, 0, 0), (2, 2, 2)), solids.box((1, 1, 1), (3, 3, 3)))
     vertices, triangles = solids.box((5, 0, 0), (6, 1, 1))
     inside_out = solids.together(solids.box((0, 0, 0), (2, 2, 2)), (vertices, triangles[:, [0, 2, 1]]))

@@ -202,8 +202,8 @@ def intersect(
     a, b: (vertices, triangles) each; vertices (V, 3) of finite numbers, triangles (T, 3) of whole numbers.
     They may consist of several parts, cross themselves, touch and coincide. Inside of a closed surface is
     where its winding number is not zero: what it covers twice is inside, once; a part that is turned inside
-    out is a hole in another part, and inside where it is by itself. threads: 0, as many as there are. progress(fraction, text),
-    cancel() -> True to stop: called from this thread.
+    out is a hole in another part, and inside where it is by itself. threads: 0, as many as there are.
+    progress(fraction, text), cancel() -> True to stop: called from this thread.
 
     Decisions are exact on the coordinates as they are given; new vertices are rounded to doubles once, and no
     triangles cross after that. The result is the same for any number of threads.

@@ -28,9 +28,12 @@ struct Parts {
 
 /// Divides the triangles of both surfaces along one another and themselves.
 ///
-/// In rounds: triangles are divided exactly, new vertices are rounded, and those triangles that
-/// this moved are divided again, until none has moved. Where that takes many rounds, vertices are
-/// rounded to coarser and coarser steps, which merges them.
+/// What meets in something that doubles cannot keep is brought together first. Then, in rounds:
+/// triangles are divided exactly, new vertices are rounded, and what meets out of order after that
+/// is brought together or divided again, until nothing does. Where that takes many rounds, vertices
+/// are rounded to coarser and coarser steps, which merges them.
+///
+/// @throws InputError kinds not_finite, bad_index, no_triangles, too_large, too_close; Cancelled
 Parts refine(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress* progress);
 
 }  // namespace realmodel::booleans

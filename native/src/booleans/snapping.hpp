@@ -20,8 +20,7 @@ namespace realmodel::booleans {
 /// gapes.
 ///
 /// This is how points are rounded (in the manner of V. Milenkovic and E. Sacks, "Geometric rounding
-/// and feature separation in meshes", 2019): what is on which side of what was decided before,
-/// exactly.
+/// and feature separation in meshes", 2019). What crosses farther apart is decided exactly.
 class Snapping {
 public:
     /// How near, in units in the last place of the largest coordinate of two facets.
