@@ -10,11 +10,13 @@ from itertools import combinations
 
 import numpy as np
 
+from .algebra import dot
 from .errors import number_list
 from .shared_places import places_of
 
 _MOST_SHARED = 5000  # places at which two surfaces are compared
 _ASKED, _NEAR = 200, 1000  # points that look for the nearest one of another surface, and among how many
+_LEAST_SPREAD = 1e-9  # of the points' spread, added so that points on a line give no slope across it
 _WHOLE = 1000  # weight of a shared place; so much weighs a whole comparison of surfaces that share none
 
 
@@ -112,9 +114,14 @@ def _in_holes(names, holes) -> np.ndarray:
 
 def _without_common_slope(points: list[np.ndarray]) -> list[np.ndarray]:
     """The points less the slope in x and y that fits all surfaces best, each at a height of its own."""
-    centered = np.concatenate([own - own.mean(axis=0) for own in points])
-    slope = np.linalg.lstsq(centered[:, :2], centered[:, 2], rcond=None)[0]
-    return [np.column_stack([own[:, :2], own[:, 2] - own[:, :2] @ slope]) for own in points]
+    x, y, z = np.concatenate([own - own.mean(axis=0) for own in points]).T
+    extra = _LEAST_SPREAD * (dot(x, x) + dot(y, y))
+    xx, yy, xy = dot(x, x) + extra, dot(y, y) + extra, dot(x, y)
+    determinant = xx * yy - xy * xy
+    if not determinant > 0:  # all at one place
+        return points
+    slope = np.array([yy * dot(x, z) - xy * dot(y, z), xx * dot(y, z) - xy * dot(x, z)]) / determinant
+    return [np.column_stack([own[:, :2], own[:, 2] - dot(own[:, :2], slope)]) for own in points]
 
 
 def _at_nearest(first: np.ndarray, second: np.ndarray) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .algebra import dot
 from .build_warning import BuildWarning
 from .errors import number_list, place_text
 from .methods import SURFACE_OPTIONS
@@ -181,7 +182,7 @@ class _Reach:
             counts[counts] = compartment.holds(np.column_stack([self.plan, z])[counts])
         beyond, beside = (np.where(counts & where, self.area, 0.0) for where in (outside, ~outside))
         whole = beyond.sum() + beside.sum()
-        is_new = (cut @ beyond > _LEAST_SHARE * whole) & (cut @ beside <= _LEAST_SHARE * beside.sum())
+        is_new = (dot(cut, beyond) > _LEAST_SHARE * whole) & (dot(cut, beside) <= _LEAST_SHARE * beside.sum())
         if not is_new.any():
             return None
         there = cut[is_new].any(axis=0) & (beyond > 0)
