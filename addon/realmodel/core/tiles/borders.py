@@ -153,12 +153,13 @@ def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side,
     order = np.argsort(at)  # and so by face
     face, at, size = face[order], at[order], size[order]
     numbers = numbers[_spread(begin[order], size)].astype(model.face_vertices.dtype)
-    return replace(
-        model,
+    cells = replace(
+        model.complex,
         vertices=np.concatenate([model.vertices, *(each.places for each in inserted)]),
         face_vertices=_with_inserted(model.face_vertices, at + 1, size, numbers),
         face_offsets=_moved_on(model.face_offsets, face + 1, size),
     )
+    return replace(model, complex=cells)
 
 
 def _with_inserted(array: np.ndarray, at: np.ndarray, count: np.ndarray, values: np.ndarray) -> np.ndarray:
