@@ -21,6 +21,9 @@ from displaced_surfaces import (
 from realmodel.core import Fault, Project, Rock, Surface, build
 from realmodel.core.exporters.report import model_report
 from realmodel.core.structures.displacement import displacements
+from realmodel.core.structures.lips import Lip, beyond_lips
+from realmodel.core.structures.sides import FaultShape
+from realmodel.core.work import run
 from structure_cases import SQUARE, plane_fault
 
 
@@ -198,3 +201,16 @@ def test_means_in_the_report_are_those_along_the_line():
     assert entry["throw"]["mean"] == pytest.approx(0.5, abs=0.01)
     assert entry["heave"]["mean"] == pytest.approx(0.25, abs=0.01)
     assert entry["length"] == pytest.approx(np.hypot(10, 0.0), abs=0.05)
+
+
+def test_lips_are_not_continued_to_where_another_point_is():
+    """On a lattice one edge beyond a lip is the next point."""
+    points = np.array([(x, y, 0.0) for x in range(5) for y in range(5)], float)
+    points[points[:, 0] < 2, 2] = 0.5
+    fault = FaultShape(*plane_fault(x=2.0))
+    lip = Lip(fault, -1, points[:, 0] == 2)
+    settings = {"extrapolate": "nearest"}
+    found = run(lambda work: beyond_lips(work, points, [lip], 0.25, "natural_neighbour", settings))
+    assert len(found) == 0
+    found = run(lambda work: beyond_lips(work, points, [lip], 0.2, "natural_neighbour", settings))
+    assert sorted(map(tuple, found.tolist())) == [(pytest.approx(2.8), float(y), 0.0) for y in range(5)]

@@ -14,7 +14,7 @@ from ..mis_ties import mean_heights
 from ..work import Work
 from .points_at_faults import expected_heights
 from .sides import FaultShape
-from .triangles import nearest_triangles, unit_normals
+from .triangles import nearest_triangles, unit_normals, welded
 
 _AWAY = 4.0  # times the reach: so far from a fault a sheet is continued
 _STEEP = 0.1  # of a unit normal in plan: a fault that dips less is nearly level
@@ -57,7 +57,9 @@ def beyond_lips(
             leaves = 2.0 * rise * outward[:, 2] > -_AWAY * reach
             away[leaves, 2] = rise[leaves]
         found.append(own + away)
-    return np.concatenate(found)
+    beyond = np.concatenate(found)
+    same = welded(np.concatenate([points, beyond])[:, :2])[len(points) :]
+    return beyond[same == np.arange(len(points), len(points) + len(beyond))]  # none where another point is
 
 
 def _nearest(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
