@@ -12,6 +12,7 @@ from .algebra import dot
 from .build_warning import BuildWarning
 from .errors import number_list, place_text
 from .methods import SURFACE_OPTIONS
+from .mis_ties import mean_heights
 from .project import Rock
 from .rules import RULES
 from .units import number_text
@@ -210,7 +211,8 @@ class _Reach:
         if outside.any():
             away = self.work.native(native.nearest_distance, points, self.plan, threads=self.threads)
             along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)  # of points on a line
-            outside &= away > max(float(native.mean_spacing(points)), along)
+            spacing = float(native.mean_spacing(mean_heights(points), are_apart=True))
+            outside &= away > max(spacing, along)
         return outside
 
     def _name(self, number: int) -> str:
