@@ -8,8 +8,8 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff shellcheck native core blender gui (a window under Xvfb) bpy package asan
-#                   builds; and three that are not run unless asked for: tidy tsan odr (check_odr.sh). Asked for
+#                   format ruff types shellcheck native core blender gui (a window under Xvfb) bpy package
+#                   asan builds; and three that are not run unless asked for: tidy tsan odr (check_odr.sh). Asked for
 #                   alone, builds compares clang++'s optimised code too
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
@@ -17,15 +17,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff shellcheck native core blender gui bpy package asan builds)
+all_steps=(format ruff types shellcheck native core blender gui bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff shellcheck native core blender gui bpy package) ;;
+        --quick) steps=(format ruff types shellcheck native core blender gui bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
+                format | ruff | types | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
@@ -132,6 +132,8 @@ check_format() { cpp_files | xargs -0 clang-format --dry-run -Werror; }
 
 check_ruff() { "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .; }
 
+check_types() { "$venv/bin/mypy"; } # of core and distributed: pyproject.toml
+
 check_shell() { shellcheck scripts/*.sh .ci/run; }
 
 test_native() { # PRESET: it is configured
@@ -172,6 +174,7 @@ test_package() { # the zip with the modules that can be made here, installed as 
 step install install || finish
 wants format && step format check_format
 wants ruff && step ruff check_ruff
+wants types && step types check_types
 wants shellcheck && step shellcheck check_shell
 if wants native core blender gui bpy; then
     step build scripts/build.sh "$python" || finish

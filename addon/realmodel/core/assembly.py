@@ -130,7 +130,7 @@ def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComp
 
 def _surfaces(inputs: list[RockInput], structures) -> SurfaceArrays:
     """The surfaces, then the structures."""
-    surfaces = [surface for entry in inputs for surface in entry.surfaces]
+    surfaces = [entry.surface(number) for entry in inputs for number in range(len(entry.surfaces))]
     return SurfaceArrays.of(surfaces if structures is None else [*surfaces, *structures.shapes])
 
 

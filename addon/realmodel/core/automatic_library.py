@@ -80,9 +80,9 @@ def model_with_library(model: SomeModel) -> SomeModel:
         replace(entry, rock=replace(entry.rock, surfaces=rock.surfaces))
         for entry, rock in zip(model.rock_inputs, project.rocks, strict=False)
     ]
-    owners = [surface for rock in project.rocks for surface in rock.surfaces]
+    numbers = [surface.property for rock in project.rocks for surface in rock.surfaces]
     if model.structures is not None:
         made.structures = replace(model.structures, bodies=project.bodies)
-        owners += [*project.faults, *project.bodies]
-    made.blocks = [replace(block, property=owners[block.surface].property) for block in model.blocks]
+        numbers += [0] * len(project.faults) + [body.property for body in project.bodies]
+    made.blocks = [replace(block, property=numbers[block.surface]) for block in model.blocks]
     return made

@@ -63,7 +63,8 @@ def bedding_of(
     rock = np.array([each.rock for each in model.blocks], np.int32)
     surface = np.array([each.surface for each in model.blocks], np.int32)
     layer = np.where(surface < first[-1], surface - first[rock], _NO_LAYER).astype(np.int32)
-    histories, history = [], np.zeros(len(faces), np.int32)
+    histories: list[tuple] = []
+    history = np.zeros(len(faces), np.int32)
     corner_begin = np.cumsum(np.append(0, np.diff(model.face_offsets)[faces]))
     of_corners = None
     for number, (surfaces, _, base_elevation, rules) in enumerate(rocks):
@@ -109,6 +110,7 @@ def bedding_of(
 def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
     if layer[block] != _NO_LAYER:
         return float(layer[block])
+    assert model.structures is not None  # a block that is no layer is a body
     body = model.blocks[block].surface - len(model.surface_names) + len(model.structures.bodies)
     return model.structures.times[body].get(model.blocks[block].rock, 0) + 0.5
 
@@ -140,6 +142,7 @@ def _compartments(work: Work, model: ModelData, structure, faces, is_second, cel
     a compartment of the model leaves open - a fault that does not divide the block, or that dies out - is
     where the corner lies, drawn a little into its cell."""
     faults = structure.faults
+    assert model.compartment_sides is not None  # the model has faults
     offsets, _ = model.face_corners(faces, is_second)
     of_polygon = model.compartment_sides[model.cell_compartment[cells]][:, faults.numbers]
     sides = np.repeat(of_polygon, np.diff(offsets), axis=0)

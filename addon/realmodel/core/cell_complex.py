@@ -36,7 +36,7 @@ class CellComplex:
     @classmethod
     def of(cls, arrays: Mapping[str, Any], cell_kind: str) -> CellComplex:
         """Of a result of the native module, or the arrays of a file."""
-        return cls(*(arrays[name] for name in ARRAYS), cell_kind=cell_kind)
+        return cls(**{name: arrays[name] for name in ARRAYS}, cell_kind=cell_kind)
 
     @classmethod
     def empty(cls, cell_kind: str) -> CellComplex:

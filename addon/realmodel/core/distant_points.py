@@ -23,9 +23,10 @@ def require_points_near(rock: Rock, unit: str) -> None:
         return
     low, high = _box(np.concatenate(rock.rings()))
     for surface in rock.surfaces:
-        if not surface.interpolated or surface.points is None or not len(surface.points):
+        points = surface.point_array()
+        if not surface.interpolated or not len(points):
             continue
-        first, last = _box(np.asarray(surface.points, float)[:, :2])
+        first, last = _box(points[:, :2])
         gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
         away = float(np.hypot(*gap))
         if away > _FARTHEST * max(np.hypot(*(high - low)), np.hypot(*(last - first))):

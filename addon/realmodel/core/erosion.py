@@ -11,6 +11,7 @@ import numpy as np
 from .native_rocks import native_rocks
 from .rules import RULES
 from .structures.joining import build_joined
+from .structures.parts import Structures
 from .work import Cancel, Progress, Work, native_module, run
 
 _RELATIVE = 1e-12  # how far sums of cells may be off
@@ -140,30 +141,29 @@ def _stage_volumes(
     """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
+    bodies = None if model.structures is None else _with_bodies(model.structures, until or (m + 1, 0))
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)
-    if model.structures is None:
+    if bodies is None:
         volume = work.native(
             native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
         )["volumes"]
-        bodies = None
     else:
-        bodies = _with_bodies(model.structures, until or (m + 1, 0))
         inputs = [entry.stage(m) for entry in model.rock_inputs]
         volume = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch).volumes
     for b, block in enumerate(model.blocks):
         own = block.surface - first[block.rock]
         body = block.surface - first[-1]
         if body >= 0:
-            if bodies.has_block(body):
+            if bodies is not None and bodies.has_block(body):
                 volumes[b] = volume[first_kept[-1] + body]
         elif own < kept[block.rock]:
             volumes[b] = volume[first_kept[block.rock] + own]
     return volumes
 
 
-def _with_bodies(structures, until: tuple[int, int]):
+def _with_bodies(structures: Structures, until: tuple[int, int]) -> Structures:
     """The structures with those bodies alone that came, as (surface, body), before `until`."""
     times = [
         {rock: after for rock, after in times.items() if (after, body) < until}

@@ -13,6 +13,7 @@ from .errors import NotEnoughMemory
 from .method_options import check_threads
 from .project import Project, check_project
 from .rock_input import RockInput, mesh_rock, read_rocks
+from .surface_heights import Triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
 # Bytes for each triangle of the surfaces: a little more than the dearest benchmark took, by cells
@@ -94,7 +95,10 @@ def estimate(
         if stage is not None:
             inputs = [entry.stage(stage) for entry in inputs]
         triangles = sum(map(_triangles, inputs))
-        nodes = sum(entry.surfaces.count(None) * len(entry.region[0]) for entry in inputs if entry.region)
+        nodes = 0
+        for entry in inputs:
+            if entry.region is not None:
+                nodes += len(entry.region[0]) * sum(surface is None for surface in entry.surfaces)
         structures = len(project.faults) + len(project.bodies)
         seconds = _SECONDS_PER_TRIANGLE[cells] * triangles + _SECONDS_PER_NODE * nodes
         seconds = read + seconds * _times(structures)
@@ -144,9 +148,9 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
     )
 
 
-def _plans(entry: RockInput):
+def _plans(entry: RockInput) -> list[Triangulation]:
     """The triangulation of each surface; of one that is not interpolated yet, the region's."""
-    return [entry.region if surface is None else surface for surface in entry.surfaces]
+    return [entry.planar_mesh() if surface is None else surface for surface in entry.surfaces]
 
 
 def _triangles(entry: RockInput) -> int:

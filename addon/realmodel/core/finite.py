@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import math
+from typing import SupportsFloat
 
 import numpy as np
 
 
-def is_finite(value: float) -> bool:
+def is_finite(value: SupportsFloat) -> bool:
     """Whether a number is neither infinite nor NaN, nor a whole number beyond the range of doubles."""
     try:
         return math.isfinite(value)

@@ -41,7 +41,8 @@ class Property:
         """Red, green, blue from 0 to 1, sRGB encoded; None without a color."""
         if self.color is None:
             return None
-        return tuple(int(self.color[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+        red, green, blue = (int(self.color[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+        return red, green, blue
 
 
 @dataclass
@@ -120,19 +121,25 @@ def load_library(path: str | Path) -> Library:
 
 def _read_property(table: Table) -> Property:
     table.allow_only([entry.name for entry in fields(Property)])
-    values = {"id": table.integer("id", required=True), "name": table.text("name", required=True)}
-    for key in ("rock", "age", "structure", "color", "description"):
-        if key in table:
-            values[key] = _loose_text(table, key)
-    for key in ("density", "look_scale", "hardness"):
-        values[key] = table.number(key)
-    values |= {"look": table.text("look"), "look_seed": table.integer("look_seed")}
-    return Property(**values)
+    return Property(
+        id=table.integer("id", required=True),
+        name=table.text("name", required=True),
+        rock=_loose_text(table, "rock"),
+        age=_loose_text(table, "age"),
+        structure=_loose_text(table, "structure"),
+        color=_loose_text(table, "color"),
+        description=_loose_text(table, "description"),
+        density=table.number("density"),
+        look_scale=table.number("look_scale"),
+        hardness=table.number("hardness"),
+        look=table.text("look"),
+        look_seed=table.integer("look_seed"),
+    )
 
 
 def _loose_text(table: Table, key: str) -> str | None:
     """Text that may be empty (not given) or have several lines, as descriptions."""
-    value = table.content[key]
+    value = table.content.get(key)
     if isinstance(value, str) and key != "color":
         return value or None
     return table.text(key)

@@ -83,7 +83,11 @@ class LocalHeights:
         the surface before."""
         task = self._task(work, points, nodes, threads)
         if self.over is not None:
-            below = others[self.over] if isinstance(self.over, int) else np.full(len(nodes), self.over)
+            if isinstance(self.over, int):
+                assert others is not None
+                below = others[self.over]
+            else:
+                below = np.full(len(nodes), self.over)
             return below + self.settings["thickness"]
         return self._extrapolated(task, self._result(task)).z
 
@@ -92,6 +96,7 @@ class LocalHeights:
     ) -> tuple[np.ndarray, np.ndarray]:
         """`heights` where there is a border, from all points in a window, the first of all before them; and
         (N,) bool, where they are certain. The others need a larger window."""
+        assert self.border is not None  # only such surfaces have uncertain heights
         border, box = self.border
         is_whole = all(window[k] <= box[k] and box[k + 2] <= window[k + 2] for k in (0, 1))
         of_part = getattr(native_module(), f"{self.method}_of_part")
@@ -100,10 +105,10 @@ class LocalHeights:
         return self._extrapolated(task, Result(z)).z, certain
 
     def _extrapolated(self, task: Task, result: Result) -> Result:
-        if self.hull is None and result.outside is None:
-            return result
         outside = result.outside
         if outside is None:
+            if self.hull is None:
+                return result
             outside = outside_hull(replace(task, points=self.hull))
         return replace_extrapolated(task, result, outside)
 
@@ -137,7 +142,7 @@ class LocalHeights:
         texts = from_neighbours.without_near_points(found.alone, self.nodes)
         texts += runs_away(points, np.array([found.lowest, found.highest]), self.method)
         warnings = [BuildWarning(text, "points", rock.name, name) for text in texts]
-        if found.raised:
+        if found.raised and self.least is not None:
             warnings.append(
                 raised_above(rock, number, found.raised, self.nodes, self.least, found.by, found.place)
             )
@@ -193,7 +198,7 @@ def is_local(surface: Surface) -> bool:
     if not surface.interpolated:
         return False
     method, settings = surface.method_options()
-    if METHODS[method].needs_points(settings) and not len(surface.points):
+    if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if method == "parallel":
         return settings["thickness"] is not None

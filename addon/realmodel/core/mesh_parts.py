@@ -183,7 +183,8 @@ def mesh_of_parts(
             )
         )
     meeting = np.intersect1d(*(edge_of_corner[own.corners] for own in sources))
-    return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, tuple(sources), meeting)
+    one, other = sources
+    return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, (one, other), meeting)
 
 
 def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -191,7 +192,7 @@ def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -
     weights. Whole numbers are rounded, of truth values the half counts, of anything else the nearest."""
     if values.dtype.kind not in "fiub":
         return values[np.take_along_axis(between, weights.argmax(axis=1)[:, None], axis=1)[:, 0]]
-    total = 0.0
+    total = np.zeros(())
     for corner in range(3):
         weight = weights[:, corner].reshape(-1, *[1] * (values.ndim - 1))
         there = values[between[:, corner]].astype(np.float64)

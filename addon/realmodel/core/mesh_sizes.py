@@ -83,8 +83,8 @@ def _places_at(entry, item: str, lines: list[np.ndarray], points: np.ndarray | N
         if not places:
             raise InputRefused("the rock mass has no constraints", item=item)
         return places
-    places = np.asarray(at, object)
-    return [places_of([at] if places.ndim == 1 else at, f"{item}, at")]
+    is_one = np.ndim(np.asarray(at, object)) == 1
+    return [places_of([at] if is_one else at, f"{item}, at")]
 
 
 def places_of(places, item: str, least: int = 1) -> np.ndarray:

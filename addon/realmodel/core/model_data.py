@@ -179,7 +179,7 @@ class ModelData:
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
         """(Ts,) int32: of each of `surface_triangles` the sheet of its surface that it is of, from 0."""
-        structures = np.flatnonzero(self.surface_kind)
+        structures = np.flatnonzero(self.surface_kind).tolist()
         count = sum(len(self.surface(number)[1]) for number in structures)
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 

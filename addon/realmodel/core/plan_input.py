@@ -60,7 +60,7 @@ def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
 
 def read_rings(
     region, holes=(), units: str = MODEL_UNIT, call: Callable | None = None
-) -> tuple[object, list[np.ndarray], list[str]]:
+) -> tuple[np.ndarray | list[np.ndarray], list[np.ndarray], list[str]]:
     """The region and the holes of a rock mass as checked arrays, and warnings about shapes that were left
     out.
 
@@ -82,7 +82,7 @@ def read_rings(
 
 def _as_given(
     rings: list[NamedRing], checked: list[np.ndarray], several: bool
-) -> tuple[object, list[np.ndarray]]:
+) -> tuple[np.ndarray | list[np.ndarray], list[np.ndarray]]:
     outlines = sum(not ring.hole for ring in rings)
     if outlines == 1 and not several and len(checked) == len(rings):
         return checked[0], checked[1:]
@@ -120,11 +120,12 @@ def read_sizes(sizes: Sequence[Mapping], units: str = MODEL_UNIT) -> list[Mappin
     Raises InputRefused."""
     found: list[Mapping] = []
     for number, entry in enumerate(sizes):
-        if not is_place_elsewhere(entry["at"]):
-            found.append(entry)
-            continue
         try:
-            lines = _lines_of(shapes_of(entry["at"], units), map_layer(entry["at"]))
+            shapes = shapes_of(entry["at"], units) if is_place_elsewhere(entry["at"]) else None
+            if shapes is None:
+                found.append(entry)
+                continue
+            lines = _lines_of(shapes, map_layer(entry["at"]))
         except InputRefused as error:
             raise error.within(f"size {number}") from error
         found += [{**entry, "at": line.tolist() if len(line) > 1 else line[0].tolist()} for line in lines]
@@ -157,7 +158,7 @@ def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
     found += [np.concatenate([ring, ring[:1]]) for polygon in shapes.polygons for ring in polygon.rings]
     found += [point.reshape(1, 2) for _, point in shapes.points]
     if not found:
-        raise InputRefused("there are no lines or points in it", file=layer and Path(layer.file))
+        raise InputRefused("there are no lines or points in it", file=None if layer is None else layer.file)
     return [_without_repetition(line) for line in found]
 
 

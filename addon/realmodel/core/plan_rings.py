@@ -35,7 +35,8 @@ def polygons_of(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> list[
     points: (V, 2) float64. start, end: (E,) vertex numbers; as many edges begin as end at each vertex, and no
     two cross. The polygons touch themselves and each other in vertices at most, and each is connected within.
     Raises BuildFailed where there is a hole in nothing."""
-    outlines, holes = [], []
+    outlines: list[np.ndarray] = []
+    holes: list[np.ndarray] = []
     for walk in _walks(points, start, end):
         for ring in _simple_rings(walk):
             (outlines if _twice_area(points[ring]) > 0 else holes).append(np.array(ring))
@@ -138,7 +139,9 @@ def _side(points: np.ndarray, a: int, b: int, p: int) -> int:
 
 def _simple_rings(walk: list[int]) -> list[list[int]]:
     """A closed walk divided where it comes to a vertex again."""
-    rings, path, place = [], [], {}
+    rings: list[list[int]] = []
+    path: list[int] = []
+    place: dict[int, int] = {}
     for vertex in walk:
         if vertex in place:
             begin = place[vertex]

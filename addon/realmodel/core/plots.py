@@ -35,10 +35,11 @@ def variogram(fitted: Variogram, unit: str = "", page=_PAGE, words: bool = True)
     words: whether the figures stand above, as in all charts here."""
     longest = 1.5 * fitted.range
     dots = radii = np.empty(0)
-    if fitted.lags is not None and len(fitted.lags):
-        longest = float(fitted.lags[-1]) * 1.05
-        dots = np.column_stack([fitted.lags, fitted.gamma])
-        radii = 1.6 + 2.2 * np.sqrt(fitted.pairs / fitted.pairs.max())
+    if fitted.fitted and len(fitted.experimental()[0]):
+        lags, gamma, pairs = fitted.experimental()
+        longest = float(lags[-1]) * 1.05
+        dots = np.column_stack([lags, gamma])
+        radii = 1.6 + 2.2 * np.sqrt(pairs / pairs.max())
     distance = np.linspace(longest / 400, longest, 400)  # not from 0, where a nugget makes a step
     curve = np.column_stack([distance, fitted.semivariance(distance)])
     highest = max(curve[:, 1].max(), dots[:, 1].max() if len(dots) else 0.0) or 1.0

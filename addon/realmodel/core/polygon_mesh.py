@@ -89,7 +89,7 @@ def of_blocks(
     numbers = _numbers(model, compartments)
     if numbers is None:
         return [None if found is None else found[0] for found in shapes]
-    made = []
+    made: list[PolygonMesh | None] = []
     for block, found in enumerate(shapes):
         if found is None:
             made.append(None)
@@ -154,6 +154,7 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
     vertices, edges, corners = 0, 0, 0
     found: dict[str, list] = {key: [] for key in ("offsets", "corners", "edges", "corner_edges")}
     for part, _ in given:
+        assert part.edges is not None and part.corner_edges is not None  # of_cells has made it
         found["offsets"].append(part.offsets[:-1] + corners)
         found["corners"].append(part.corners + vertices)
         found["edges"].append(part.edges + vertices)
@@ -163,14 +164,19 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
     found["offsets"].append(np.array([corners]))
     return PolygonMesh(
         coordinates=np.concatenate([part.coordinates for part, _ in given]),
-        **{key: np.concatenate(arrays).astype(np.int32) for key, arrays in found.items()},
+        offsets=np.concatenate(found["offsets"]).astype(np.int32),
+        corners=np.concatenate(found["corners"]).astype(np.int32),
+        edges=np.concatenate(found["edges"]).astype(np.int32),
+        corner_edges=np.concatenate(found["corner_edges"]).astype(np.int32),
         face_surface=np.concatenate([part.face_surface for part, _ in given]),
         face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
-        bedding=Bedding.joined([part.bedding for part, _ in given]),
+        bedding=Bedding.joined([part.bedding for part, _ in given if part.bedding is not None]),
     )
 
 
-def _shells(model, origin, shrink, threads, cancel, label, count) -> list:
+def _shells(
+    model, origin, shrink, threads, cancel, label, count
+) -> list[tuple[PolygonMesh, np.ndarray] | None]:
     """The mesh around the cells of each label, and of each polygon the face of the model."""
 
     def task(work):
@@ -193,7 +199,8 @@ def _shells(model, origin, shrink, threads, cancel, label, count) -> list:
         return shells, bedding_of(work, model, faces, is_second, threads)
 
     shells, bedding = run(task, cancel=cancel)
-    found, corner, polygon = [], 0, 0
+    found: list[tuple[PolygonMesh, np.ndarray] | None] = []
+    corner, polygon = 0, 0
     for arrays in shells:
         if arrays is None:
             found.append(None)

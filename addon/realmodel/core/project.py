@@ -34,20 +34,8 @@ from .rules import DEFAULT_RULE
 from .schema import ROCK, SURFACE
 from .structures.check import check_structures
 from .structures.entries import Body, Fault
-from .toml_table import TomlDocument
+from .toml_table import Source
 from .units import METERS, MODEL_UNIT
-
-
-@dataclass(frozen=True)
-class Source:
-    """The place of a rock mass or a surface in a project file."""
-
-    document: TomlDocument
-    path: tuple
-
-    def line(self, key: str | None = None) -> int | None:
-        """The line of one key ("variogram.range" for a part of one), or of the whole table."""
-        return self.document.line(self.path if key is None else (*self.path, *key.split(".")))
 
 
 @dataclass
@@ -117,6 +105,11 @@ class Surface:
             else (self.points if isinstance(self.points, PointFile) else None)
         )
 
+    def point_array(self) -> np.ndarray:
+        """(P, 3) float64 the points of a surface that is read; none where it has none."""
+        assert not isinstance(self.points, (str, Path, PointFile))
+        return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
+
     def shape_source(self) -> tuple[Path | None, int | None]:
         """The source of the shape, for messages: its file, or its line in the project file."""
         if self.shape_file is not None:
@@ -173,6 +166,7 @@ class Rock:
 
     def rings(self) -> list[np.ndarray]:
         """The rings (N, 2) of a region of arrays, outlines and holes alike; they count even-odd."""
+        assert self.region is not None and not isinstance(self.region, (str, Path, MapLayer))
         outlines = self.region if is_several(self.region) else [self.region]
         return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
 
@@ -447,9 +441,10 @@ def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
     try:
         check_method(surface.method or DEFAULT_METHOD)
         if no_points and surface.needs_points:
-            option = METHODS[surface.method].instead_of_points
+            method, _ = surface.method_options()
+            option = METHODS[method].instead_of_points
             either = f", or {option} = ..." if option else ""
-            raise refuse(f"method '{surface.method}' needs points", "method", f"add points = ...{either}")
+            raise refuse(f"method '{method}' needs points", "method", f"add points = ...{either}")
         surface.method_options()
     except OptionRefused as error:
         raise refuse(error.what, error.option, error.advice) from error

@@ -16,11 +16,11 @@ from .method_options import OptionRefused, checked
 from .methods import OPTIONS
 from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
-from .project import Project, Rock, Source, Surface, check_project, is_file
+from .project import Project, Rock, Surface, check_project, is_file
 from .schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
 from .setting import Settings
 from .structures.entries import Body, Fault
-from .toml_table import Table, TomlDocument
+from .toml_table import Source, Table, TomlDocument
 from .units import METERS, MODEL_UNIT
 
 FORMAT = 1
@@ -102,7 +102,7 @@ def _read_place(table: Table, entry, number: int, folder: Path):
     if isinstance(at, dict):
         keys = Table(table.document, at, (*table.path, "size", number, "at"), table.item)
         return {**entry, "at": _layer_table(keys, folder)}
-    if is_place_elsewhere(at) and not is_wkt(at):
+    if isinstance(at, str) and is_place_elsewhere(at) and not is_wkt(at):
         return {**entry, "at": folder / at}
     return entry
 
@@ -133,7 +133,7 @@ def _read_layer(table: Table, key: str, given, folder: Path):
     if isinstance(given, str) and is_wkt(given):
         return given
     if not isinstance(given, dict):
-        return folder / table.text(key)
+        return folder / table.text(key, required=True)
     return _layer_table(_inner(table, key, given), folder)
 
 
@@ -148,11 +148,11 @@ def _read_constraints(table: Table, folder: Path) -> list:
     advice = 'write constraints = ["rivers.geojson", [[x, y], [x, y], ...], [x, y]]'
     if not isinstance(given, list):
         raise table.refuse("'constraints' must be a list of files, lines and points", "constraints", advice)
-    found = []
+    found: list[str | Path | MapLayer | np.ndarray] = []
     for number, entry in enumerate(given):
         inner = Table(table.document, {"file": entry}, (*table.path, "constraints", number), table.item)
         if isinstance(entry, str):
-            found.append(entry if is_wkt(entry) else folder / inner.text("file"))
+            found.append(entry if is_wkt(entry) else folder / inner.text("file", required=True))
         elif isinstance(entry, dict):
             found.append(_layer_table(Table(table.document, entry, inner.path, table.item), folder))
         elif isinstance(entry, list) and entry and all(is_number(value) for value in entry):
@@ -169,7 +169,7 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     if given is None:
         return None
     if isinstance(given, str):
-        return Boreholes(folder / table.text("boreholes"))
+        return Boreholes(folder / table.text("boreholes", required=True))
     if not isinstance(given, dict):
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
@@ -220,28 +220,32 @@ def _read_surface(table: Table, folder: Path) -> Surface:
 
 def _shape_files(table: Table, folder: Path) -> dict:
     """The files of points, of a trace and of a mesh that a table names, with how they are read."""
-    files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
+    files: dict[str, object] = {
+        key: folder / table.text(key, required=True) for key in ("points", "mesh") if key in table
+    }
     if "trace" in table:
         files["trace"] = _read_trace(table, folder)
     reading = {key: table.content[key] for key in READING if key in table}
-    if list(files) == ["mesh"]:
+    mesh = files.get("mesh")
+    if list(files) == ["mesh"] and isinstance(mesh, Path):
         said = {key: reading.pop(key) for key in MESH_READING if key in reading}
         if said:
-            files["mesh"] = MeshFile(files["mesh"], **said)
-    read = next((key for key in ("points", "trace") if isinstance(files.get(key), Path)), None)
-    if reading and read is None:
-        key = next(iter(reading))
-        raise table.refuse(f"'{key}' needs a file of points", key)
-    if reading:
-        files[read] = PointFile(files[read], **reading)
-    return files
+            files["mesh"] = MeshFile(mesh, **said)
+    if not reading:
+        return files
+    for key in ("points", "trace"):
+        file = files.get(key)
+        if isinstance(file, Path):
+            return {**files, key: PointFile(file, **reading)}
+    key = next(iter(reading))
+    raise table.refuse(f"'{key}' needs a file of points", key)
 
 
 def _read_trace(table: Table, folder: Path):
     """A file, well-known text, one line, or several; z of points without one is NaN."""
     given = table.content["trace"]
     if isinstance(given, str):
-        return given if is_wkt(given) else folder / table.text("trace")
+        return given if is_wkt(given) else folder / table.text("trace", required=True)
 
     def refuse(what: str, *at: int):
         where = Table(table.document, {}, (*table.path, "trace", *at), table.item)

@@ -18,6 +18,7 @@ from .atomic import Outputs
 from .errors import UsageError
 from .library import Library, Property
 from .meshers import DEFAULT_MESHER
+from .point_file import PointFile
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
 from .rules import DEFAULT_RULE
@@ -140,17 +141,18 @@ def _shape_file(rock: Rock, surface: Surface, beside, write) -> tuple[str, str] 
     if surface.input_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
     if surface.interpolated:
-        if surface.points is None or not len(surface.points):
+        points = surface.point_array()
+        if not len(points):
             return None
         target = beside(rock.name, surface.name, ending=".csv")
-        return "points", write(target, points_text(surface.points))
+        return "points", write(target, points_text(points))
     target = beside(rock.name, surface.name, ending=".off")
     return "mesh", write(target, off_text(surface.vertices, surface.triangles))
 
 
 def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]:
     given = surface
-    values = {"name": given.name}
+    values: dict[str, object] = {"name": given.name}
     if shape is not None:
         values[shape[0]] = shape[1]
     # for a ready mesh the method is only for its continuation to faults
@@ -166,16 +168,18 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
 
 
 def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]:
-    if entry.input_file is not None or (kind == "fault" and isinstance(entry.trace, str)):
+    trace = entry.trace if isinstance(entry, Fault) else None
+    if entry.input_file is not None or isinstance(trace, str):
         raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
     keys = ("youngest", "ends_at", "dies_out", "rocks")
     keys = keys if kind == "fault" else ("after", "property", "void", "rock")
     values = {key: getattr(entry, key) or None for key in keys}
-    if kind == "fault" and entry.trace is not None:
+    if isinstance(entry, Fault) and trace is not None:
+        assert not isinstance(trace, (Path, PointFile))  # it has no input file
         own = {key: getattr(entry, key) for key in ("dip", "dip_direction", "elevation")}
         lines = _lines({"name": entry.name} | own | {"extend": entry.extend or None} | values)
-        several = len(entry.trace) and np.ndim(entry.trace[0]) > 1
-        return [*lines, f"trace = {_rings_text(entry.trace) if several else _ring_text(entry.trace)}"]
+        several = len(trace) and np.ndim(trace[0]) > 1
+        return [*lines, f"trace = {_rings_text(trace) if several else _ring_text(trace)}"]
     if entry.vertices is None:
         raise UsageError(
             f"{kind} '{entry.name}': no surface is fitted to its points yet; build the model first"

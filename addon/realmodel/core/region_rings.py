@@ -92,7 +92,7 @@ def rings_of_shapes(shapes: Shapes) -> list[NamedRing]:
     """The rings of polygons that were read."""
     rings = []
     parts = Counter(shape.item for shape in shapes.polygons)
-    part = Counter()
+    part: Counter[str | None] = Counter()
     for polygon, shape in enumerate(shapes.polygons):
         item = shape.item or ("outline" if len(shapes.polygons) == 1 else f"polygon {polygon + 1}")
         part[shape.item] += 1

@@ -61,18 +61,18 @@ def regular_cells(
 ) -> RegularCells:
     """The volume of each block in each cell of a grid that covers the model; its corners are multiples of the
     size. size: as of `checked_size`. step(share) is called after each block. Raises UsageError."""
-    size = checked_size(model, size)
-    origin, counts = frame_of(model, size)
+    cell = checked_size(model, size)
+    origin, counts = frame_of(model, cell)
     cells = int(np.prod(counts, dtype=np.float64))
     if cells * max(len(model.blocks), 1) > MOST_CELLS:
         raise UsageError(
-            f"cells of {size.tolist()} give {cells} cells for {len(model.blocks)} blocks; take larger ones"
+            f"cells of {cell.tolist()} give {cells} cells for {len(model.blocks)} blocks; take larger ones"
         )
     nx, ny, nz = counts
     volumes = np.zeros((len(model.blocks), nz, ny, nx))
     for block in range(len(model.blocks)):
         step(block / len(model.blocks))
-        triangles = (_triangles(model, block) - origin) / size  # in cells
+        triangles = (_triangles(model, block) - origin) / cell  # in cells
         for axis in range(3):
             triangles = _divided(triangles, axis)
         if not len(triangles):
@@ -89,7 +89,7 @@ def regular_cells(
         volumes[block] = own
     # volumes below this are rounding errors of empty cells
     volumes[np.abs(volumes) < 1e-12] = 0.0
-    return RegularCells(origin, size, counts, np.maximum(volumes, 0.0) * size.prod())
+    return RegularCells(origin, cell, counts, np.maximum(volumes, 0.0) * cell.prod())
 
 
 def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]:
@@ -98,7 +98,8 @@ def frame_of(model, size: np.ndarray) -> tuple[np.ndarray, tuple[int, int, int]]
         return np.zeros(3), (1, 1, 1)
     low = np.floor(model.vertices.min(axis=0) / size)
     high = np.ceil(model.vertices.max(axis=0) / size)
-    return low * size, tuple(int(n) for n in np.maximum(high - low, 1))
+    nx, ny, nz = (int(n) for n in np.maximum(high - low, 1))
+    return low * size, (nx, ny, nz)
 
 
 def _triangles(model, block: int) -> np.ndarray:
@@ -167,26 +168,26 @@ class PlanGrids:
 def plan_grids(model, size: float | Sequence[float] | None = None) -> PlanGrids:
     """The plan grids, exact at the centers of cells. size: as of `checked_size`; the height is ignored.
     Raises UsageError."""
-    size = checked_size(model, size)
-    origin, (nx, ny, _) = frame_of(model, size)
+    cell_size = checked_size(model, size)
+    origin, (nx, ny, _) = frame_of(model, cell_size)
     if float(nx) * ny * max(len(model.blocks), 1) > MOST_CELLS:
-        raise UsageError(f"cells of {size[:2].tolist()} give {nx * ny} cells; take larger ones")
+        raise UsageError(f"cells of {cell_size[:2].tolist()} give {nx * ny} cells; take larger ones")
     thickness = np.zeros((len(model.blocks), ny * nx))
     upper = np.full((len(model.blocks), ny * nx), -np.inf)
     for block in range(len(model.blocks)):
-        triangles = (_triangles(model, block) - origin) / size
+        triangles = (_triangles(model, block) - origin) / cell_size
         for cell, z, sign in _over_centers(triangles, nx, ny):
             np.add.at(thickness[block], cell, z * sign)
             np.maximum.at(upper[block], cell, z)
-    upper = np.where(np.isfinite(upper), upper * size[2] + origin[2], np.nan)
+    upper = np.where(np.isfinite(upper), upper * cell_size[2] + origin[2], np.nan)
     top = np.full(ny * nx, np.nan) if not len(upper) else np.fmax.reduce(upper, axis=0)
-    north = origin[1] + ny * size[1]
+    north = origin[1] + ny * cell_size[1]
     shape = (ny, nx)
     return PlanGrids(
         (float(origin[0]), float(north)),
-        (float(size[0]), float(size[1])),
+        (float(cell_size[0]), float(cell_size[1])),
         top.reshape(shape)[::-1],
-        np.maximum(thickness * size[2], 0.0).reshape(-1, *shape)[:, ::-1],
+        np.maximum(thickness * cell_size[2], 0.0).reshape(-1, *shape)[:, ::-1],
         upper.reshape(-1, *shape)[:, ::-1],
     )
 
@@ -216,16 +217,16 @@ def _over_centers(triangles: np.ndarray, nx: int, ny: int):
         corners = triangles[of]
         sign = np.sign(twice[of])
         inside = np.ones(len(of), bool)
-        weights = []
+        sides = []
         for k in range(3):
             p, q = corners[:, (k + 1) % 3, :2], corners[:, (k + 2) % 3, :2]
             turned = ((p[:, 0] > q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] > q[:, 1])))[:, None]
             p, q = np.where(turned, q, p), np.where(turned, p, q)
             u, v = q - p, center - p
             side = np.where(turned[:, 0], -1.0, 1.0) * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-            weights.append(side)
+            sides.append(side)
             # on the edge: of the triangle to the left of it as it runs from its lower end
             inside &= (side * sign > 0) | ((side == 0) & ((sign > 0) != turned[:, 0]))
-        weights = np.stack(weights, axis=1)[inside]
+        weights = np.stack(sides, axis=1)[inside]
         z = (weights * corners[inside, :, 2]).sum(axis=1) / weights.sum(axis=1)
         yield (y * nx + x)[inside], z, sign[inside]

@@ -38,20 +38,22 @@ class Residuals:
         return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
 
 
-def _heights(model: ModelData, number: int, at: int, entry, points: np.ndarray) -> np.ndarray:
+def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
     """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
     if model.structures is None:
         return at_places(*model.surface(number), points[:, :2], model.threads)
-    structure = entry.structure
+    entry = model.rock_inputs[rock]
+    structure = entry.divided()
 
     def task(work: Work) -> np.ndarray:
         sides = point_sides(work, points, entry, at, model.threads).sides
         active = structure.faults.active(at)
         found = np.full(len(points), np.nan)
-        for row, sheets in zip(structure.compartments, structure.sheets, strict=True):
+        for compartment, row in enumerate(structure.compartments):
             own = ((sides == row) | ~active).all(axis=1)
             if own.any():
-                found[own] = at_places(*sheets[at], points[own, :2], model.threads)
+                vertices, triangles = structure.sheet(compartment, at)
+                found[own] = at_places(vertices, triangles, points[own, :2], model.threads)
         return found
 
     return run(task)
@@ -60,11 +62,11 @@ def _heights(model: ModelData, number: int, at: int, entry, points: np.ndarray) 
 def residuals(model: ModelData) -> list[Residuals]:
     """The residuals of each surface of a model that was interpolated from points, in the model's order."""
     found, number = [], 0
-    for rock, entry in zip(model.project.rocks, model.rock_inputs or model.project.rocks, strict=True):
+    for r, rock in enumerate(model.project.rocks):
         for at, surface in enumerate(rock.surfaces):
-            points = surface.points
-            if points is not None and len(points) and number < len(model.surface_names):
-                there = _heights(model, number, at, entry, np.asarray(points, np.float64))
+            points = surface.point_array()
+            if len(points) and number < len(model.surface_names):
+                there = _heights(model, number, at, r, points)
                 known = np.isfinite(there)
                 values = points[known, 2] - there[known]
                 found.append(Residuals(rock.name, surface.name, points[known], values, int((~known).sum())))

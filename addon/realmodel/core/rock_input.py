@@ -64,7 +64,7 @@ class RockInput:
     """
 
     rock: Rock
-    surfaces: list[Triangulation]
+    surfaces: list[Triangulation | None]
     region: Triangulation | None = None
     interpolations: list[Interpolation | None] = field(default_factory=list)
     file_faces: list[np.ndarray | None] = field(default_factory=list)
@@ -74,6 +74,28 @@ class RockInput:
     structure: RockStructure | None = None
     torn: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
+
+    def surface(self, number: int) -> Triangulation:
+        """The triangulation of a surface that is a ready mesh or interpolated already."""
+        surface = self.surfaces[number]
+        assert surface is not None
+        return surface
+
+    def planar_mesh(self) -> Triangulation:
+        """The triangulation of the region of a rock mass that has one and is meshed."""
+        assert self.region is not None
+        return self.region
+
+    def interpolation(self, number: int) -> Interpolation:
+        """The result for a surface that is interpolated."""
+        result = self.interpolations[number]
+        assert result is not None
+        return result
+
+    def divided(self) -> RockStructure:
+        """The structure of a rock mass with faults, once its compartments are found."""
+        assert self.structure is not None
+        return self.structure
 
     def native(self) -> tuple:
         """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
@@ -86,8 +108,9 @@ class RockInput:
         gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
         surfaces = self.rock.surfaces[: m + 1]
         for number, surface in enumerate(surfaces):
-            if self.surfaces[number] is not None and gone.intersection(named_surfaces(self.rock, number)):
-                vertices, triangles = self.surfaces[number]
+            shape = self.surfaces[number]
+            if shape is not None and gone.intersection(named_surfaces(self.rock, number)):
+                vertices, triangles = shape
                 surfaces[number] = replace(
                     surface,
                     points=None,
@@ -246,9 +269,7 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
 
 def _density_points(rock: Rock) -> np.ndarray:
     """(P, 2) the points of all surfaces of a rock mass, which decide an automatic edge length."""
-    given = [
-        np.asarray(s.points, float)[:, :2] for s in rock.surfaces if s.interpolated and s.points is not None
-    ]
+    given = [surface.point_array()[:, :2] for surface in rock.surfaces if surface.interpolated]
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
@@ -277,10 +298,11 @@ def interpolate_rock(
     attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
     these, and looks for points on wrong sides, too."""
     if keep is not as_it_is and entry.region is not None:
-        entry.region = tuple(map(keep, entry.region))
+        nodes, triangles = entry.region
+        entry.region = keep(nodes), keep(triangles)
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
-        nodes, triangles = entry.region
+        nodes, triangles = entry.planar_mesh()
         plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
         for number in flat:
             entry.surfaces[number] = plan
@@ -291,7 +313,8 @@ def interpolate_rock(
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number, threads)
         if keep is not as_it_is:
-            entry.surfaces[number] = tuple(map(keep, entry.surfaces[number]))
+            vertices, triangles = entry.surface(number)
+            entry.surfaces[number] = keep(vertices), keep(triangles)
             entry.interpolations[number] = None
             del entry.attributes[number]
     if not flat:

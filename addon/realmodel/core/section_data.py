@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import builtins
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -61,7 +62,7 @@ class SectionData:
         doubled = np.add.reduceat(np.cross(spokes, spokes[following]), self.offsets[:-1], axis=0)
         return np.linalg.norm(doubled, axis=1) / 2
 
-    @property
+    @builtins.property  # a field of this class is called property
     def area(self) -> float:
         """The area of all polygons, model units squared."""
         return float(self.polygon_areas.sum())

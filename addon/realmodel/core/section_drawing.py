@@ -112,12 +112,13 @@ def flattened(section: SectionData) -> np.ndarray:
 def flat_of(section: SectionData, points: np.ndarray) -> np.ndarray:
     """(N, 2) points (N, 3) on the plane of a section as it is drawn."""
     right, up = directions(section)
-    if right is None:
+    if right is None or up is None:
         return points[:, :2]
     if is_vertical(section):
         return np.column_stack([points @ right - (section.vertices @ right).min(), points[:, 2]])
     axes = np.column_stack([right, up])
-    return (points - section.plane[0]) @ axes - ((section.vertices - section.plane[0]) @ axes).min(axis=0)
+    point, _ = plane_of(section)
+    return (points - point) @ axes - ((section.vertices - point) @ axes).min(axis=0)
 
 
 def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:
@@ -188,11 +189,16 @@ def block_outlines(section: SectionData, flat: np.ndarray, block: int) -> list[n
     return rings
 
 
-def _unit_normal(section: SectionData) -> np.ndarray:
+def plane_of(section: SectionData) -> tuple[np.ndarray, np.ndarray]:
+    """The point and the unit normal of the plane of a section. Raises UsageError where it has none."""
     if section.plane is None:
         raise UsageError("only sections by a plane and fences are drawn")
-    normal = np.asarray(section.plane[1], np.float64)
-    return normal / np.linalg.norm(normal)
+    point, normal = (np.asarray(each, np.float64) for each in section.plane)
+    return point, normal / np.linalg.norm(normal)
+
+
+def _unit_normal(section: SectionData) -> np.ndarray:
+    return plane_of(section)[1]
 
 
 def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | None]:
@@ -234,7 +240,7 @@ def _axis_names(section: SectionData) -> tuple[str, str]:
         names = ("East (x)", "North (y)")
     else:
         names = ("Distance along strike", "Distance up dip")
-    return tuple(f"{name} ({section.unit})" for name in names)
+    return f"{names[0]} ({section.unit})", f"{names[1]} ({section.unit})"
 
 
 def _end_texts(section: SectionData, flat: np.ndarray) -> list[str]:

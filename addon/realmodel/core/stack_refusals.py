@@ -35,16 +35,17 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
         )
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
         lowest = f", whose lowest point is {place_text(place)}" if place else ""
-        advice = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
+        lower = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
         if place and (beyond := _beyond_its_points(entry, place[2])):
-            advice = f"{advice}; {beyond}"
+            lower = f"{lower}; {beyond}"
         return InputRefused(
-            what + lowest, file=file, line=line, item=rock_item(rock), advice=advice, place=place
+            what + lowest, file=file, line=line, item=rock_item(rock), advice=lower, place=place
         )
     surface = rock.surfaces[number]
     file, line = surface.shape_source()
     items = tuple(int(i) for i in error.items)
     named = _triangles(items, entry.file_faces[number])
+    what, advice = str(error), None
     if error.kind == "vertical_triangle":
         verb = "is" if len(items) == 1 else "are"
         what, advice = (
@@ -58,8 +59,6 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
             f"{named} overlap in plan{near}",
             f"{_ONE_HEIGHT}: remove the overhang or the double layer",
         )
-    else:
-        what, advice = str(error), None
     return InputRefused(
         what,
         file=file,

@@ -153,8 +153,8 @@ def _older_points_above(
     work: Work, rock: Rock, number: int, shape: Triangulation, threads: int
 ) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
-    points = rock.surfaces[number - 1].points
-    if points is None or not len(points):
+    points = rock.surfaces[number - 1].point_array()
+    if not len(points):
         return []
     z = heights_at(work, shape, points[:, :2], threads)
     return listed(rock, number - 1, points[:, 2] - z, "above", number)

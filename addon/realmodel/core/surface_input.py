@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .errors import InputRefused, place_text
 from .interpolation import checked_points
-from .mapped_arrays import Gather, Keep, MappedArrays, in_memory, in_pieces
+from .mapped_arrays import Gather, MappedArrays, in_memory, in_pieces
 from .project import Rock, Surface, surface_item
 from .readers import read_mesh, read_point_file
 from .readers.text import Step, no_step
@@ -30,8 +31,9 @@ class ReadSurface:
     faces: np.ndarray | None
     warnings: list[str]
 
-    def with_arrays(self, change: Keep) -> ReadSurface:
-        """The same, with each array replaced by `change` of it."""
+    def with_arrays(self, change: Callable[[Any], Any]) -> ReadSurface:
+        """The same, with `change` of each array in its place: a reference to it (MappedArrays.place), or
+        the array of such a reference."""
         surface, shape = self.surface, self.shape
         faces = None if self.faces is None else change(self.faces)
         if shape is None:
@@ -77,7 +79,8 @@ class SurfaceInput:
 
     def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
-        points, warnings = surface.points, []
+        points: object = surface.points
+        warnings: list[str] = []
         if surface.point_file is not None:
             points, warnings = read_point_file(surface.point_file, self.units, step, gather)
         if self.met is not None:
@@ -85,22 +88,23 @@ class SurfaceInput:
             points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
         if points is None and surface.needs_points:
             raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
-        if points is None or (not len(points) and not surface.needs_points):
+        if points is None or (isinstance(points, Sized) and not len(points) and not surface.needs_points):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
         # checked_points may return another array with the same values
         is_kept = surface.point_file is not None or self.met is not None
-        return points if is_kept else checked, warnings
+        return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
     def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface
-        if surface.mesh is None:
+        if surface.mesh_file is None:
             return *checked_triangulation(surface.vertices, surface.triangles), None, []
+        file = surface.mesh_file.file
         if arrays is None:
-            mesh = read_mesh(surface.input_file, step)
+            mesh = read_mesh(file, step)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
         else:
-            mesh = read_mesh(surface.input_file, step, arrays.rows)
+            mesh = read_mesh(file, step, arrays.rows)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
 
@@ -112,7 +116,11 @@ Reader = Callable[[Work, list[SurfaceInput]], Iterable[tuple[int, ReadSurface]]]
 def read_each(work: Work, surfaces: list[SurfaceInput]) -> Iterator[tuple[int, ReadSurface]]:
     """Reads surfaces one after another."""
     for number, surface in enumerate(surfaces):
-        yield number, surface.read(lambda share, number=number: work.step((number + share) / len(surfaces)))
+
+        def step(share: float, number: int = number) -> None:
+            work.step((number + share) / len(surfaces))
+
+        yield number, surface.read(step)
         work.step((number + 1) / len(surfaces))
 
 

@@ -50,7 +50,7 @@ class SurfaceSet:
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
-        interfaces = [shape for entry in self.rock_inputs for shape in entry.surfaces]
+        interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
         return [*interfaces, *self.structures.shapes][number]
 
     @property
@@ -77,9 +77,10 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     that no fault displaces has one."""
     found = [np.zeros(0, np.int64)]
     for entry in inputs:
-        for number, (_, triangles) in enumerate(entry.surfaces):
-            sizes = [len(triangles)]
-            if entry.structure is not None:
+        for number in range(len(entry.surfaces)):
+            if entry.structure is None:
+                sizes = [len(entry.surface(number)[1])]
+            else:
                 sizes = [len(own) for _, own in entry.structure.distinct(number)]
             found.append(np.repeat(np.arange(len(sizes)), sizes))
     return np.concatenate(found).astype(np.int32)

@@ -6,9 +6,11 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Literal, overload
 
 from .errors import InputRefused
 from .finite import is_finite
@@ -45,6 +47,18 @@ class TomlDocument:
                 return self._lines[path]
             path = path[:-1]
         return None
+
+
+@dataclass(frozen=True)
+class Source:
+    """The place of a table in a file: of a rock mass, a surface, a fault or a body in a project file."""
+
+    document: TomlDocument
+    path: tuple
+
+    def line(self, key: str | None = None) -> int | None:
+        """The line of one key ("variogram.range" for a part of one), or of the whole table."""
+        return self.document.line(self.path if key is None else (*self.path, *key.split(".")))
 
 
 def _text_of(file: Path) -> str:
@@ -87,7 +101,7 @@ class Table:
         line = self.document.line(path)
         return InputRefused(what, file=self.document.file, line=line, item=self.item, advice=advice)
 
-    def allow_only(self, known: Sequence[str]) -> None:
+    def allow_only(self, known: Collection[str]) -> None:
         for key in self.content:
             if key not in known:
                 near = difflib.get_close_matches(key, known, n=1)
@@ -101,6 +115,12 @@ class Table:
             raise self.refuse(f"key '{key}' is missing", advice=f"add {key} = ...")
         return None
 
+    @overload
+    def text(self, key: str, required: Literal[True]) -> str: ...
+
+    @overload
+    def text(self, key: str, required: bool = False) -> str | None: ...
+
     def text(self, key: str, required: bool = False) -> str | None:
         value = self._value(key, required)
         if value is None:
@@ -112,6 +132,12 @@ class Table:
         if any(ord(c) < 32 for c in value):
             raise self.refuse(f"'{key}' holds a line break or another control character", key)
         return value
+
+    @overload
+    def integer(self, key: str, required: Literal[True]) -> int: ...
+
+    @overload
+    def integer(self, key: str, required: bool = False) -> int | None: ...
 
     def integer(self, key: str, required: bool = False) -> int | None:
         value = self._value(key, required)

@@ -106,6 +106,11 @@ class Variogram:
     def fitted(self) -> bool:
         return self.lags is not None
 
+    def experimental(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`lags`, `gamma` and `pairs` of a fitted variogram."""
+        assert self.lags is not None and self.gamma is not None and self.pairs is not None
+        return self.lags, self.gamma, self.pairs
+
     def semivariance(self, distance) -> np.ndarray:
         """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
         distance = np.asarray(distance, np.float64)
@@ -154,14 +159,15 @@ def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = Fal
     """Warnings about a fitted variogram of little significance, as sentences. has_trend: heights far from
     points follow a trend."""
     warnings = []
-    pairs = int(variogram.pairs.sum())
+    lags, _, counts = variogram.experimental()
+    pairs = int(counts.sum())
     if pairs < _FEW_PAIRS:
         number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
         warnings.append(
             f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
             "hand, or use the method 'plane' or 'tin'"
         )
-    elif variogram.semivariance(variogram.lags[0]) > _PURE_NUGGET * variogram.sill:
+    elif variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(
             "the fitted variogram is nearly pure nugget: neighboring points differ almost as much as "
             "distant ones, so kriging gives hardly more than local means; check the points for errors"

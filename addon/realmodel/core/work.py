@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from . import missing_native
 from .errors import BuildFailed, Cancelled
@@ -179,7 +179,8 @@ class Job:
         self._work = Work()
         self._ended = threading.Event()
         self._leaves_at: float | None = None  # when a stopped task is no longer waited for
-        self._result = self._error = None
+        self._result: Any = None
+        self._error: BaseException | None = None
         _leaving[:] = [thread for thread in _leaving if thread.is_alive()]
         # not a daemon: at its end Python must not tear native work out of its thread
         self._thread = threading.Thread(
@@ -311,7 +312,7 @@ def native_module():
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
     try:
         with _waiting_threads_sleep():
-            from .. import _native
+            from .. import _native  # type: ignore[attr-defined]  # compiled: it has no stub
     except ImportError as error:
         raise BuildFailed(missing_native.explanation(error)) from error
     return _native

@@ -31,8 +31,8 @@ def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarn
     """
     surfaces = rock.surfaces
     picks = _Picks(rock)
-    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].points)]
-    points = {n: np.asarray(surfaces[n].points, np.float64) for n in known}
+    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].point_array())]
+    points = {n: surfaces[n].point_array() for n in known}
     places = dict(zip(known, places_of(list(points.values())), strict=True)) if known else {}
     found: dict[int, WrongPoints] = {}
     holes: dict[int, list[str]] = {}
@@ -58,16 +58,16 @@ def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarn
     return [_warning(rock, older, wrong, holes[older]) for older, wrong in found.items()]
 
 
-def _may_be_picks(points) -> bool:
-    return points is not None and 0 < len(points) <= _MOST and not is_raster(np.asarray(points))
+def _may_be_picks(points: np.ndarray) -> bool:
+    return 0 < len(points) <= _MOST and not is_raster(points)
 
 
 def _warning(rock: Rock, older: int, wrong: WrongPoints, holes: list[str]) -> BuildWarning:
     surface = rock.surfaces[older]
     names = number_list([f"'{rock.surfaces[younger].name}'" for younger in wrong.others])
     text = (
-        f"{len(wrong.items)} of its {len(surface.points)} points lie above those of {names} at the same "
-        f"place, the farthest by {wrong.by:.4g}: point {wrong.worst} at {place_text(wrong.place)}"
+        f"{len(wrong.items)} of its {len(surface.point_array())} points lie above those of {names} at the "
+        f"same place, the farthest by {wrong.by:.4g}: point {wrong.worst} at {place_text(wrong.place)}"
     )
     if holes:
         text += f"; holes {number_list(dict.fromkeys(holes))}"
@@ -87,8 +87,8 @@ class _Picks:
                 for name, place in picks
                 if name == surface.name
             ]
-            if met and surface.points is not None:
-                rows = {tuple(place): row for row, place in enumerate(np.asarray(surface.points).tolist())}
+            if met:
+                rows = {tuple(place): row for row, place in enumerate(surface.point_array().tolist())}
                 self._of[number] = {hole: rows[place] for hole, place in met if place in rows}
 
     def shared(self, first: int, second: int) -> tuple[np.ndarray, np.ndarray, list[str]]:

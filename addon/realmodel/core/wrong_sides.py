@@ -33,9 +33,7 @@ def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> l
     """
     surfaces = entry.rock.surfaces
     points = {
-        number: surfaces[number].points
-        for number in numbers
-        if surfaces[number].points is not None and len(surfaces[number].points)
+        number: surfaces[number].point_array() for number in numbers if len(surfaces[number].point_array())
     }
     warnings = []
     found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock), threads)
@@ -64,10 +62,11 @@ def below_older(
     points = {number: own for number, own in points.items() if number > 0}
     beneath = {number: _Beneath(len(own)) for number, own in points.items()}
     for older in range(max(points, default=0)):
-        if shapes[older] is None:
+        shape = shapes[older]
+        if shape is None:
             continue
         younger = [number for number in points if number > older]
-        z = heights_at(work, shapes[older], np.concatenate([points[n][:, :2] for n in younger]), threads)
+        z = heights_at(work, shape, np.concatenate([points[n][:, :2] for n in younger]), threads)
         ends = np.cumsum([len(points[number]) for number in younger])
         for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
             beneath[number].add(own, older, RULES[surfaces[older].rule])
@@ -75,7 +74,7 @@ def below_older(
     for number, below in beneath.items():
         surface = surfaces[number]
         floor = below.firm if RULES[surface.rule].cuts else below.top
-        if number in off and shapes[number - 1] is not None:
+        if number in off and below.last is not None and shapes[number - 1] is not None:
             floor.raise_to(below.last, number - 1)
         found[number] = floor.z - points[number][:, 2], floor.surface
     return found
@@ -168,6 +167,6 @@ class WrongPoints:
 def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
     """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
     others: the numbers of these surfaces, one or (N,)."""
-    points = rock.surfaces[number].points
+    points = rock.surfaces[number].point_array()
     found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
     return [] if found is None else [found.warning(rock, number, len(points), side)]

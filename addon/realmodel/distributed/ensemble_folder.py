@@ -9,6 +9,7 @@ import shutil
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -124,7 +125,7 @@ class _Store:
         return self._file(numbers).exists()
 
     def put(self, numbers: range, sums: Sums) -> None:
-        arrays = {"volumes": sums.volumes, "counts": sums.counts}
+        arrays: dict[str, Any] = {"volumes": sums.volumes, "counts": sums.counts}  # savez has other keywords
         for name, values in (("heights", sums.heights), ("squares", sums.squares)):
             arrays |= {f"{name}_{k}": each for k, each in enumerate(values) if each is not None}
         file = self._file(numbers)

@@ -153,7 +153,8 @@ def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
     report = built.around.validate(places_of(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    model, arrays = built.model, {"others": np.array(sorted(built.seams), np.int64).reshape(-1, 2)}
+    model = built.model
+    arrays: dict[str, np.ndarray] = {"others": np.array(sorted(built.seams), np.int64).reshape(-1, 2)}
     for key, part in (("parts", model.cell_component), ("cells", built.part)):
         roots = np.flatnonzero(part == np.arange(len(part)))
         arrays |= {key: roots, f"block_of_{key}": model.cell_block[roots]}

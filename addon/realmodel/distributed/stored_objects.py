@@ -20,8 +20,10 @@ from ..core.structures.rock_structure import RockStructure
 from ..core.structures.sides import FaultShape, RockFaults
 from ..core.structures.windows import Window
 
-_STORED = (Window, RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body)
-_STORED += (Reach, BuildWarning, InputRefused)
+_STORED: tuple[type, ...] = (
+    *(Window, RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body),
+    *(Reach, BuildWarning, InputRefused),
+)
 _CLASSES = {kind.__name__: kind for kind in _STORED}
 _OBJECTS = "objects"  # the table of objects, as JSON; arrays have numbers for names
 _ARRAY, _PATH, _LIST, _TUPLE, _DICT = "array", "path", "list", "tuple", "dict"

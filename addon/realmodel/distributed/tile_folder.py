@@ -211,10 +211,11 @@ def _join(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
     report = model.validate(places_of(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")
-    patches, border = {}, BorderEdges.of(model, numbers, faces)
-    for side, *theirs in neighbors:
+    patches: dict[str, np.ndarray] = {}
+    border = BorderEdges.of(model, numbers, faces)
+    for side, theirs, their_places in neighbors:
         edges = border.on(model, side)
-        found = patches_on(model, side, edges, positions_on(model, side, edges, *theirs))
+        found = patches_on(model, side, edges, positions_on(model, side, edges, theirs, their_places))
         part = model.cell_component[found.cell]
         patches |= {
             f"{side.name}_shape": found.shape,
@@ -232,15 +233,14 @@ def _join(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
 
 
 def _patches(arrays: dict, side: str) -> Patches:
-    return Patches(
-        *(arrays[f"{side}_{key}"] for key in ("shape", "block", "part")), int(arrays[f"{side}_open"])
-    )
+    shape, block, part = (arrays[f"{side}_{key}"] for key in ("shape", "block", "part"))
+    return Patches(shape, block, part, int(arrays[f"{side}_open"]))
 
 
 def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
     """The table of the whole."""
     frame = found.frame
-    parts, patches, warnings = Parts(), np.zeros(2, np.int64), list(found.warnings)
+    parts, compared, unequal, warnings = Parts(), 0, 0, list(found.warnings)
     for name in names:
         arrays = read_arrays(store.file("patches", name))
         for part, block in zip(arrays["parts"].tolist(), arrays["block_of_part"].tolist(), strict=True):
@@ -259,7 +259,8 @@ def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
                     f"{near}; the parts of blocks were joined by their areas there"
                 )
                 warnings.append(BuildWarning(text, "borders"))
-            patches += [match.patches, match.unequal]
+            compared += match.patches
+            unequal += match.unequal
             for one, another in match.cells.tolist():
                 parts.join((*name, one), (*other, another))
     records = [store.read_record("joined", name) for name in names]
@@ -270,7 +271,8 @@ def _catalog(found: Prepared, store: Store, names: list[Name]) -> Catalog:
         frame.grid,
         blocks_of(frame, records, parts, parts),
         [entry_of(name, record) for name, record in zip(names, records, strict=True)],
-        *patches.tolist(),
+        compared,
+        unequal,
         [*warnings, *_warnings(frame, store, names)],
     )
 
@@ -283,7 +285,7 @@ def _warnings(frame: Frame, store: Store, names: list[Name]) -> list[BuildWarnin
     for name in names:
         record = store.read_record("built", name)
         for warning in record["warnings"]:
-            key = (warning["kind"], warning["rock"], warning["surface"])
+            key: tuple = (warning["kind"], warning["rock"], warning["surface"])
             if warning["kind"] != "no_area":
                 key = (*key, warning["text"])
             items.setdefault(key, set()).update(warning["items"])

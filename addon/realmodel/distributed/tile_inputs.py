@@ -74,7 +74,7 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
             flat=flat,
         )
 
-    flat = local_surfaces
+    flat: Callable[[Rock], set[int]] = local_surfaces
     surfaces = surfaces_with(flat)
     joined = _joined(surfaces, arrays, cancel)
     if joined is not None and any(flat(entry.rock) for entry in surfaces.rock_inputs):
@@ -95,7 +95,9 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
     meshes = [vertices for shapes, *_ in rocks for vertices, _ in shapes]
     meshes += [rocks[r][1][0] for r in np.flatnonzero(clips)]
     grid = tile_grid(list({id(mesh): mesh for mesh in meshes}.values()), size)
-    local, near, own = {}, {}, {}
+    local: dict[tuple[int, int], LocalHeights] = {}
+    near: dict[tuple[int, int], np.ndarray] = {}
+    own: dict[tuple[int, int], np.ndarray] = {}
     for r, entry in enumerate(inputs):
         numbers = flat(entry.rock)
         fitted = _fitted(entry, numbers, arrays, workers, cancel)
@@ -107,9 +109,11 @@ def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, 
             ]
         if numbers:
             own |= {
-                (r, k): surface.points
+                (r, k): surface.point_array()
                 for k, surface in enumerate(entry.rock.surfaces)
-                if surface.interpolated and len(surface.points) and (k > 0 or 1 in kept_off(entry.rock))
+                if surface.interpolated
+                and len(surface.point_array())
+                and (k > 0 or 1 in kept_off(entry.rock))
             }
     frame = Frame(
         without_shapes(project, inputs),
@@ -133,12 +137,12 @@ def _fitted(
     """Of the surfaces of a rock mass that tiles interpolate: what local_heights gives."""
     if not numbers:
         return {}
-    nodes = entry.region[0]
+    nodes, _ = entry.planar_mesh()
     extent = np.array([nodes.min(axis=0), nodes.max(axis=0)])
     tasks = []
     for k in sorted(numbers):
         surface = entry.rock.surfaces[k]
-        points = arrays.place(arrays.keep(surface.points))
+        points = arrays.place(arrays.keep(surface.point_array()))
         stub = replace(surface, points=None)
         tasks.append((k, entry.rock.name, stub, points, extent, len(nodes), *surface.method_options()))
     found = {}
@@ -199,7 +203,12 @@ def _read(folder: Path, task: tuple[int, SurfaceInput]) -> tuple[ReadSurface, by
 
 def _digest_of(found: ReadSurface) -> bytes:
     digest = hashlib.sha256()
-    found.with_arrays(lambda array: [digest.update(np.ascontiguousarray(array)), array][1])
+
+    def add(array: np.ndarray) -> np.ndarray:
+        digest.update(np.ascontiguousarray(array))
+        return array
+
+    found.with_arrays(add)
     return digest.digest()
 
 
@@ -248,7 +257,7 @@ def _have_one_mesh(inputs: list[RockInput]) -> bool:
         return False
     rock, nodes = inputs[0].rock, len(inputs[0].region[0])
     return all(surface.interpolated for surface in rock.surfaces) and all(
-        len(vertices) == nodes for vertices, _ in inputs[0].surfaces
+        len(inputs[0].surface(number)[0]) == nodes for number in range(len(rock.surfaces))
     )
 
 
@@ -285,15 +294,17 @@ def divided(
             met.update(there)
         if k == PLAN:
             boxes[r] = there
-    tasks = []
+    of_points: list[tuple] = []
     for (r, k), points in found.near.items():
         local, names = frame.local[r, k], list(boxes[r])
         at_once = _TILES_AT_ONCE if local.border is not None else max(len(names), 1)
         for first in range(0, len(names), at_once):
             some = {name: boxes[r][name] for name in names[first : first + at_once]}
-            tasks.append((r, k, arrays.place(points), local, some))
-    tasks += [(r, k, arrays.place(arrays.keep(points)), None, None) for (r, k), points in found.own.items()]
-    for _ in workers.in_any_order(_divide_points, shared, tasks, cancel, here=True):
+            of_points.append((r, k, arrays.place(points), local, some))
+    of_points += [
+        (r, k, arrays.place(arrays.keep(points)), None, None) for (r, k), points in found.own.items()
+    ]
+    for _ in workers.in_any_order(_divide_points, shared, of_points, cancel, here=True):
         pass
     return sorted(met, key=lambda name: name[::-1])
 
@@ -301,8 +312,8 @@ def divided(
 def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> dict[Name, Box]:
     folder, grid, folder_of = shared
     rock, surface, places = task
-    mesh = tuple(map(MappedArrays(folder).opened, places))
-    return write_parts(mesh, rock, surface, grid, folder_of)
+    vertices, triangles = map(MappedArrays(folder).opened, places)
+    return write_parts((vertices, triangles), rock, surface, grid, folder_of)
 
 
 def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> None:

@@ -181,7 +181,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
     which end with it. They start while the caller goes on.
 
     They listen on free ports of this machine alone, so that several of them run beside each other."""
-    starting = concurrent.futures.Future()
+    starting: concurrent.futures.Future = concurrent.futures.Future()
     if client is not None:
         starting.set_result(client)
         yield Workers(starting)

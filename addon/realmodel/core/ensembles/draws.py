@@ -60,7 +60,8 @@ class Draw:
         if own.variogram is None:
             return own.result
         points, _ = without_mis_ties(points[own.counts])
-        at_points, at_nodes = self._field(work, own, points[:, :2], nodes, threads)
+        anisotropy = own.settings.get("anisotropy")
+        at_points, at_nodes = self._field(work, own.variogram, anisotropy, points[:, :2], nodes, threads)
         drawn = np.column_stack([points[:, :2], at_points])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
@@ -77,9 +78,9 @@ class Draw:
             return self._found(work, points, nodes, method, settings, threads, surfaces, result)
         key = hashlib.sha256(np.ascontiguousarray(points)).digest() + hashlib.sha256(nodes).digest()
         if key not in self.known:
-            result = self.given
-            if result is None:
-                result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
+            result = self.given or heights(
+                work, points, nodes, method, settings, threads, triangles, surfaces
+            )
             self.known[key] = self._found(work, points, nodes, method, settings, threads, surfaces, result)
         return self.known[key]
 
@@ -110,17 +111,18 @@ class Draw:
             variogram = None
         return _Known(result, method, settings, variogram, counts)
 
-    def _field(self, work, own: _Known, points, nodes, threads) -> tuple[np.ndarray, np.ndarray]:
+    def _field(
+        self, work, variogram: Variogram, anisotropy: dict | None, points, nodes, threads
+    ) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
-        anisotropy = own.settings.get("anisotropy")
         at_points, at_nodes = (
-            gaussian_field(work, own.variogram, anisotropy, self.frame, places, self.noise, threads)
+            gaussian_field(work, variogram, anisotropy, self.frame, places, self.noise, threads)
             for places in (points, nodes)
         )
-        if own.variogram.nugget > 0:
+        if variogram.nugget > 0:
             _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
             noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
-            noise *= math.sqrt(own.variogram.nugget)
+            noise *= math.sqrt(variogram.nugget)
             of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
             number = {tuple(point): n for n, point in enumerate(points.tolist())}
             for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):

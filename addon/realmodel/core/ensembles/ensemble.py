@@ -94,9 +94,10 @@ class Ensemble:
     @classmethod
     def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
         count = len(sums.volumes)
-        means, deviations = [], []
+        means: list[np.ndarray | None] = []
+        deviations: list[np.ndarray | None] = []
         for given, total, squares in zip(heights(realizer.model), sums.heights, sums.squares, strict=True):
-            if total is None:
+            if given is None or total is None or squares is None:
                 means.append(None)
                 deviations.append(None)
                 continue

@@ -96,7 +96,7 @@ def _arrays(ensemble: Ensemble) -> dict[str, np.ndarray]:
     given = zip(ensemble.surface_mean, ensemble.surface_deviation, strict=True)
     surfaces = {}
     for number, (mean, deviation) in enumerate(given):
-        if mean is not None:
+        if mean is not None and deviation is not None:
             surfaces[f"surface_mean_{number}"] = mean
             surfaces[f"surface_deviation_{number}"] = deviation
     return {

@@ -14,7 +14,7 @@ from ..algebra import dot
 from ..errors import UsageError
 from ..regular_cells import checked_size, frame_of
 from ..section import Fence, Section
-from ..section_drawing import directions, flattened, is_vertical
+from ..section_drawing import directions, flattened, is_vertical, plane_of
 
 MOST_PLACES = 20_000_000  # times blocks
 _COLUMNS, _ROWS = 200, 100  # of a section, where no size is given
@@ -68,8 +68,7 @@ def section_samples(model, section: Section, size: float | Sequence[float] | Non
         raise UsageError("the section does not meet the model: choose another one")
     flat = flattened(section)
     low, high = flat.min(axis=0), flat.max(axis=0)
-    is_fence = isinstance(section, Fence)
-    if is_fence:
+    if isinstance(section, Fence):
         low[0], high[0] = 0.0, section.length
     if is_vertical(section):
         beyond = _BEYOND * (high[1] - low[1])
@@ -81,7 +80,7 @@ def section_samples(model, section: Section, size: float | Sequence[float] | Non
         given = checked_size(model, size)
         steps = given[[0, 2]] if is_vertical(section) else given[:2]
     rows = _bounds(low[1], high[1], steps[1])
-    if is_fence:
+    if isinstance(section, Fence):
         pieces = [_bounds(*ends, steps[0]) for ends in itertools.pairwise(section.bends.tolist())]
         panels = np.repeat(np.arange(len(pieces)), [len(piece) - 1 for piece in pieces])
         left, right = (np.concatenate([piece[cut] for piece in pieces]) for cut in (np.s_[:-1], np.s_[1:]))
@@ -112,14 +111,14 @@ def borehole_samples(model, x: float, y: float, height: float | None = None) -> 
 
 def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:
     """Samples at the cells of regular_cells, with some more above and below. Raises UsageError."""
-    size = checked_size(model, size)
-    origin, (nx, ny, nz) = frame_of(model, size)
+    cell = checked_size(model, size)
+    lowest, (nx, ny, nz) = frame_of(model, cell)
     beyond = math.ceil(_BEYOND * nz)
-    origin, counts = origin - (0.0, 0.0, beyond * size[2]), (nx, ny, nz + 2 * beyond)
+    origin, counts = lowest - np.array([0.0, 0.0, beyond * cell[2]]), (nx, ny, nz + 2 * beyond)
     _check(model, math.prod(counts))
     z, y, x = np.indices(counts[::-1]).reshape(3, -1)
-    places = origin + (np.column_stack([x, y, z]) + 0.5) * size
-    return GridSamples(places, origin, size, counts)
+    places = origin + (np.column_stack([x, y, z]) + 0.5) * cell
+    return GridSamples(places, origin, cell, counts)
 
 
 def _check(model, places: int) -> None:
@@ -146,8 +145,8 @@ def _in_space(section: Section, flat: np.ndarray, panels: np.ndarray) -> np.ndar
         plan = starts[panels][:, None] + share[:, :, None] * (ends - starts)[panels][:, None]
         return np.concatenate([plan, v[:, :, None]], axis=2)
     right, up = directions(section)
-    point = np.asarray(section.plane[0])
-    if right is None:
+    point, _ = plane_of(section)
+    if right is None or up is None:
         return np.stack([u, v, np.full(u.shape, point[2])], axis=2)
     # drawings begin at the lowest coordinate
     u = u + (dot(section.vertices - point, right)).min()

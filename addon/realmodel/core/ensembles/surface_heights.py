@@ -37,16 +37,16 @@ def _is_ready(entry: RockInput, number: int) -> bool:
 
 def _own(entry: RockInput, number: int) -> np.ndarray:
     if entry.structure is None:
-        return entry.interpolations[number].z
+        return entry.interpolation(number).z
     return np.concatenate([vertices[:, 2] for _, (vertices, _) in _sheets(entry, number)])
 
 
 def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -> np.ndarray:
     if entry.structure is None:
-        return drawn.interpolations[number].z - entry.interpolations[number].z
+        return drawn.interpolation(number).z - entry.interpolation(number).z
     found = []
     for compartment, (vertices, _) in _sheets(entry, number):
-        nodes, triangles = drawn.structure.sheets[compartment][number]
+        nodes, triangles = drawn.divided().sheet(compartment, number)
         if np.array_equal(nodes[:, :2], vertices[:, :2]):
             z = nodes[:, 2]
         else:
@@ -59,6 +59,8 @@ def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -
 def _sheets(entry: RockInput, number: int) -> list[tuple[int, Triangulation]]:
     """The different sheets of a surface, as of RockStructure.distinct, each with its first compartment."""
     first: dict[int, tuple[int, Triangulation]] = {}
-    for compartment, sheets in enumerate(entry.structure.sheets):
-        first.setdefault(id(sheets[number]), (compartment, sheets[number]))
+    structure = entry.divided()
+    for compartment in range(len(structure.sheets)):
+        sheet = structure.sheet(compartment, number)
+        first.setdefault(id(sheet), (compartment, sheet))
     return list(first.values())

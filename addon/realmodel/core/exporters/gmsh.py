@@ -63,8 +63,8 @@ def write_msh(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     total = sum(len(part[3]) for part in parts)
     file.write(_sizes(len(parts), total, 1, total))
     first = 1
-    for dimension, entity, kind, corners in parts:
-        file.write(_ints(dimension, entity, kind) + _sizes(len(corners)))
+    for dimension, entity, gmsh_kind, corners in parts:
+        file.write(_ints(dimension, entity, gmsh_kind) + _sizes(len(corners)))
         rows = np.empty((len(corners), 1 + corners.shape[1]), "<u8")
         rows[:, 0] = np.arange(first, first + len(corners))
         rows[:, 1:] = corners

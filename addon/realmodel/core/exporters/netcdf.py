@@ -19,7 +19,7 @@ class NetcdfFile:
     without records. attributes: text or numbers. variables: (dimensions, values, attributes) by name."""
 
     dimensions: dict[str, int] = field(default_factory=dict)
-    attributes: dict[str, object] = field(default_factory=dict)
+    attributes: dict[str, str | np.generic | np.ndarray] = field(default_factory=dict)
     variables: dict[str, tuple] = field(default_factory=dict)
 
     def add(self, name: str, dimensions: tuple[str, ...], values: np.ndarray, /, **attributes) -> None:
@@ -60,7 +60,7 @@ def _text(text: str) -> bytes:
     return _int(len(raw)) + raw + b"\0" * (-len(raw) % 4)
 
 
-def _attributes(attributes: dict[str, str | np.ndarray]) -> bytes:
+def _attributes(attributes: dict[str, str | np.generic | np.ndarray]) -> bytes:
     if not attributes:
         return _int(0, 0)
     body = _int(_ATTRIBUTE, len(attributes))

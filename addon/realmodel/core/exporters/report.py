@@ -217,7 +217,7 @@ def warning_entries(model) -> list[dict]:
 
 def surface_entries(model) -> list[dict]:
     """The entry of each surface of a model, or of a SurfaceSet."""
-    entries = []
+    entries: list[dict] = []
     for rock in (entry.rock for entry in model.rock_inputs):
         for surface in rock.surfaces:
             number = len(entries)

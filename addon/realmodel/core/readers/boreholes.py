@@ -94,6 +94,7 @@ class _Holes:
     def _read_collars(self) -> dict[str, tuple[float, float, float]]:
         collars: dict[str, tuple[float, float, float]] = {}
         directions = HoleDirections(self._given)
+        assert self._given.collars is not None
         for row in rows(self._given, Path(self._given.collars), COLLARS, ("hole", "x", "y", "z"), no_step):
             hole = row.text("hole")
             place = (row.number("x"), row.number("y"), row.number("z"))

@@ -47,13 +47,14 @@ class FaultLines:
         return self._value("dip_direction", _direction)
 
     def _value(self, key: str, read):
-        found = {}
+        found: dict[object, str] = {}
         for item, given in self.attributes.items():
             try:
                 value = read(given, self.missing)
             except OptionRefused as error:
-                item = item or None
-                raise InputRefused(error.what, file=self.file, item=item, advice=error.advice) from error
+                raise InputRefused(
+                    error.what, file=self.file, item=item or None, advice=error.advice
+                ) from error
             if value is not None:
                 found.setdefault(value, item)
         if len(found) > 1:

@@ -42,6 +42,7 @@ class HoleDirections:
     def of_survey(cls, given: Boreholes, step: Step = no_step) -> HoleDirections:
         """The stations of a survey table. Raises InputRefused naming the line."""
         found = cls(given)
+        assert given.survey is not None
         for row in rows(given, Path(given.survey), SURVEY, ("hole", "depth", "azimuth"), step):
             depth = row.number("depth")
             if depth < 0:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputRefused
-from .text import NOT_FINITE, NUMBER
+from .text import NOT_FINITE, NUMBER, Content
 
 HEAD_BYTES = 1 << 18
 _SEPARATORS = (";", "\t", ",", "|", " ")  # in the order of preference
@@ -63,7 +63,7 @@ def is_any_number(entry: str, separator: str) -> bool:
 
 def table_layout(
     file: Path,
-    raw: bytes,
+    raw: Content,
     start: int,
     encoding: str,
     *,

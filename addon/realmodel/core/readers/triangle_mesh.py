@@ -75,7 +75,7 @@ class MeshRows:
         self._vertices.add(vertices)
         self.vertices += len(vertices)
 
-    def add_faces(self, faces: Sequence, lines: Sequence[int] | None = None) -> None:
+    def add_faces(self, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None) -> None:
         """faces: their corners, from 0, (F, K) or a list of any lengths; these may come later than they.
         lines: where each face stands in the file."""
         if not len(faces):

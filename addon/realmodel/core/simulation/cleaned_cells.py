@@ -80,6 +80,7 @@ def cleaned_cells(
 
 def _assembled(model, tolerance: float, made: dict) -> CleanedCells:
     exact = PolyhedralMesh.of_model(model)
+    assert exact.cell_compartment is not None  # that of a model has them
     return CleanedCells(
         points=made["vertices"],
         face_offsets=made["face_offsets"],

@@ -46,8 +46,8 @@ def boundary_patches(
     key = group * wide + (surface - lowest)
     is_present = np.bincount(key) > 0
     number = (np.cumsum(is_present) - 1)[key]
-    present, surfaces = divmod(np.flatnonzero(is_present), wide)
-    surfaces = (surfaces + lowest).tolist()
+    present, above_lowest = divmod(np.flatnonzero(is_present), wide)
+    surfaces: list[int] = (above_lowest + lowest).tolist()
     groups = [_ROLES[g] if g < len(_ROLES) else surface_names[g - len(_ROLES)] for g in present]
     named = []
     for name, on in zip(groups, surfaces, strict=True):

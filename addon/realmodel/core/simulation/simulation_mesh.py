@@ -184,7 +184,8 @@ def _without_columns(model) -> str | None:
     if model.structures.bodies:
         return "a model with bodies"
     for fault in model.structures.faults:
-        corners = fault.vertices[fault.triangles]
+        vertices, triangles = fault.triangulation()
+        corners = vertices[triangles]
         u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         if (u[:, 0] * v[:, 1] != u[:, 1] * v[:, 0]).any():
             return f"a model with a fault that is not vertical ('{fault.name}')"
@@ -193,7 +194,8 @@ def _without_columns(model) -> str | None:
 
 def _of_plan(sizes: list[tuple], inner: list[np.ndarray]) -> list[Mapping]:
     """Local lengths for the planar mesh, whose lines are its outline and, where there are any, `inner`."""
-    entries, of_inner = [], []
+    entries: list[Mapping] = []
+    of_inner: list[Mapping] = []
     for places, length, distance in sizes:
         of_lines = places is None or not len(places)
         entry = {"at": "outline" if of_lines else places, "length": length, "distance": distance}

@@ -42,7 +42,7 @@ def _places_in_parts(one: np.ndarray, other: np.ndarray, crossing: np.ndarray, w
     one, other, crossing = (each - origin[:, None] for each in (one, other, crossing))
     corners = np.concatenate([one, other], axis=1)
     narrow = _WIDTH * np.ptp(corners, axis=1).max(axis=1)
-    found = []
+    found: list[tuple[np.ndarray, np.ndarray]] = []
     for lower, upper in ((one, other), (other, one)):
         corners, owner = _part_between(crossing, lower, upper)
         is_wide = ~_are_narrow(corners, owner, narrow)[owner]

@@ -84,8 +84,8 @@ def between_faults(
     elsewhere."""
     vertices, triangles = sheets[0]
     plan = np.ascontiguousarray(vertices[:, :2])
-    heights = [vertices[:, 2], *(heights_at(work, sheet, plan, threads) for sheet in sheets[1:])]
-    heights = np.where(np.isfinite(heights), heights, np.nan)
+    own = [vertices[:, 2], *(heights_at(work, sheet, plan, threads) for sheet in sheets[1:])]
+    heights = np.where(np.isfinite(own), own, np.nan)
     away = np.array([nearest(plan, places)[1] for places, _, _ in faults])
     from_there = np.array(
         [

@@ -16,17 +16,17 @@ _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault 
 def require_meeting(fault: Fault, ends: list[Fault]) -> None:
     """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
     for other in ends:
-        both = np.concatenate([fault.vertices, other.vertices])
+        both = np.concatenate([fault.triangulation()[0], other.triangulation()[0]])
         _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
 
 
 def _require_meeting(branch: Fault, other: Fault, near: float) -> None:
-    corners, others = branch.vertices[branch.triangles], other.vertices[other.triangles]
-    if meet(corners, others).any():
+    (vertices, triangles), (of_other, others) = branch.triangulation(), other.triangulation()
+    if meet(vertices[triangles], of_other[others]).any():
         return
-    border = np.unique(open_edges(branch.vertices, branch.triangles))
-    places = branch.vertices[border] if len(border) else branch.vertices
-    away = distances(places, other.vertices, other.triangles)
+    border = np.unique(open_edges(vertices, triangles))
+    places = vertices[border] if len(border) else vertices
+    away = distances(places, of_other, others)
     if away.min() <= near:
         return
     place = places[int(away.argmin())]

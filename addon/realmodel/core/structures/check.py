@@ -76,7 +76,7 @@ def _check_trace(project, fault: Fault, refuse) -> None:
             raise refuse(error.what, key, error.advice) from error
     if fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
-    if np.ndim(fault.elevation):
+    if fault.elevation is not None and np.ndim(fault.elevation):
         raise refuse("'elevation' must be a number or the name of a surface", "elevation")
     if isinstance(fault.elevation, str):
         rocks = [project.rocks[number] for number in displaced_surfaces(project, fault)]

@@ -75,7 +75,8 @@ class ClosedForm:
         continuation."""
         corners = shape.vertices[shape.triangles]
         nearest = corners[_nearest_triangles(points, corners)]
-        sides = orient3d(*nearest.transpose(1, 0, 2), points)
+        a, b, c = nearest.transpose(1, 0, 2)
+        sides = orient3d(a, b, c, points)
         border = shape.vertices[open_edges(shape.vertices, shape.triangles)]
         away = distances_of_pairs(points, nearest)
         ends = _to_segments(points, border) <= away * (1 + _EQUAL)
@@ -114,7 +115,10 @@ class ClosedForm:
 
     def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
         """The block at points of one compartment."""
-        every = [heights_at(points[:, :2], *sheet, self._grid(sheet)) for sheet in sheets]
+        every = [
+            heights_at(points[:, :2], vertices, triangles, self._grid((vertices, triangles)))
+            for vertices, triangles in sheets
+        ]
         if self.region is None:  # the rock mass reaches as far as its surfaces
             reached = ~np.isnan(every).all(axis=0)
             insides = [inside & reached for inside in insides]
@@ -278,7 +282,8 @@ def nearest_side(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray
     counter-clockwise. Of triangles equally near, at an edge or a corner, that which the point is farthest off
     the plane of counts. 0 on the plane."""
     corners = vertices[triangles]
-    return orient3d(*corners[_nearest_triangles(points, corners)].transpose(1, 0, 2), points)
+    a, b, c = corners[_nearest_triangles(points, corners)].transpose(1, 0, 2)
+    return orient3d(a, b, c, points)
 
 
 def _nearest_triangles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

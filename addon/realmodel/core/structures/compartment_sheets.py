@@ -67,6 +67,7 @@ class CompartmentSheets:
                 self._tell(family, self.made[family.key], throws)
         rock = self.entry.rock
         if not self._is_ready() and self._is_ready(named_surfaces(rock, self.number).values()):
+            assert isinstance(self.surface, InterpolatedSurface)  # a ready mesh waits for no surface
             free = self.surface.without_thickness()
             for family in self.own:
                 if family.key not in self.waited:
@@ -92,7 +93,11 @@ class CompartmentSheets:
         trends = taken[0]
         if len(taken) > 1:
             shapes = self.entry.structure.faults.shapes
-            faults = [(s.shift.places, shapes[s.fault], s.family.key[s.fault]) for s in sources]
+            faults = []
+            for source in sources:  # several are taken over only by their throws
+                assert source.shift is not None and source.fault is not None
+                side = source.family.key[source.fault]
+                faults.append((source.shift.places, shapes[source.fault], side))
             trends = {
                 sides: between_faults(throws.work, [each[sides] for each in taken], faults, throws.threads)
                 for sides in trends
@@ -108,7 +113,7 @@ class CompartmentSheets:
         sheets = self.made[source.family.key]
         first = next(iter(sheets.values()))
         taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
-        if source.shift is not None:
+        if source.shift is not None and source.fault is not None:
             found = throws.by_thickness(self.number, source.shift, source.fault, source.family, family, taken)
         elif source.fault is not None:
             found = self.surface.continued(taken, family, source.family, source.fault)

@@ -154,9 +154,9 @@ def _corners(places, ends, away, group: np.ndarray, by: float) -> np.ndarray:
         ways[own, at] = away[is_between]
         lengths[own, at] = by - dot(middle[at] - places[ends[is_between, end]], away[is_between])
     is_alone = (ways == 0).all(axis=2)
-    for own, other in ((0, 1), (1, 0)):
-        ways[own, is_alone[own]] = ways[other, is_alone[own]]
-        lengths[own, is_alone[own]] = lengths[other, is_alone[own]]
+    for own, across in ((0, 1), (1, 0)):
+        ways[own, is_alone[own]] = ways[across, is_alone[own]]
+        lengths[own, is_alone[own]] = lengths[across, is_alone[own]]
     (one, other), (to_one, to_other) = ways, lengths
     alike = dot(one, other)
     apart = np.abs(alike) < _PARALLEL

@@ -121,14 +121,16 @@ class _Measured:
     def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """places (N, 3), throw, heave and length (N,)."""
         parts = [_NOTHING, *(self.between(*pair) for pair in self._pairs())]
-        return tuple(np.concatenate(each) for each in zip(*parts, strict=True))
+        places, throw, heave, length = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return places, throw, heave, length
 
     def _pairs(self) -> list[tuple[int, int]]:
         """Compartments on the two sides of the fault, and on one side of each other that is on both sides of
         it; one of those that only faults part which do not displace the surface."""
-        rows, pairs = self.rows, {}
-        for below in np.flatnonzero(rows[:, self.fault] < 0):
-            for above in np.flatnonzero(rows[:, self.fault] > 0):
+        rows = self.rows
+        pairs: dict[tuple[int, ...], tuple[int, int]] = {}
+        for below in np.flatnonzero(rows[:, self.fault] < 0).tolist():
+            for above in np.flatnonzero(rows[:, self.fault] > 0).tolist():
                 same = (rows[below] == rows[above]) | (rows[below] == 0) | (rows[above] == 0)
                 same[self.fault] = True
                 if same.all():
@@ -156,6 +158,7 @@ class _Measured:
         sheet, shape = self.sheets[compartment], self.structure.faults.shapes[self.fault]
         key = id(sheet), side
         if key not in self.cutoffs:
+            assert sheet is not None  # displacements are asked for of sheets that are made
             self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side, self.threads)
         return self.cutoffs[key]
 

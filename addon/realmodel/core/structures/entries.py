@@ -11,10 +11,23 @@ import numpy as np
 
 from ..map_layer import is_wkt
 from ..point_file import MeshFile, PointFile
+from ..toml_table import Source
 
 
 class _Shape:
     """The common part of faults and bodies: a mesh from arrays or from a file."""
+
+    name: str
+    vertices: np.ndarray | None
+    triangles: np.ndarray | None
+    mesh: str | Path | MeshFile | None
+    shape_file: Path | None
+    source: Source | None
+
+    def triangulation(self) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) and triangles (T, 3) of one whose mesh is read or made."""
+        assert self.vertices is not None and self.triangles is not None
+        return self.vertices, self.triangles
 
     @property
     def mesh_file(self) -> MeshFile | None:
@@ -75,7 +88,12 @@ class Fault(_Shape):
     elevation: float | str | None = None
     traced: Fault | None = field(default=None, repr=False, compare=False)  # as it was, with the line as read
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: object | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
+
+    def trace_line(self) -> np.ndarray:
+        """(N, 3) the trace, once it is read as one line (traces.read_trace)."""
+        assert isinstance(self.trace, np.ndarray)
+        return self.trace
 
     @property
     def point_file(self) -> PointFile | None:
@@ -113,7 +131,7 @@ class Body(_Shape):
     rock: str | None = None
     mesh: str | Path | MeshFile | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: object | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
 
 
 def fault_item(fault: Fault) -> str:

@@ -49,13 +49,13 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
             last = sticks[-1] + extend * _unit(sticks[-1].mean(axis=0) - sticks[-2].mean(axis=0))
             sticks = [first, *sticks, last]
     begin = np.cumsum([0, *map(len, sticks)])
-    triangles = [
+    between = [
         triangle
         for number, (left, right) in enumerate(itertools.pairwise(sticks))
         for triangle in _between(left, right, int(begin[number]), int(begin[number + 1]))
     ]
     vertices = np.concatenate(sticks)
-    triangles = np.array(triangles, np.int32).reshape(-1, 3)
+    triangles = np.array(between, np.int32).reshape(-1, 3)
     first, second, third = vertices[triangles].transpose(1, 0, 2)
     has_area = (np.cross(second - first, third - first) != 0).any(axis=1)
     return vertices, np.ascontiguousarray(triangles[has_area])
@@ -189,7 +189,7 @@ def convex_hull(plan: np.ndarray) -> np.ndarray:
     points = np.unique(plan, axis=0).tolist()
 
     def half(given):
-        chain = []
+        chain: list[list[float]] = []
         for x, y in given:
             while len(chain) > 1:
                 (ax, ay), (bx, by) = chain[-2:]

@@ -91,7 +91,7 @@ def close_gaps(
         around = [
             _Around(work, structures, inputs[rock], number, last, threads)
             for rock, last in structures.displaced[number].items()
-            if not has_sheets or None not in inputs[rock].structure.distinct(last)
+            if not has_sheets or inputs[rock].structure.is_made(last)
         ]
         if not len(_outer_border(faults[number]).edges):
             continue
@@ -141,7 +141,7 @@ class _Around:
         chosen = np.zeros(len(border.edges), bool)
         chosen[samples.edge] = True
         try:
-            vertices, triangles = continued(fault.vertices, fault.triangles, border.some(chosen), self.width)
+            vertices, triangles = continued(*fault.triangulation(), border.some(chosen), self.width)
         except InputRefused:  # it is not known where to: it ends where it ends
             return fault, []
         return replace(fault, vertices=vertices, triangles=triangles), self._warnings(
@@ -156,9 +156,10 @@ class _Around:
         ending = conditions
         if fault.dies_out:
             ending = {fault_item(other): conditions[fault_item(other)] for other in ends}
-        ways = _smoothed(fault.vertices, border, self.width)
-        points, edge, weight = _spread(fault.vertices, border, self.width)
-        way, side = ways[edge], _sides_of_border(fault.vertices, border, ways)[edge]
+        vertices, _ = fault.triangulation()
+        ways = _smoothed(vertices, border, self.width)
+        points, edge, weight = _spread(vertices, border, self.width)
+        way, side = ways[edge], _sides_of_border(vertices, border, ways)[edge]
         z = points[:, 2]
         inside = (z > box[0, 2]) & (z < box[1, 2])
         inside[inside] = _in_all(conditions, points[inside])
@@ -191,8 +192,9 @@ class _Around:
 
     def _side_of(self, fault: Fault, other: Fault) -> Callable[[np.ndarray], np.ndarray]:
         """Whether points are on the side of another fault on which the larger part of this one is."""
-        shape = FaultShape(other.vertices, other.triangles, other.dies_out)
-        a, b, c = fault.vertices[fault.triangles].transpose(1, 0, 2)
+        shape = FaultShape(*other.triangulation(), other.dies_out)
+        vertices, triangles = fault.triangulation()
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
         area = norm(np.cross(b - a, c - a))
         kept = dot(fault_sides(self.work, (a + b + c) / 3, shape, self.threads), area) > 0
 
@@ -209,7 +211,7 @@ class _Around:
         return {
             f"surface '{self.entry.rock.surfaces[n].name}'": self._below(n)
             for n in numbers
-            if None not in self.entry.structure.distinct(n)
+            if self.entry.structure.is_made(n)
         }
 
     def _below(self, surface: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -258,7 +260,7 @@ class _Around:
     def _passing(self, fault: Fault, samples: _Samples) -> np.ndarray:
         """(N,) bool: of places on the border those of a side of it that is inside the rock from below all
         points of a surface, some of which are on either side of the fault, to above them."""
-        shape = FaultShape(fault.vertices, fault.triangles, fault.dies_out)
+        shape = FaultShape(*fault.triangulation(), fault.dies_out)
         z, found = samples.points[:, 2], np.zeros(len(samples.points), bool)
         for surface in self.entry.rock.surfaces[: self.last + 1]:
             if not surface.interpolated or surface.method_options()[1].get("extrapolate") == "none":
@@ -336,7 +338,7 @@ def _spread(vertices: np.ndarray, border: Border, width: float):
 
 
 def _outer_border(fault: Fault) -> Border:
-    border = border_of(fault.vertices, fault.triangles)
+    border = border_of(*fault.triangulation())
     return border.some(border.is_outer)
 
 

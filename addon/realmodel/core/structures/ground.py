@@ -60,15 +60,15 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[tuple], threads: int) ->
     rest = np.isnan(found)
     if not rest.any():
         return found
-    points = np.concatenate(points)
-    if not len(points):
+    known = np.concatenate(points)
+    if not len(known):
         entry, number = tops[0]
         named = surface_item(entry.rock, entry.rock.surfaces[number])
         what = f"the elevation of its trace is not known: {named} has no points or mesh"
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
-    points = np.ascontiguousarray(np.unique(_near(points, plan[rest]), axis=0))
-    found[rest] = heights(work, points, plan[rest], CONTINUATION, options, threads).z
+    near = np.ascontiguousarray(np.unique(_near(known, plan[rest]), axis=0))
+    found[rest] = heights(work, near, plan[rest], CONTINUATION, options, threads).z
     return found
 
 

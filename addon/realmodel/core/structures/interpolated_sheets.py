@@ -164,7 +164,8 @@ class InterpolatedSurface:
         if trends is not None and not own.any():
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
-        common = self._interpolated(family, first, own, trend=trends and trends[first])
+        trend = None if trends is None else trends[first]
+        common = self._interpolated(family, first, own, trend=trend)
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
@@ -210,7 +211,7 @@ class InterpolatedSurface:
                 whole = list(first)
                 for number, side in zip(met, sides, strict=True):
                     whole[number] = side
-                trend = trends and trends[of_members[sides]]
+                trend = None if trends is None else trends[of_members[sides]]
                 sheet = self._interpolated(family, tuple(whole), visible, settled, trend, lips)
                 whole_of[sides] = self._values_on_nodes(sheet)
             return whole_of[sides][some]
@@ -243,7 +244,7 @@ class InterpolatedSurface:
             return sheets
         _, triangles = self.entry.region
         values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
-        known = np.isfinite([of[:, 0] for of in values.values()]).all(axis=0)
+        known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
         result = self.made[id(next(iter(sheets.values())))][0]
         return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
@@ -411,7 +412,7 @@ class InterpolatedSurface:
         return heights_at(self.work, sheet, nodes, self.threads)
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry, self.number, family, self.threads)
+        return Within(self.work, self.entry.structure, self.number, family, self.threads)
 
     def finish(self, sheets: list[Triangulation]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..built_cells import BuiltCells, CellParts
+from ..built_cells import BuiltCells, CellParts, NativeWarning
 from ..cell_complex import CellComplex
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
@@ -40,7 +40,9 @@ def build_joined(
         few, part = structures.only(there)
         built = build_joined(work, inputs, few, cells, threads, start, end)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
-    models, parts, warnings = [], [], {}
+    models: list[tuple] = []
+    parts: list[int] = []
+    warnings: dict[NativeWarning, None] = {}
     reach = reach or Reach(work, structures, threads)
     begin = start + _BUILT * (end - start)
 
@@ -50,11 +52,11 @@ def build_joined(
 
     with work.phase(start, begin, "intersecting and cutting"):
         made = work.each(built_in, range(len(structures.sides)), threads)
-    for part, built in enumerate(made):
-        if built is not None and len(built.complex.cell_block):
-            warnings |= dict.fromkeys(built.warnings)
-            models.append((_native(built.complex, inputs, structures), structures.sides[part].tolist()))
-            parts.append(part)
+    for number, own in enumerate(made):
+        if own is not None and len(own.complex.cell_block):
+            warnings |= dict.fromkeys(own.warnings)
+            models.append((_native(own.complex, inputs, structures), structures.sides[number].tolist()))
+            parts.append(number)
     if not models:
         return _nothing(inputs, structures, cells)
     native = native_module()
@@ -144,7 +146,7 @@ def _part_model(
         _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
     ]
     space = reach.cells_of(part)
-    columns = space.any(axis=2)
+    columns = np.logical_or.reduce(space, axis=2)
     if structures.continued is not None and columns.any():
         # around a tile: sheets that ended here would be divided by lines that depend on what is far away
         columns = np.ones_like(columns)

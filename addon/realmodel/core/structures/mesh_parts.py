@@ -122,7 +122,7 @@ def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) ->
         if not bridges.any():
             continue
         closed = edges[np.tile(masks[:, fault] == _BOTH, 3)]
-        at_closed = np.isin(outer_edges, closed).reshape(3, -1).any(axis=0)
+        at_closed = np.logical_or.reduce(np.isin(outer_edges, closed).reshape(3, -1), axis=0)
         bays = _spread(outer[near], at_closed[near])
         gaps[np.flatnonzero(near)[~bays]] |= bridges[near][~bays]
     return np.ascontiguousarray(outer[gaps], np.int32)
@@ -143,7 +143,7 @@ def _spread(triangles: np.ndarray, marked: np.ndarray) -> np.ndarray:
     while True:
         touched = np.zeros(edge.max() + 1, bool)
         touched[edge[:, marked]] = True
-        wider = touched[edge].any(axis=0)
+        wider = np.logical_or.reduce(touched[edge], axis=0)
         if (wider == marked).all():
             return marked
         marked = wider

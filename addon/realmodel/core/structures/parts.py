@@ -13,7 +13,7 @@ from ..work import Work, native_module
 from .entries import Body, Fault
 from .history import body_times, displaced_surfaces
 from .refusals import refused_structure
-from .rock_structure import RockStructure
+from .rock_structure import RockStructure, Triangulation
 from .sides import FaultShape, RockFaults
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
@@ -48,7 +48,18 @@ class Structures:
         """The largest coordinate of the whole that a window is a part of; 0 for a whole itself."""
         if self.continued is None:
             return 0.0
-        return float(max(np.abs(self.box).max(), *map(abs, self.ends)))
+        assert self.ends is not None  # as there are continued structures
+        return float(max(np.abs(self.divided_box()).max(), *map(abs, self.ends)))
+
+    def divided_box(self) -> np.ndarray:
+        """(2, 3) corners of what was divided."""
+        assert self.box is not None
+        return self.box
+
+    def boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """(P, 3) low and high: a box around each part, once they are found."""
+        assert self.low is not None and self.high is not None
+        return self.low, self.high
 
     @property
     def names(self) -> list[str]:
@@ -57,7 +68,7 @@ class Structures:
     @property
     def shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Vertices (V, 3) and triangles (T, 3) of each."""
-        return [(each.vertices, each.triangles) for each in (*self.faults, *self.bodies)]
+        return [each.triangulation() for each in (*self.faults, *self.bodies)]
 
     @property
     def kinds(self) -> list[int]:
@@ -68,14 +79,14 @@ class Structures:
         """The arguments of the native module."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
         given = [
-            (fault.vertices, fault.triangles, False, [number[name] for name in fault.ends_at], fault.dies_out)
+            (*fault.triangulation(), False, [number[name] for name in fault.ends_at], fault.dies_out)
             for fault in self.faults
         ]
-        return given + [(body.vertices, body.triangles, True, [], False) for body in self.bodies]
+        return given + [(*body.triangulation(), True, [], False) for body in self.bodies]
 
     def fault_shapes(self) -> list[FaultShape]:
         """The shape of each fault."""
-        alone = {f.name: FaultShape(f.vertices, f.triangles, f.dies_out) for f in self.faults}
+        alone = {f.name: FaultShape(*f.triangulation(), f.dies_out) for f in self.faults}
         return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
 
     def of_rock(self, rock: int) -> RockFaults:
@@ -138,8 +149,9 @@ class Structures:
         kept = [number - len(self.faults) for number in numbers[len(self.faults) :]]
         sides, first, part = np.unique(self.sides[:, numbers], axis=0, return_index=True, return_inverse=True)
         low, high = np.full((len(sides), 3), np.inf), np.full((len(sides), 3), -np.inf)
-        np.minimum.at(low, part.ravel(), self.low)
-        np.maximum.at(high, part.ravel(), self.high)
+        own_low, own_high = self.boxes()
+        np.minimum.at(low, part.ravel(), own_low)
+        np.maximum.at(high, part.ravel(), own_high)
         few = replace(
             self,
             bodies=[self.bodies[body] for body in kept],
@@ -190,15 +202,15 @@ def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
 def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -> np.ndarray:
     """(2, 3) corners of a box around all rock that there may be: around RockInputs, or their sheets where
     these are made, and bodies, with a margin for what is not interpolated yet."""
-    x, y, z = [], [], [body.vertices[:, 2] for body in structures.bodies]
+    x, y, z = [], [], [body.triangulation()[0][:, 2] for body in structures.bodies]
     is_known = True
     for entry in inputs:
         if entry.region is not None:
             x.append(entry.region[0][:, 0])
             y.append(entry.region[0][:, 1])
         for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
-            sheets = entry.structure.distinct(number) if has_sheets else [None]
-            shapes = [shape] if None in sheets else sheets  # None: younger than the stage
+            has_made = has_sheets and entry.structure.is_made(number)  # not younger than the stage
+            shapes = entry.structure.distinct(number) if has_made else [shape]
             is_known &= None not in shapes
             for given in (surface.points if shape is None else shape[0] for shape in shapes):
                 places = np.asarray(given, np.float64).reshape(-1, 3)
@@ -209,7 +221,7 @@ def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -
         if entry.rock.base_elevation is not None:
             z.append(np.array([entry.rock.base_elevation]))
     if not any(map(len, z)):
-        z = [fault.vertices[:, 2] for fault in structures.faults]
+        z = [fault.triangulation()[0][:, 2] for fault in structures.faults]
     low, high = (
         np.array([corner([corner(each) for each in axis if len(each)]) for axis in (x, y, z)])
         for corner in (np.min, np.max)
@@ -229,7 +241,7 @@ def add_compartments(structures: Structures, inputs: list) -> None:
     for number, entry in enumerate(inputs):
         faults = structures.of_rock(number)
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)
-        sheets = [[None] * len(entry.surfaces) for _ in rows]
+        sheets: list[list[Triangulation | None]] = [[None] * len(entry.surfaces) for _ in rows]
         entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
 
 

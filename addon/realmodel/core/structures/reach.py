@@ -30,7 +30,8 @@ class Reach:
 
     def __init__(self, work: Work, structures: Structures, threads: int):
         self.structures = structures
-        self.low, self.size = structures.box[0], structures.box[1] - structures.box[0]
+        box = structures.divided_box()
+        self.low, self.size = box[0], box[1] - box[0]
         step = self.size[:2].max() / _CELLS[0]
         self.count = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
         self.step = self.size / self.count
@@ -59,7 +60,8 @@ class Reach:
         for mask, side in zip(self.masks, self.structures.sides[part].tolist(), strict=False):
             if side:
                 possible &= (mask & (_ABOVE if side > 0 else _BELOW)) > 0
-        found = possible & self._cells_in(self.structures.low[part], self.structures.high[part])
+        low, high = self.structures.boxes()
+        found = possible & self._cells_in(low[part], high[part])
         return found if (found & self.asked).any() else np.zeros_like(found)
 
     def around(self, columns: np.ndarray) -> Triangulation:

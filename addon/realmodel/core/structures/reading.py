@@ -46,7 +46,8 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
     shape_file = fault.input_file or fault.shape_file
     try:
         if fault.points is not None:
-            points, texts = fault.points, []
+            points: object = fault.points
+            texts: list[str] = []
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
             warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in texts]

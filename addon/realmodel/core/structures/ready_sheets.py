@@ -108,7 +108,9 @@ class ReadyMesh:
             )
         plan, triangles, known = self.tiling.around(own)
         shapes = self.entry.structure.faults.shapes
-        cut = [(shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)]
+        cut: list[tuple[FaultShape, int, Trace | None]] = [
+            (shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
+        ]
         common = self._continued(plan, known, triangles, cut)
         faults = [shapes[fault] for fault in family.dying]
         within = self._within(family)
@@ -200,7 +202,7 @@ class ReadyMesh:
         return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry, self.number, family, self.threads)
+        return Within(self.work, self.entry.structure, self.number, family, self.threads)
 
     def _continued(
         self,
@@ -211,7 +213,7 @@ class ReadyMesh:
     ) -> np.ndarray:
         """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
         the sheet off, its side, and where one dies out its trace."""
-        if self.tiling.nodes is not plan:
+        if self.tiling is None or self.tiling.nodes is not plan:
             same = welded(plan)
         elif self.same_places is None:
             same = self.same_places = welded(plan)
@@ -225,16 +227,14 @@ class ReadyMesh:
         if len(missing):
             given = np.flatnonzero(~np.isnan(of_place))
             points = np.column_stack([plan[given], of_place[given]])
-            if self.method == CONTINUATION:  # it finds each node by itself
-                missed, nodes, tiles = slice(None), plan[missing], None
-            else:
-                missed, nodes, tiles = missing, plan, triangles
+            is_by_node = self.method == CONTINUATION  # it finds each node by itself
+            nodes, tiles = (plan[missing], None) if is_by_node else (plan, triangles)
             nodes = np.ascontiguousarray(nodes)
             lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
             beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
             found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
-            of_place[missing] = found.z[missed]
+            of_place[missing] = found.z if is_by_node else found.z[missing]
             z = np.where(np.isnan(z), of_place[same], z)
         return z
 

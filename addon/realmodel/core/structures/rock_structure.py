@@ -28,9 +28,21 @@ class RockStructure:
     few: list[int] = field(default_factory=list)
     points: dict[int, np.ndarray] = field(default_factory=dict)
 
+    def sheet(self, compartment: int, surface: int) -> Triangulation:
+        """The sheet of a surface in a compartment, once it is made."""
+        sheet = self.sheets[compartment][surface]
+        assert sheet is not None
+        return sheet
+
+    def is_made(self, surface: int) -> bool:
+        """Whether a surface has all its sheets; no for one younger than the stage."""
+        return all(sheets[surface] is not None for sheets in self.sheets)
+
     def distinct(self, surface: int) -> list[Triangulation]:
-        """The different sheets of a surface, in the order of the compartments that they first serve."""
-        return list({id(sheets[surface]): sheets[surface] for sheets in self.sheets}.values())
+        """The different sheets of a surface that is made, in the order of the compartments that they first
+        serve."""
+        found = (self.sheet(compartment, surface) for compartment in range(len(self.sheets)))
+        return list({id(sheet): sheet for sheet in found}.values())
 
     def warn(self, compartments: list[int], warning: BuildWarning) -> None:
         """Adds a warning about some compartments, unless it is there already."""

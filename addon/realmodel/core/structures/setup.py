@@ -91,17 +91,16 @@ def make_structures(
     if joins:
         for entry in inputs:
             for number in range(len(entry.surfaces)):
-                sheets = entry.structure.distinct(number)
-                if None not in sheets:  # not younger than the stage
-                    entry.surfaces[number] = joined(sheets)
+                if entry.structure.is_made(number):  # not younger than the stage
+                    entry.surfaces[number] = joined(entry.structure.distinct(number))
     return structures
 
 
 def _make_all(work: Work, inputs: list, numbers: list[set[int]] | None, start, end, threads, stage, keep):
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     steps = np.linspace(start, end, len(inputs) + 1).tolist()
-    every = numbers or [None] * len(inputs)
-    for entry, some, begin, finish in zip(inputs, every, steps[:-1], steps[1:], strict=True):
+    for number, (entry, begin, finish) in enumerate(zip(inputs, steps[:-1], steps[1:], strict=True)):
+        some = numbers[number] if numbers else None
         make_sheets(work, entry, begin, finish, threads, stage, keep, some)
 
 
@@ -131,7 +130,8 @@ def structured_inputs(
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
         if entry.region is not None:
-            entry.region = tuple(map(keep, entry.region))
+            nodes, triangles = entry.region
+            entry.region = keep(nodes), keep(triangles)
     structures = make_structures(
         work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False, keep=keep
     )
@@ -140,17 +140,18 @@ def structured_inputs(
 
 def _facing_up(work: Work, fault: Fault) -> Fault:
     """The fault with its triangles turned as the native part has them: on the whole they face up."""
-    corners = fault.vertices[fault.triangles]
+    vertices, triangles = fault.triangulation()
+    corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.linalg.norm(normals, axis=1).argmax())
     size = norm(normals[largest])
     beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
     native = native_module()
     try:
-        side = fault_sides(work, beside[None], FaultShape(fault.vertices, fault.triangles, fault.dies_out))
+        side = fault_sides(work, beside[None], FaultShape(vertices, triangles, fault.dies_out))
     except native.InputError as error:
         error.surface = 0
         raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error
     if side[0] > 0:
         return fault
-    return replace(fault, triangles=np.ascontiguousarray(fault.triangles[:, ::-1]))
+    return replace(fault, triangles=np.ascontiguousarray(triangles[:, ::-1]))

@@ -125,7 +125,7 @@ def _keep(entry, number: int, keep: Keep) -> None:
     for sheets in entry.structure.sheets:
         sheet = sheets[number]
         if id(sheet) not in made:
-            made[id(sheet)] = sheet, tuple(map(kept, sheet))
+            made[id(sheet)] = sheet, (kept(sheet[0]), kept(sheet[1]))
         sheets[number] = made[id(sheet)][1]
     if number in entry.attributes:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}

@@ -136,7 +136,7 @@ class Throws:
 
         So its thickness from one of these is that of the source; between two it is the share of theirs.
         """
-        within = Within(self.work, self, number, source, self.threads)
+        within = Within(self.work, self.structure, number, source, self.threads)
         pairs = [
             pair if pair[0] in family.members else pair[::-1] for pair in self._pairs(fault, source, family)
         ]
@@ -164,7 +164,7 @@ class Throws:
         in compartment `here`, where it lies likewise on or between others; NaN where these have none."""
         plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
         from_there, own = (
-            [heights_at(self.work, self.structure.sheets[each][n], plan, self.threads) for n in surfaces]
+            [heights_at(self.work, self.structure.sheet(each, n), plan, self.threads) for n in surfaces]
             for each in (there, here)
         )
         if len(own) == 1:
@@ -197,18 +197,19 @@ class Throws:
             key = number, fault, tuple(usable)
             if key not in self._known:
                 self._known[key] = self._measured(number, fault, usable)
-            if self._known[key] is not None:
-                return number, *self._known[key]
+            known = self._known[key]
+            if known is not None:
+                return number, *known
         return None
 
     def _measured(self, number: int, fault: int, pairs) -> tuple[np.ndarray, np.ndarray] | None:
         """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
-        different = {}
+        different: dict[tuple[int, ...], tuple[int, int]] = {}
         for pair in pairs:
             different.setdefault(tuple(id(self.structure.sheets[each][number]) for each in pair), pair)
         parts = [
-            throws_between(self.work, self.structure, fault, number, *pair, self.threads)
-            for pair in different.values()
+            throws_between(self.work, self.structure, fault, number, below, above, self.threads)
+            for below, above in different.values()
         ]
         parts = [part for part in parts if len(part[0])]
         if not parts:
@@ -222,8 +223,9 @@ class Throws:
         plan = np.concatenate([older[1], younger[1]])[:, :2]
         for compartment in family.members:
             sheets = [self.structure.sheets[compartment][each] for each in (older[0], number, younger[0])]
-            if all(sheet is not None for sheet in sheets):
-                low, own, high = (heights_at(self.work, sheet, plan, self.threads) for sheet in sheets)
+            made = [sheet for sheet in sheets if sheet is not None]
+            if len(made) == len(sheets):
+                low, own, high = (heights_at(self.work, sheet, plan, self.threads) for sheet in made)
                 there = (high > low) & np.isfinite(own)  # not where one of them has no height
                 if there.any():
                     share = (own[there] - low[there]) / (high[there] - low[there])

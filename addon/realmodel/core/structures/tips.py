@@ -278,7 +278,8 @@ def with_equal_ends(
             ]
             some = np.unique(np.concatenate(rows), axis=0)
             corners = places.points[some]
-            if not np.array_equal(looked_at.get(number), corners):
+            before = looked_at.get(number)
+            if before is None or not np.array_equal(before, corners):
                 looked_at[number] = corners
                 _draw_where_passed(
                     work, places, some, number, fault, continuations[number], within, inside, drawn, threads
@@ -436,20 +437,20 @@ def _between(
     """Those of one fault over some triangles. Of all pairs of sheets many have the same two triangles there,
     and what lies between these is the same."""
     side, heights = _corners_with_sides(work, plan, triangles, found, fault, threads)
-    pairs, rows = [], [np.empty((0, 7))]
+    over, given_rows = [], [np.empty((0, 7))]
     for one, other in _pairs(found, number):
         both = np.column_stack([side[one], side[other]])
         z = np.column_stack([heights[one], heights[other]])
         apart = (both != both[:, :1]).any(axis=1) & np.isfinite(z).all(axis=1)
         given = np.flatnonzero(apart & (z[:, :3] != z[:, 3:]).any(axis=1))
-        pairs.append(((one, other), triangles[given]))
-        rows.append(np.column_stack([given, z[given]]))
-    rows, numbers = np.unique(np.concatenate(rows), axis=0, return_inverse=True)
-    ends = np.cumsum([0, *(len(given) for _, given in pairs)]).tolist()
+        over.append(((one, other), triangles[given]))
+        given_rows.append(np.column_stack([given, z[given]]))
+    rows, numbers = np.unique(np.concatenate(given_rows), axis=0, return_inverse=True)
+    ends = np.cumsum([0, *(len(given) for _, given in over)]).tolist()
     corners = plan[triangles[rows[:, 0].astype(np.int64)]]
-    one, other = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
-    owner, places = places_between(one, other, beyond, within)
-    parts = zip(pairs, itertools.pairwise(ends), strict=True)
+    lower, upper = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
+    owner, places = places_between(lower, upper, beyond, within)
+    parts = zip(over, itertools.pairwise(ends), strict=True)
     pairs = [(*pair, numbers.ravel()[start:end]) for pair, (start, end) in parts]
     return _Between(pairs, places, owner)
 

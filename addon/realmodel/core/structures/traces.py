@@ -34,8 +34,7 @@ _MOST_LINES = 1000
 def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
     attributes where it has none of its own; and warnings. Raises InputRefused."""
-    text_or_file = fault.trace if isinstance(fault.trace, str) else None
-    text_or_file = fault.trace_file or text_or_file
+    text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
     found = (
         FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
     )
@@ -78,7 +77,7 @@ def trace_surface(
     parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
     InputRefused.
     """
-    plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace[:, 2])
+    plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace_line()[:, 2])
     extent = float(norm(plan[1] - plan[0]))
     margin = (high - low) + extent / 4
     low, high = low - margin, high + margin
@@ -90,7 +89,7 @@ def trace_surface(
     )
     top, given = _once_each(top, given)
     top = top[given | _bends(top, given, _STRAIGHT * extent)]
-    warnings = [] if fault.dip == VERTICAL else _compare(top, toward, fault.dip)
+    warnings = [] if fault.dip in (None, VERTICAL) else _compare(top, toward, fault.dip)
     down = run * (high - low) * toward
     if fault.extend > 0:
         top = _continued(top, fault.extend, fault.extend)
@@ -169,15 +168,15 @@ def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
         if len(joins) == 2 * len(lines) - 2:
             break
     at = next(end for end in range(len(ends)) if end not in joins)
-    order, gaps = [lines[at // 2][:: -1 if at % 2 else 1]], []
+    order, bridged = [lines[at // 2][:: -1 if at % 2 else 1]], []
     while (before := at ^ 1) in joins:
         at = joins[before]
         piece = lines[at // 2][:: -1 if at % 2 else 1]
         _refuse_turning_back(order[-1], piece)
-        gaps.append(float(norm(piece[0, :2] - order[-1][-1, :2])))
+        bridged.append(float(norm(piece[0, :2] - order[-1][-1, :2])))
         order.append(piece)
     line = _without_repeats(np.concatenate(order))
-    open_gaps = [gap for gap in gaps if gap > 0]
+    open_gaps = [gap for gap in bridged if gap > 0]
     if not open_gaps:
         return line, []
     text = f"gaps of {number_list(f'{gap:.6g}' for gap in open_gaps)} between the {len(lines)} lines of its "
@@ -209,9 +208,11 @@ def _dip_of(fault: Fault, line: np.ndarray) -> tuple[float, np.ndarray]:
     """How far the surface goes sideways for each unit down, and the direction (2,) of that."""
     if fault.dip == VERTICAL:
         return 0.0, np.zeros(2)
+    direction = fault.dip_direction
+    assert fault.dip is not None and direction is not None  # of read_trace
     angle = math.radians(fault.dip)
-    run, direction = float(cos(angle) / sin(angle)), fault.dip_direction
-    if direction not in COMPASS:
+    run = float(cos(angle) / sin(angle))
+    if not isinstance(direction, str):
         return run, unit_vector(direction)
     right, left = _sides(line)
     side = float(dot(right, unit_vector(COMPASS[direction])))
@@ -243,7 +244,7 @@ def _with_heights(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The trace with all its elevations, and (N,) bool: the points that were given. Between these it gets
     more where it is put on a surface."""
-    line = fault.trace.copy()
+    line = fault.trace_line().copy()
     given = np.ones(len(line), bool)
     if isinstance(fault.elevation, float):
         line[:, 2] = fault.elevation

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from .rock_structure import RockStructure, Triangulation, joined
 from .sides import RockFaults, fault_sides
 from .triangles import extents
 
+_Entry = TypeVar("_Entry", Fault, Body)
 Box = tuple[float, float, float, float]  # low x, low y, high x, high y
 _BESIDE = 0.05  # of the extent of the rock around a tile: a structure so near counts as there
 
@@ -68,6 +70,7 @@ class _Plan:
 
     def meeting(self, box: Box) -> np.ndarray:
         """The numbers, ascending, of the triangles whose boxes meet a box."""
+        assert self._grid is not None  # its triangles are sorted
         ends = ((self._begin[name], self._end[name]) for name in self._grid.tiles_meeting(box))
         tiles = [self._of_tiles[begin:end] for begin, end in ends if begin < end]
         if not tiles:
@@ -101,7 +104,7 @@ class Windows:
         if _are_any_close(work, [plan.vertices for plan in self._all], threads):
             self.inputs, self.snapped = _snapped(work, inputs, threads, keep)
             self._find_plans()
-        ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.structure.sheets]
+        ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.divided().sheets]
         self._ends = min(low for low, _ in ends), max(high for _, high in ends)
         given = structures.native()
         self._continued = native_module().continued_structures(given, structures.box)
@@ -120,7 +123,7 @@ class Windows:
     def _sheets(self) -> Iterator[Triangulation]:
         for entry in self.inputs:
             for number in range(len(entry.surfaces)):
-                yield from entry.structure.distinct(number)
+                yield from entry.divided().distinct(number)
 
     def _known_plan(self, sheet: Triangulation) -> _Plan:
         """The plan of a sheet; sheets of one surface differ only in heights."""
@@ -229,14 +232,18 @@ class Windows:
     def _few(self, present: list[int], fixed: np.ndarray, around: Box) -> tuple[Structures, np.ndarray]:
         """Some structures alone; and (P,) for each of their parts a part of the whole."""
         whole, count = self.structures, len(self.structures.faults)
-        near = (whole.low[:, :2] <= around[2:]).all(axis=1) & (whole.high[:, :2] >= around[:2]).all(axis=1)
+        whole_low, whole_high = whole.boxes()
+        near = (whole_low[:, :2] <= around[2:]).all(axis=1) & (whole_high[:, :2] >= around[:2]).all(axis=1)
         rows = np.flatnonzero(_agree(whole.sides, present, fixed) & near)
         sides, first, part = np.unique(
-            whole.sides[np.ix_(rows, present)], axis=0, return_index=True, return_inverse=True
+            whole.sides[np.ix_(rows, np.array(present, np.int64))],
+            axis=0,
+            return_index=True,
+            return_inverse=True,
         )
         low, high = np.full((len(sides), 3), np.inf), np.full((len(sides), 3), -np.inf)
-        np.minimum.at(low, part.ravel(), whole.low[rows])
-        np.maximum.at(high, part.ravel(), whole.high[rows])
+        np.minimum.at(low, part.ravel(), whole_low[rows])
+        np.maximum.at(high, part.ravel(), whole_high[rows])
         faults = [number for number in present if number < count]
         bodies = [number - count for number in present if number >= count]
         few = Structures(
@@ -278,13 +285,16 @@ class Windows:
                 numbers.append((made[id(sheet)], own))
             return made[id(sheet)]
 
-        structure = entry.structure
+        structure = entry.divided()
         at = [n for n, number in enumerate(structure.faults.numbers) if number in present]
         whole = np.array(structure.faults.numbers, np.int64)
         rows = np.flatnonzero(_agree(structure.compartments, at, fixed[whole]))
-        compartments, first = np.unique(structure.compartments[np.ix_(rows, at)], axis=0, return_index=True)
+        kept = structure.compartments[np.ix_(rows, np.array(at, np.int64))]
+        compartments, first = np.unique(kept, axis=0, return_index=True)
         of = rows[first].tolist()
-        sheets = [[sheet_of(sheet) for sheet in structure.sheets[c]] for c in of]
+        sheets: list[list[Triangulation | None]] = [
+            [sheet_of(structure.sheet(c, k)) for k in range(len(entry.surfaces))] for c in of
+        ]
         found = RockStructure(
             _faults(structure.faults, at, present),
             compartments,
@@ -300,12 +310,19 @@ class Windows:
         if plan is not None:
             _, used, triangles = self._part(plan, taken, of_plan)
             region = np.ascontiguousarray(plan.vertices[used]), triangles
-        nothing = [None] * len(entry.surfaces)
         surfaces = [joined(found.distinct(k)) for k in range(len(entry.surfaces))]
         stub = without_shape(entry.rock)
         for surface, (vertices, triangles) in zip(stub.surfaces, surfaces, strict=True):
             surface.vertices, surface.triangles = vertices, triangles
-        return RockInput(stub, surfaces, region, nothing, nothing, structure=found, torn=entry.torn)
+        return RockInput(
+            stub,
+            list(surfaces),
+            region,
+            [None] * len(surfaces),
+            [None] * len(surfaces),
+            structure=found,
+            torn=entry.torn,
+        )
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -321,7 +338,7 @@ def _are_any_close(work: Work, plans: list[np.ndarray], threads: int) -> bool:
     """Whether any x, or any y, of positions in plan differ by rounding alone. Without triangles, which
     might keep them apart: that is to be decided by those of all sheets."""
     none = np.empty((0, 3), np.int32)
-    rocks = [([], (plan, none), None, []) for plan in plans]
+    rocks: list[tuple] = [([], (plan, none), None, []) for plan in plans]
     return work.native(native_module().find_joins, rocks, borders=False, threads=threads) is not None
 
 
@@ -331,10 +348,10 @@ def _snapped(
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
     and the warning about that, or None."""
     distinct = [
-        {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.structure.distinct(k)}
+        {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.divided().distinct(k)}
         for entry in inputs
     ]
-    rocks = [
+    rocks: list[tuple] = [
         (list(sheets.values()), entry.region, None, [])
         for sheets, entry in zip(distinct, inputs, strict=True)
     ]
@@ -348,9 +365,10 @@ def _snapped(
     found = []
     for entry, sheets in zip(inputs, distinct, strict=True):
         new = {key: snapped(sheet) for key, sheet in sheets.items()}
-        of = [[new[id(sheet)] for sheet in own] for own in entry.structure.sheets]
+        structure = entry.divided()
+        of: list[list[Triangulation | None]] = [[new[id(sheet)] for sheet in own] for own in structure.sheets]
         region = None if entry.region is None else snapped(entry.region)
-        found.append(replace(entry, region=region, structure=replace(entry.structure, sheets=of)))
+        found.append(replace(entry, region=region, structure=replace(structure, sheets=of)))
     return found, joins.text
 
 
@@ -360,7 +378,7 @@ def _agree(sides: np.ndarray, kept: list[int], fixed: np.ndarray) -> np.ndarray:
     return ((sides[:, rest] == fixed[rest]) | (sides[:, rest] == 0)).all(axis=1)
 
 
-def _mesh_alone(entry: Fault | Body, **more) -> Fault | Body:
+def _mesh_alone(entry: _Entry, **more) -> _Entry:
     """A fault or body with its arrays alone, and the file that they are from for messages."""
     return replace(entry, mesh=None, source=None, shape_file=entry.shape_source()[0], **more)
 

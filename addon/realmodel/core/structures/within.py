@@ -10,6 +10,7 @@ import numpy as np
 from ..algebra import norm
 from ..work import Work, native_module
 from .families import DIES_OUT, Family, keys_of, parting
+from .rock_structure import RockStructure
 from .sides import FaultShape, sides_of
 from .triangles import crossing_pairs, extents, segments_hit, shares_hit
 
@@ -19,10 +20,10 @@ _LEAST = 1e-12  # of a line: shorter parts are rounding
 
 @dataclass
 class Within:
-    """Whether points lie in the compartments of a family of surface `number` of a RockInput."""
+    """Whether points lie in the compartments of a family of surface `number` of a rock mass."""
 
     work: Work
-    entry: object
+    structure: RockStructure
     number: int
     family: Family
     threads: int
@@ -30,20 +31,20 @@ class Within:
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """(N,) bool of points (N, 3)."""
-        structure = self.entry.structure
-        asked = parting(structure.faults, self.number)
-        return self.has(sides_of(self.work, points, structure.faults, self.threads, asked))
+        faults = self.structure.faults
+        asked = parting(faults, self.number)
+        return self.has(sides_of(self.work, points, faults, self.threads, asked))
 
     def has(self, sides: np.ndarray) -> np.ndarray:
         """(N,) bool of points with these sides (N, F) of the faults."""
-        keys = keys_of(self.entry.structure, self.number, sides)
+        keys = keys_of(self.structure, self.number, sides)
         keys[:, list(self.family.branches)] = DIES_OUT
         return (keys == self.family.key).all(axis=1)
 
     def walls(self, box: np.ndarray) -> np.ndarray:
         """(M, 3, 3) triangles of all faults and of what continues them in a box (2, 3): between them nothing
         changes."""
-        faults = self.entry.structure.faults
+        faults = self.structure.faults
         if not parting(faults, self.number):
             return np.empty((0, 3, 3))
         if self.known is None or (box[0] < self.known[0][0]).any() or (box[1] > self.known[0][1]).any():

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..mapped_arrays import ROWS_AT_ONCE, in_pieces
+from ..model_data import SomeModel
 
 _BASE = -2  # face_surface of the flat base
 
@@ -133,7 +134,9 @@ class _Insertion:
     numbers: np.ndarray
 
 
-def with_vertices_of(model, border: BorderEdges, neighbors: Sequence[tuple[Side, Interfaces, np.ndarray]]):
+def with_vertices_of(
+    model: SomeModel, border: BorderEdges, neighbors: Sequence[tuple[Side, Interfaces, np.ndarray]]
+) -> SomeModel:
     """The model with the vertices that its neighbors have on their interfaces, in all faces there; the model
     itself where there are none. border: of the model. neighbors: the side of each, its interfaces there, and
     the places (N, 3) of its vertices."""
@@ -190,7 +193,7 @@ def _insertion(
     ends = np.column_stack([pairs >> 32, pairs & 0xFFFFFFFF])
     along = np.sort(model.vertices[ends, side.along], axis=1)
     begin, count = np.zeros((2, len(pairs)), np.int64)
-    points = []
+    points: list[np.ndarray] = []
     for number in np.unique(on):
         theirs = places[np.unique(other.ends[other.on == number])]
         theirs = theirs[np.unique(theirs[:, side.along], return_index=True)[1]]  # and ascending
@@ -199,7 +202,7 @@ def _insertion(
         theirs = theirs[~np.isin(_on_line(theirs, side), there)]
         start = np.searchsorted(theirs[:, side.along], along[own, 0], "right")
         stop = np.searchsorted(theirs[:, side.along], along[own, 1], "left")
-        begin[own], count[own] = start + sum(map(len, points)), np.maximum(stop - start, 0)
+        begin[own], count[own] = start + sum(len(each) for each in points), np.maximum(stop - start, 0)
         points.append(theirs)
     if not count.any():
         return None
@@ -211,8 +214,8 @@ def _insertion(
     place[place == len(pairs)] = 0
     needed = (pairs[place] == _pairs(edges)) & (count[place] > 0)
     face, at, place = edges.face[needed], edges.at[needed], place[needed]
-    ends = model.vertices[edges.first[needed], side.along], model.vertices[edges.second[needed], side.along]
-    backward = ends[0] > ends[1]
+    first, second = (model.vertices[own[needed], side.along] for own in (edges.first, edges.second))
+    backward = first > second
     size = count[place]
     inserted = _spread(first_new[place], size)
     step = np.arange(len(inserted)) - np.repeat(np.cumsum(size) - size, size)
@@ -334,9 +337,10 @@ def matched(one: Patches, other: Patches, side: Side) -> Matched:
     if wrong:
         at = (side.line, float(wrong[0][0]))
         place = (*(at if side.axis == 0 else at[::-1]), float(wrong[0][2]))
-    cells = [(one.cell[k], other.cell[m]) for k, m in pairs]
     return Matched(
-        np.unique(np.array(cells, np.int64).reshape(-1, 2), axis=0),
+        np.unique(
+            np.array([(one.cell[k], other.cell[m]) for k, m in pairs], np.int64).reshape(-1, 2), axis=0
+        ),
         max(len(one.cell), len(other.cell)),
         len(wrong) + one.open + other.open,
         place,

@@ -153,15 +153,15 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels)
         for n, block in enumerate(whole.blocks)
     ]
     nothing = np.empty((0, 3)), np.empty((0, 3), np.int32)
-    shapes = [nothing] * len(whole.structures)
+    ends = [nothing] * len(whole.structures)
     for n, shape in zip(window.numbers.tolist(), window.structures.shapes, strict=True):
-        shapes[n] = shape
-    shapes = [surface for entry in window.inputs for surface in entry.surfaces] + shapes
+        ends[n] = shape
+    shapes = [entry.surface(number) for entry in window.inputs for number in range(len(entry.surfaces))]
     labels_of_cells, names, sides = labels
     return Model(
         own,
         blocks,
-        SurfaceArrays.of(shapes),
+        SurfaceArrays.of(shapes + ends),
         surface_names=whole.surface_names,
         project=frame.project,
         rock_inputs=[replace(entry, structure=None) for entry in window.inputs],

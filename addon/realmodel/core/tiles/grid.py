@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -46,18 +47,21 @@ class TileGrid:
 
     def box(self, column: int, row: int) -> tuple[float, float, float, float]:
         """Low x, low y, high x, high y."""
-        return tuple(
-            float(line) for line in (self.x[column], self.y[row], self.x[column + 1], self.y[row + 1])
-        )
+        x, y = self.x, self.y
+        return float(x[column]), float(y[row]), float(x[column + 1]), float(y[row + 1])
 
     def tiles_meeting(self, box: tuple[float, float, float, float]) -> Iterator[tuple[int, int]]:
         """The tiles that a box meets; what lies beyond the outermost lines counts to the outermost tiles."""
-        first, last = [], []
-        for axis, lines in enumerate((self.x, self.y)):
-            for ends, end, side in ((first, box[axis], "left"), (last, box[axis + 2], "right")):
-                ends.append(int((np.searchsorted(lines, end, side) - 1).clip(0, len(lines) - 2)))
-        columns, rows = (range(low, high + 1) for low, high in zip(first, last, strict=True))
+        columns, rows = (
+            range(int(_strip(lines, box[axis], "left")), int(_strip(lines, box[axis + 2], "right")) + 1)
+            for axis, lines in enumerate((self.x, self.y))
+        )
         return ((column, row) for row in rows for column in columns)
+
+
+def _strip(lines: np.ndarray, places, side: Literal["left", "right"]) -> np.ndarray:
+    """The columns or rows that coordinates lie in; on a line that on this side of it."""
+    return (np.searchsorted(lines, places, side) - 1).clip(0, len(lines) - 2)
 
 
 def checked_size(tile_size) -> tuple[float, float]:
@@ -132,10 +136,8 @@ def triangles_by_tile(mesh: Triangulation, grid: TileGrid) -> Iterator[tuple[tup
         first, count = [], []
         for axis, lines in enumerate((grid.x, grid.y)):
             a, b, c = (vertices[:, axis][corner] for corner in corners.T)
-            ends = (np.minimum(np.minimum(a, b), c), "left"), (np.maximum(np.maximum(a, b), c), "right")
-            low, high = (
-                (np.searchsorted(lines, end, side) - 1).clip(0, len(lines) - 2) for end, side in ends
-            )
+            low = _strip(lines, np.minimum(np.minimum(a, b), c), "left")
+            high = _strip(lines, np.maximum(np.maximum(a, b), c), "right")
             first.append(low)
             count.append(high - low + 1)
         tiles = count[0] * count[1]

@@ -165,7 +165,8 @@ def _separate(values: dict[str, float]) -> None:
 
 
 def _words(line: bytes) -> _Exact:
-    return tuple(line.decode().split())
+    x, y, z = line.decode().split()
+    return x, y, z
 
 
 def _text(value: float) -> str:

@@ -340,17 +340,21 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]
-        shapes = [(part.vertices, part.triangles) for part in surfaces]
         region, seen = None, box_triangles(box)
         if frame.clips[r]:
             region = (parts[r, REGION].vertices[:, :2].copy(), parts[r, REGION].triangles)
             seen = clipped_region(region, box)
         given = [
-            replace(surface, vertices=vertices, triangles=triangles)
-            for surface, (vertices, triangles) in zip(rock.surfaces, shapes, strict=True)
+            replace(surface, vertices=part.vertices, triangles=part.triangles)
+            for surface, part in zip(rock.surfaces, surfaces, strict=True)
         ]
-        nothing = [None] * len(shapes)
-        entry = RockInput(replace(rock, surfaces=given), shapes, region, nothing, nothing)
+        entry = RockInput(
+            replace(rock, surfaces=given),
+            [(part.vertices, part.triangles) for part in surfaces],
+            region,
+            [None] * len(surfaces),
+            [None] * len(surfaces),
+        )
         rocks.append(entry.native())
         inputs.append(replace(entry, region=seen))
     numbers = [
@@ -402,7 +406,7 @@ def tile_arrays(model: Model) -> dict[str, np.ndarray]:
     arrays = model_arrays(model)
     for r, entry in enumerate(model.rock_inputs):
         if not model.is_cut:
-            arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.region
+            arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"] = entry.planar_mesh()
     return arrays
 
 
@@ -451,7 +455,7 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
         inputs.append(
             RockInput(
                 replace(rock, surfaces=surfaces),
-                shapes,
+                list(shapes),
                 None if model.is_cut else (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
                 [None] * len(shapes),
                 [None] * len(shapes),

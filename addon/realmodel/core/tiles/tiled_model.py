@@ -7,6 +7,7 @@ import functools
 import hashlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -84,8 +85,8 @@ class TiledModel:
     @property
     def surface_names(self) -> list[str]:
         """As of Model: surfaces, faults, bodies."""
-        surfaces = [surface for rock in self.project.rocks for surface in rock.surfaces]
-        return [each.name for each in (*surfaces, *self.project.faults, *self.project.bodies)]
+        surfaces = [surface.name for rock in self.project.rocks for surface in rock.surfaces]
+        return surfaces + [each.name for each in (*self.project.faults, *self.project.bodies)]
 
     def section(self, point, normal, threads: int = 0) -> Section:
         """As Model.section; cells count through the tiles in their order. A plane on a border between tiles
@@ -160,8 +161,8 @@ def joined_intervals(found: list[Interval]) -> list[Interval]:
     joined: list[Interval] = []
     for each in sorted(found, key=lambda interval: -interval.top):
         last = joined[-1] if joined else None
-        near = last is not None and abs(last.bottom - each.top) <= _OFF * np.spacing(abs(each.top))
-        if near and last.block == each.block:
+        off = _OFF * np.spacing(abs(each.top))
+        if last is not None and abs(last.bottom - each.top) <= off and last.block == each.block:
             joined[-1] = Interval(each.block, last.top, each.bottom)
         else:
             joined.append(each)
@@ -180,12 +181,15 @@ def joined_sections(sections: list[Section]) -> Section:
     by_polygon = ["cells", "blocks", "block", "property", "compartment"]
     if isinstance(sections[0], Fence):
         by_polygon.append("panel")
+    joined: dict[str, Any] = {  # dataclasses.replace takes fields of any type
+        name: np.concatenate([getattr(each, name) for each in sections]) for name in by_polygon
+    }
     return replace(
         sections[0],
         vertices=vertices,
         offsets=np.concatenate([*offsets, starts[-1:]]).astype(np.int64),
         polygon_vertices=number.reshape(-1)[np.concatenate(corners)].astype(np.int32),
-        **{name: np.concatenate([getattr(each, name) for each in sections]) for name in by_polygon},
+        **joined,
     )
 
 

@@ -68,10 +68,10 @@ class _Cells:
     """How many points are in each cell of a grid over points and boxes."""
 
     def __init__(self, points: np.ndarray, boxes: Sequence[Box]):
-        boxes = np.array(boxes).reshape(-1, 2, 2)
+        ends = np.array(boxes).reshape(-1, 2, 2)
         plan = points[:, :2]
-        self._low = np.minimum(plan.min(axis=0), boxes[:, 0].min(axis=0))
-        size = np.maximum(plan.max(axis=0), boxes[:, 1].max(axis=0)) - self._low
+        self._low = np.minimum(plan.min(axis=0), ends[:, 0].min(axis=0))
+        size = np.maximum(plan.max(axis=0), ends[:, 1].max(axis=0)) - self._low
         cells = min(len(points) / _IN_CELL, _MOST_CELLS)
         self._side = max(float(np.sqrt(size[0] * size[1] / cells)), float(size.max()) / cells) or 1.0
         shape = self._at(self._low + size) + 1
