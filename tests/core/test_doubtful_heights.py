@@ -149,3 +149,14 @@ def test_beside_a_fault():
     assert all(float(w.text.split("on ")[1].split(" %")[0]) > 50 for w in found)
     surfaces[-1] = of(on(wells(9), 400.0), "top", method="plane")
     assert not warnings(surfaces, "extrapolation", [fault])
+
+
+def test_picks_that_contradict_each_other_beside_a_fault_may_have_one_place():
+    """They are left out, and do not keep the others from being asked about."""
+    surfaces = diving()
+    picks = [[450.0, 500.0, 265.0], [450.0, 500.0, 365.0]]
+    surfaces[-1].points = np.concatenate([surfaces[-1].points, picks])
+    corners = np.array([[200, -50, -500], [200, 1050, -500], [200, 1050, 900], [200, -50, 900]], float)
+    fault = Fault("F", corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
+    (found,) = warnings(surfaces, "extrapolation", [fault])
+    assert "it cuts 'S3 block' and 'S4 block'" in found.text
