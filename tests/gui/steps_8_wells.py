@@ -88,7 +88,7 @@ def sticks_are_lines(walk):
     with in_the_viewport(walk):
         _select([_object(f"S{n}", *_sheet(20.0 * n)) for n in range(2)])
         bpy.ops.realmodel.from_selected()
-    sticks = [[(60.0 + h / 4, y, h) for h in (40, 10, -20)] for y in (20, 50, 80)]
+    sticks = [[(60.0 + h / 4, y, h) for h in (40, 10, -20)] for y in (30, 50, 70)]
     path = walk.folder / "sticks.pol"
     path.write_text("".join("".join(f"{x} {y} {z}\n" for x, y, z in s) + "999 999 999\n" for s in sticks))
     with in_the_viewport(walk):
