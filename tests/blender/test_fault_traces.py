@@ -8,7 +8,7 @@ import numpy as np
 from panel_case import ops, outline, select
 from realmodel.bl import built_scene, compartments, data_objects, project_settings, settings, viewports
 from realmodel.core import PointFile, build, load_project
-from test_structures import StructureCase, mesh_object, wall
+from test_structures import StructureCase, wall
 
 LINE = [(50.0, 10.0), (50.0, 90.0)]
 
@@ -154,7 +154,11 @@ class Drawn(TraceCase):
         ops.fault_body_from_selected()
         self.refused(ops.build, "fault 'ring': its trace returns to where it begins")
         ops.fault_body_remove()
-        select(mesh_object("dots", [(0, 0, 0), (1, 1, 1)], np.empty((0, 3), int)))
+        dots = bpy.data.meshes.new("dots")
+        dots.from_pydata([(0, 0, 0), (1, 1, 1)], [], [])
+        dots = bpy.data.objects.new("dots", dots)
+        self.scene.collection.objects.link(dots)
+        select(dots)
         self.refused(ops.fault_body_from_selected, "object 'dots' has no faces")
         select(outline("line", LINE, cyclic=False))
         self.refused(ops.fault_body_from_selected, "object 'line' has no faces", kind="BODY")
