@@ -41,12 +41,11 @@ def make_sheets(
     that has data in no compartment.
     """
     rock = entry.rock
-    count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
     interpolated, ready = (
         [
             number
             for number in each
-            if (numbers is None or number in numbers) and not _has_sheets(entry, number)
+            if (numbers is None or number in numbers) and not entry.structure.is_made(number)
         ]
         for each in _by_kind(rock, stage)
     )
@@ -85,12 +84,12 @@ def make_sheets(
         with work.phase(end, end, "interpolating surfaces"):
             begun = {*ready, *interpolated}
             for number in itertools.chain(*reversed(_by_kind(rock, None))):
-                if number not in begun and not _has_sheets(entry, number):
+                if number not in begun and not entry.structure.is_made(number):
                     unfinished += begin(work, number, threads)
             for sheets in unfinished:
                 sheets.surface.work = work
             make_borrowed(unfinished, Throws(work, entry.structure, few, threads), finish)
-        younger = {surface.name for surface in rock.surfaces[count:]}
+        younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
         warnings = entry.structure.warnings
         entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
 
@@ -98,12 +97,12 @@ def make_sheets(
 def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
     """The surfaces that are interpolated, each after those that it needs, and the others."""
     interpolated = interpolation_order(rock, stage)
-    count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
-    return interpolated, [number for number in range(count) if number not in interpolated]
+    return interpolated, [number for number in range(_count(rock, stage)) if number not in interpolated]
 
 
-def _has_sheets(entry, number: int) -> bool:
-    return entry.structure.sheets[0][number] is not None
+def _count(rock, stage: int | None) -> int:
+    """The number of surfaces up to a stage."""
+    return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
 
 
 def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Keep) -> None:
