@@ -7,6 +7,7 @@
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/point_bins.hpp"
@@ -74,13 +75,12 @@ double height(const ComplexView& model, std::span<const std::int32_t> loop, cons
         high = std::max(high, b[2]);
         if (i + 1 == loop.size()) break;
         const auto c = model.vertex(loop[i + 1]);
-        const double bx = b[0] - o[0], by = b[1] - o[1], cx = c[0] - o[0], cy = c[1] - o[1];
-        const double area = bx * cy - by * cx;
+        const Vec2 u{b[0] - o[0], b[1] - o[1]}, v{c[0] - o[0], c[1] - o[1]};
+        const double area = cross(u, v);
         if (std::abs(area) <= largest) continue;
         largest = std::abs(area);
-        const double px = p[0] - o[0], py = p[1] - o[1];
-        at = o[2] + (px * cy - py * cx) / area * (b[2] - o[2]) +
-             (bx * py - by * px) / area * (c[2] - o[2]);
+        const Vec2 w{p[0] - o[0], p[1] - o[1]};
+        at = o[2] + cross(w, v) / area * (b[2] - o[2]) + cross(u, w) / area * (c[2] - o[2]);
     }
     return std::clamp(at, low, high);
 }

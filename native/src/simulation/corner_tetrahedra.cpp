@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace realmodel::simulation {
 
@@ -70,24 +71,16 @@ struct Incidence {
     }
 };
 
-std::array<double, 3> normal(const FilledMesh& mesh, const Tetrahedron& corners,
-                             std::size_t corner) {
-    std::array<std::array<double, 3>, 3> at{};
+/// The unit normal, outward, of the face across from a corner.
+Vec3 normal(const FilledMesh& mesh, const Tetrahedron& corners, std::size_t corner) {
+    std::array<Vec3, 3> at{};
     for (std::size_t i = 0, k = 0; i < 4; ++i)
         if (i != corner) at[k++] = mesh.points[index(corners[i])];
-    std::array<std::array<double, 3>, 3> edge{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        edge[0][axis] = at[1][axis] - at[0][axis];
-        edge[1][axis] = at[2][axis] - at[0][axis];
-        edge[2][axis] = mesh.points[index(corners[corner])][axis] - at[0][axis];
-    }
-    const auto& [u, v, inward] = edge;
-    std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                            u[0] * v[1] - u[1] * v[0]};
-    const double size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    const bool turns = n[0] * inward[0] + n[1] * inward[1] + n[2] * inward[2] > 0;
+    Vec3 n = triangle_normal(at[0], at[1], at[2]);
+    const double size = length(n);
+    const bool is_inward = dot(n, minus(mesh.points[index(corners[corner])], at[0])) > 0;
     for (double& x : n)
-        x /= turns ? -size : size;
+        x /= is_inward ? -size : size;
     return n;
 }
 
@@ -147,7 +140,7 @@ private:
     /// and the others, inside until now, take their place.
     bool give_up(std::size_t t, const std::vector<std::int32_t>& inside) {
         const Tetrahedron corners = mesh_.tetrahedra[t];
-        std::vector<std::array<double, 3>> normals;
+        std::vector<Vec3> normals;
         std::vector<Triangle> old_faces, new_faces;
         for (std::size_t i = 0; i < 4; ++i) {
             const bool is_outer =
@@ -157,10 +150,7 @@ private:
         }
         for (std::size_t i = 0; i < normals.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                if (!(normals[i][0] * normals[j][0] + normals[i][1] * normals[j][1] +
-                          normals[i][2] * normals[j][2] >
-                      kFlat))
-                    return false;
+                if (!(dot(normals[i], normals[j]) > kFlat)) return false;
         std::vector<std::size_t> rows;
         for (const std::int32_t f : incidence_.triangles[index(inside[0])]) {
             const Triangle& face = triangles_[index(f)];
@@ -227,7 +217,7 @@ private:
             if (is_taken_[index(t)] != 0) return false;
             around.push_back(t);
         }
-        std::array<double, 3> middle{};
+        Vec3 middle{};
         for (const std::int32_t v : middle_of)
             for (std::size_t axis = 0; axis < 3; ++axis)
                 middle[axis] +=
@@ -317,14 +307,8 @@ void drop_unused_points(FilledMesh& mesh) {
 }  // namespace
 
 double six_volumes(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
-    const auto& o = mesh.points[index(corners[0])];
-    std::array<std::array<double, 3>, 3> edge{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            edge[i][axis] = mesh.points[index(corners[i + 1])][axis] - o[axis];
-    const auto& [a, b, c] = edge;
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-           a[2] * (b[0] * c[1] - b[1] * c[0]);
+    const auto at = [&](std::size_t i) { return mesh.points[index(corners[i])]; };
+    return sixfold_volume(at(0), at(1), at(2), at(3));
 }
 
 void divide_corner_tetrahedra(FilledMesh& mesh, Progress* progress) {

@@ -7,6 +7,7 @@
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace realmodel::simulation {
 
@@ -26,53 +27,41 @@ constexpr double kThickEnd = 3;          ///< minimum thicknesses: no block give
 constexpr double kEasedFace = 0.8;       ///< cosine: flatter faces are not what makes lines lean
 constexpr double kEasedShare = 0.1;
 
-using Point = std::array<double, 3>;
 using Face = ElementFace;
-
-double dot(const Point& a, const Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point difference(const Point& a, const Point& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 
 /// How far from its center a face is crossed, as checkMesh measures it: 1 is the edge of the face.
 /// @param way  from the center of an element to that of the face
 /// @param line  from there to the other element; at the outside to the plane of the face, upright
 /// @param share  of the length of the line that counts as the size of a smaller face
-double skewness(const Face& face, const Point& way, const Point& line, double share) {
+double skewness(const Face& face, const Vec3& way, const Vec3& line, double share) {
     const double ratio = dot(way, face.area) / dot(line, face.area);
-    Point off;  // from where the line crosses the face to its center
-    for (std::size_t k = 0; k < 3; ++k)
-        off[k] = way[k] - ratio * line[k];
-    const double far = std::sqrt(dot(off, off));
+    const Vec3 off = minus(way, times(ratio, line));  // from where the line crosses the face
+    const double far = length(off);
     if (far == 0) return 0;
-    double reach = share * std::sqrt(dot(line, line));
-    for (const Point& corner : face.corners)
-        reach = std::max(reach, std::abs(dot(off, difference(corner, face.center))) / far);
+    double reach = share * length(line);
+    for (const Vec3& corner : face.corners)
+        reach = std::max(reach, std::abs(dot(off, minus(corner, face.center))) / far);
     return far / reach;
 }
 
-double inner_skewness(const Face& face, const Point& own, const Point& other) {
-    return skewness(face, difference(face.center, own), difference(other, own), 0.2);
+double inner_skewness(const Face& face, const Vec3& own, const Vec3& other) {
+    return skewness(face, minus(face.center, own), minus(other, own), 0.2);
 }
 
-double outer_skewness(const Face& face, const Point& own) {
-    const Point way = difference(face.center, own);
+double outer_skewness(const Face& face, const Vec3& own) {
+    const Vec3 way = minus(face.center, own);
     const double share = dot(way, face.area) / dot(face.area, face.area);
-    return skewness(face, way, {share * face.area[0], share * face.area[1], share * face.area[2]},
-                    0.4);
+    return skewness(face, way, times(share, face.area), 0.4);
 }
 
 /// Whether checkMesh fails a face between two elements.
-bool is_bad(const Face& face, const Point& own, double own_volume, const Point& other,
+bool is_bad(const Face& face, const Vec3& own, double own_volume, const Vec3& other,
             double other_volume) {
-    const Point line = difference(other, own), way = difference(face.center, own);
-    const double along = dot(line, face.area), size = std::sqrt(dot(face.area, face.area)),
-                 length = std::sqrt(dot(line, line));
-    if (along < kMostLean * size * length) return true;
+    const Vec3 line = minus(other, own), way = minus(face.center, own);
+    const double along = dot(line, face.area), size = length(face.area);
+    if (along < kMostLean * size * length(line)) return true;
     const double before = std::abs(dot(way, face.area)),
-                 behind = std::abs(dot(difference(other, face.center), face.area));
+                 behind = std::abs(dot(minus(other, face.center), face.area));
     if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
     if (std::min(own_volume, other_volume) < kLeastShare * std::max(own_volume, other_volume))
         return true;
@@ -366,7 +355,7 @@ void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const st
     const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
     parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
         const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
-        const Point& center = of_parts[own.element].center;
+        const Vec3& center = of_parts[own.element].center;
         const double skewness = is_outer
                                     ? outer_skewness(face, center)
                                     : inner_skewness(face, center, of_parts[other.element].center);
@@ -486,17 +475,17 @@ std::size_t ElementQuality::moved_corners(std::size_t element) const {
 /// from the direction across the face between them. Asked of faces that are steeper, or flatter,
 /// than an angle of this cosine.
 bool ElementQuality::leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const {
-    const Point area = flat_area(t, columns_.fronts[below + 1]);
+    const Vec3 area = flat_area(t, columns_.fronts[below + 1]);
     const double across = dot(area, area);
     if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
-    const Point line = difference(body(t, below + 1).center, body(t, below).center);
+    const Vec3 line = minus(body(t, below + 1).center, body(t, below).center);
     return dot(line, area) < kMostLean * std::sqrt(dot(line, line) * across);
 }
 
 /// The center of an element's volume: its upright edges weigh as they are long.
 ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
-    std::array<Point, 3> from;
+    std::array<Vec3, 3> from;
     std::array<double, 3> rise;
     double total = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -515,20 +504,17 @@ ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) co
             made.center[2] += weight * (from[i][2] + rise[i] / 2);
         }
     }
-    const Point u = difference(from[1], from[0]), v = difference(from[2], from[0]);
-    made.volume = (u[0] * v[1] - u[1] * v[0]) * total / 6;
+    const Vec3 u = minus(from[1], from[0]), v = minus(from[2], from[0]);
+    made.volume = cross(u, v)[2] * total / 6;
     return made;
 }
 
-ElementQuality::Point ElementQuality::flat_area(std::size_t t, const Front& front) const {
-    const Point a = position(t, 0, front[0]), u = difference(position(t, 1, front[1]), a),
-                v = difference(position(t, 2, front[2]), a);
-    return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
-            (u[0] * v[1] - u[1] * v[0]) / 2};
+Vec3 ElementQuality::flat_area(std::size_t t, const Front& front) const {
+    return times(0.5, triangle_normal(position(t, 0, front[0]), position(t, 1, front[1]),
+                                      position(t, 2, front[2])));
 }
 
-ElementQuality::Point ElementQuality::position(std::size_t t, std::size_t corner,
-                                               std::int32_t at) const {
+Vec3 ElementQuality::position(std::size_t t, std::size_t corner, std::int32_t at) const {
     const std::int32_t node = plan_.mesh().triangles[t][corner];
     const PlanPoint& p = plan_.mesh().vertices[index(node)];
     return {p[0], p[1], levels_.heights(node)[index(at)]};
@@ -537,21 +523,21 @@ ElementQuality::Point ElementQuality::position(std::size_t t, std::size_t corner
 double ElementQuality::determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
                                    unsigned open_sides) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
-    std::array<Point, 5> areas;
+    std::array<Vec3, 5> areas;
     std::size_t count = 0;
     if (!is_first) areas[count++] = flat_area(t, low);
     if (!is_last) areas[count++] = flat_area(t, high);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         if ((open_sides >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
-        const Point a = position(t, i, low[i]), b = position(t, j, low[j]);
+        const Vec3 a = position(t, i, low[i]), b = position(t, j, low[j]);
         const double rise =
             (position(t, i, high[i])[2] - a[2] + position(t, j, high[j])[2] - b[2]) / 2;
         areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
     }
     double mean = 0;
     for (std::size_t f = 0; f < count; ++f)
-        mean += std::sqrt(dot(areas[f], areas[f]));
+        mean += length(areas[f]);
     if (!(mean > 0)) return 0;
     mean /= static_cast<double>(count);
     double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;

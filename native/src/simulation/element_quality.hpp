@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/progress.hpp"
 #include "simulation/column_fronts.hpp"
 #include "simulation/plan_topology.hpp"
@@ -17,8 +18,8 @@ namespace realmodel::simulation {
 
 /// A face of an element, of three or four corners (of three one is twice there).
 struct ElementFace {
-    std::array<std::array<double, 3>, 4> corners;
-    std::array<double, 3> area, center;
+    std::array<Vec3, 4> corners;
+    Vec3 area, center;
 };
 
 /// Finds the elements that solvers do badly with, as OpenFOAM's checkMesh measures it, and what
@@ -51,7 +52,7 @@ public:
     struct Skewed {
         std::size_t faces = 0;
         double most = 0;
-        std::array<double, 3> place{};
+        Vec3 place{};
         std::vector<std::int32_t> tall;
         Removals removals;
     };
@@ -64,9 +65,8 @@ public:
     std::vector<PostLevels::Move> steep(std::span<const std::uint8_t> is_asked) const;
 
 private:
-    using Point = std::array<double, 3>;
     struct Body {
-        Point center;
+        Vec3 center;
         double volume;
     };
 
@@ -78,8 +78,8 @@ private:
     };
 
     std::size_t moved_corners(std::size_t element) const;
-    Point position(std::size_t t, std::size_t corner, std::int32_t at) const;
-    Point flat_area(std::size_t t, const Front& front) const;
+    Vec3 position(std::size_t t, std::size_t corner, std::int32_t at) const;
+    Vec3 flat_area(std::size_t t, const Front& front) const;
     Body body(std::size_t t, std::size_t element) const;
     std::vector<Body> bodies() const;
     bool gives_upward(std::size_t t, std::size_t element) const;

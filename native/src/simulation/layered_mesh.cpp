@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/column_fronts.hpp"
 #include "simulation/column_heights.hpp"
@@ -258,10 +259,9 @@ private:
                 ++a;
             add(mesh_.tetrahedra, {low[0], low[1], low[2], high[a]});
         }
-        const PlanPoint &o = plan_.mesh().vertices[index(node_[0])],
-                        &p = plan_.mesh().vertices[index(node_[1])],
-                        &q = plan_.mesh().vertices[index(node_[2])];
-        const double area = ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])) / 2;
+        const auto& plan = plan_.mesh().vertices;
+        const double area =
+            twice_area(plan[index(node_[0])], plan[index(node_[1])], plan[index(node_[2])]) / 2;
         double rise = 0;
         for (std::size_t i = 0; i < 3; ++i)
             rise += levels_.heights(node_[i])[index(to[i])] -

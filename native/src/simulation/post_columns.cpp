@@ -6,6 +6,7 @@
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/plan_tiles.hpp"
@@ -39,9 +40,7 @@ public:
                 if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) > 0) continue;
                 const int from = exact::orient2d(p, q, a), to = exact::orient2d(p, q, b);
                 if (from * to > 0 || (from == 0 && to == 0)) continue;
-                const auto off = [&](const PlanPoint& c) {
-                    return std::abs((q[0] - p[0]) * (c[1] - p[1]) - (q[1] - p[1]) * (c[0] - p[0]));
-                };
+                const auto off = [&](const PlanPoint& c) { return std::abs(twice_area(p, q, c)); };
                 const double whole = off(a) + off(b);
                 if (whole > 0) free = std::min(free, off(a) / whole);
             }
@@ -63,7 +62,7 @@ private:
 
 PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
     if (share == 1) return b;
-    return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+    return moved(a, share, minus(b, a));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vectors.hpp"
+
 namespace realmodel::simulation {
 
 namespace {
@@ -270,12 +272,12 @@ bool ChangeCheck::keeps_shape(const Change& change, std::int32_t cell, double& v
 bool ChangeCheck::keeps_volume(const Change& change, std::int32_t cell, std::span<const Beside> own,
                                double& volume) const {
     const CellShape& old = complex_.cell(cell);
-    const SpaceVector from = complex_.point(loop_of(change, own[0].face)[0]);
+    const Vec3 from = complex_.point(loop_of(change, own[0].face)[0]);
     volume = old.volume;
     for (const Beside& each : own) {
         const FaceShape& shape = shape_of(change, each.face);
         const bool adds = (each.face < 0) == (cells_of(change, each.face)[0] == cell);
-        volume += (adds ? 1 : -1) * dot(shape.area, shape.center - from) / 3;
+        volume += (adds ? 1 : -1) * dot(shape.area, minus(shape.center, from)) / 3;
     }
     return volume > kLeastVolume * old.area * std::sqrt(old.area);
 }

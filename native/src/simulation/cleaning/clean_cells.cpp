@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "simulation/cleaning/change_check.hpp"
 #include "simulation/cleaning/editable_complex.hpp"
 
@@ -142,10 +143,10 @@ private:
         if (forward && backward) {
             const double difference = cost - check_.volume_change();
             const double least = kAlike * std::max(cost, check_.volume_change());
-            const SpaceVector a = complex_.point(edge.from), b = complex_.point(edge.to);
+            const Vec3 a = complex_.point(edge.from), b = complex_.point(edge.to);
             takes_other = std::abs(difference) > least
                               ? difference > 0
-                              : std::tie(a.z, a.x, a.y) > std::tie(b.z, b.x, b.y);
+                              : std::tie(a[2], a[0], a[1]) > std::tie(b[2], b[0], b[1]);
         }
         const std::int32_t gone = takes_other ? edge.to : edge.from;
         const std::int32_t kept = takes_other ? edge.from : edge.to;
@@ -221,15 +222,15 @@ private:
         // a polygon is at least as wide as its area over its longest edge is
         if (!(length(complex_.shape(face).area) < tolerance_ * most)) return;
         const std::int32_t from = loop[longest], to = loop[(longest + 1) % n];
-        const SpaceVector start = complex_.point(from);
-        const SpaceVector way = (1 / most) * (complex_.point(to) - start);
+        const Vec3 start = complex_.point(from);
+        const Vec3 way = times(1 / most, minus(complex_.point(to), start));
         std::int32_t nearest = -1;
         double least = tolerance_, widest = 0;
         for (const std::int32_t v : loop) {
             if (v == from || v == to) continue;
-            const SpaceVector arm = complex_.point(v) - start;
+            const Vec3 arm = minus(complex_.point(v), start);
             const double along = dot(arm, way);
-            const double across = length(arm - along * way);
+            const double across = length(minus(arm, times(along, way)));
             widest = std::max(widest, across);
             if (along > 0 && along < most && across < least) {
                 least = across;
@@ -271,7 +272,7 @@ private:
             if (!(area > 0)) continue;
             double most = 0;
             for (std::size_t i = 0; i < vertices.size() && most < least; ++i) {
-                const SpaceVector arm = complex_.point(vertices[i]) - face.center;
+                const Vec3 arm = minus(complex_.point(vertices[i]), face.center);
                 most = std::max(most, std::abs(dot(arm, face.area)) / area);
             }
             least = std::min(least, most);

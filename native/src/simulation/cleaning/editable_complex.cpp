@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::simulation {
@@ -69,21 +70,21 @@ ListPool faces_of(std::size_t count, std::size_t faces, const Visit& visit) {
 
 CellShape cell_shape(std::span<const SeenFace> faces) {
     CellShape found;
-    SpaceVector middle;
+    Vec3 middle{};
     for (const SeenFace& face : faces)
-        middle = middle + face.shape.center;
-    middle = (1.0 / static_cast<double>(faces.size())) * middle;
-    SpaceVector moment;
+        middle = plus(middle, face.shape.center);
+    middle = times(1.0 / static_cast<double>(faces.size()), middle);
+    Vec3 moment{};
     for (const SeenFace& face : faces) {
-        const SpaceVector arm = face.shape.center - middle;
+        const Vec3 arm = minus(face.shape.center, middle);
         const double part = face.sign * dot(face.shape.area, arm) / 3;
         found.volume += part;
-        moment = moment + part * (0.75 * arm);
+        moment = moved(moment, part, times(0.75, arm));
         found.area += length(face.shape.area);
     }
-    const SpaceVector center = found.volume > 0 ? middle + (1 / found.volume) * moment : middle;
+    const Vec3 center = found.volume > 0 ? moved(middle, 1 / found.volume, moment) : middle;
     for (const SeenFace& face : faces) {
-        if (!(face.sign * dot(face.shape.area, face.shape.center - center) > 0))
+        if (!(face.sign * dot(face.shape.area, minus(face.shape.center, center)) > 0))
             ++found.turned_faces;
     }
     return found;
@@ -169,24 +170,24 @@ EditableComplex::EditableComplex(const ComplexView& model, int threads, Progress
 }
 
 FaceShape EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
-    SpaceVector middle;
+    Vec3 middle{};
     for (const std::int32_t v : loop)
-        middle = middle + point(v);
-    middle = (1.0 / static_cast<double>(loop.size())) * middle;
+        middle = plus(middle, point(v));
+    middle = times(1.0 / static_cast<double>(loop.size()), middle);
     FaceShape found;
-    SpaceVector moment;
+    Vec3 moment{};
     double weights = 0;
-    SpaceVector from = point(loop.back()) - middle;
+    Vec3 from = minus(point(loop.back()), middle);
     for (const std::int32_t v : loop) {
-        const SpaceVector to = point(v) - middle;
-        const SpaceVector part = 0.5 * cross(from, to);
+        const Vec3 to = minus(point(v), middle);
+        const Vec3 part = times(0.5, cross(from, to));
         const double weight = length(part);
-        found.area = found.area + part;
-        moment = moment + weight * (from + to);
+        found.area = plus(found.area, part);
+        moment = moved(moment, weight, plus(from, to));
         weights += weight;
         from = to;
     }
-    found.center = weights > 0 ? middle + (1 / (3 * weights)) * moment : middle;
+    found.center = weights > 0 ? moved(middle, 1 / (3 * weights), moment) : middle;
     return found;
 }
 
