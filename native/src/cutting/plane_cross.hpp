@@ -7,10 +7,6 @@
 
 namespace realmodel::cutting {
 
-inline double cross(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 /// How far a cross product of two steps may be off where each corner is by `rounding`.
 inline double slack(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c,
                     const PlanePosition& rounding) {

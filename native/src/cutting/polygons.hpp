@@ -5,16 +5,11 @@
 
 namespace realmodel::cutting {
 
-using arrangement::cross;
-using arrangement::dot;
-using arrangement::minus;
 using arrangement::NodeId;
 using arrangement::PlanePosition;
-using arrangement::polygon_normal;
 using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
-using arrangement::sixfold_volume;
 using arrangement::unordered;
 using arrangement::View;
 
