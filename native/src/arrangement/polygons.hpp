@@ -16,12 +16,6 @@ using Position = Vec3;
 using PlanePosition = Vec2;
 using NodeId = std::int32_t;
 
-/// An edge as (lesser, greater) node.
-template <class Node>
-std::array<Node, 2> unordered(Node a, Node b) {
-    return {std::min(a, b), std::max(a, b)};
-}
-
 /// Many polygons in one array.
 struct Polygons {
     std::vector<std::int64_t> offsets{0};

@@ -79,7 +79,7 @@ FacetMesh facets_of(const Parts& parts, const Execution& execution) {
                 const std::int32_t a = corners[k], b = corners[(k + 1) % 3];
                 const FacetUse use{static_cast<std::int32_t>(f),
                                    static_cast<std::int8_t>(a < b ? 1 : -1)};
-                uses[3 * f + k] = {arrangement::unordered(a, b), use, static_cast<std::int32_t>(k)};
+                uses[3 * f + k] = {unordered(a, b), use, static_cast<std::int32_t>(k)};
             }
         }
     });

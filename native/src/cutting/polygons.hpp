@@ -10,7 +10,6 @@ using arrangement::PlanePosition;
 using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
-using arrangement::unordered;
 using arrangement::View;
 
 /// Sides of a cutter: above it or outside of it, on it, below it or inside.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,13 +62,44 @@ public:
               std::span<const std::uint8_t> has_flat_base, std::span<std::uint8_t> is_moved);
 
 private:
-    struct Divided {
-        std::vector<std::int32_t> posts;
+    /// The heights of each post alone, one post after another.
+    struct OwnHeights {
         std::vector<double> heights;
+        std::vector<std::size_t> begin{0};
+        std::span<const double> of(std::size_t post) const {
+            return std::span(heights).subspan(begin[post], begin[post + 1] - begin[post]);
+        }
     };
-    void join(Divided& node, std::int32_t from, std::int32_t to);
-    void join_crossing(const PlanTopology& plan, std::vector<Divided>& nodes,
-                       std::span<const std::int32_t> divided_of);
+    /// Nodes with several posts, which share heights.
+    struct DividedNodes {
+        struct Node {
+            std::vector<std::int32_t> posts;
+            std::vector<double> heights;
+        };
+        std::vector<Node> nodes;
+        std::vector<std::int32_t> number;  ///< of each node of the plan, -1: it is none
+    };
+    /// An edge on a step: its ends, and the posts of its left and its right side there.
+    struct StepEdge {
+        std::array<std::int32_t, 2> nodes;
+        std::array<std::array<std::size_t, 2>, 2> posts;
+    };
+
+    std::vector<std::int32_t> number_layers(const RockBlocks& blocks, const Layering& layering,
+                                            std::span<const double> thickest);
+    OwnHeights divide_blocks(const RockBlocks& blocks, const ColumnHeights& columns,
+                             std::span<const double> joined, std::span<const std::int32_t> layers,
+                             double thickness);
+    void share_heights(DividedNodes::Node& node, const OwnHeights& own, double thickness);
+    void join_crossing(const PlanTopology& plan, DividedNodes& divided);
+    bool join_first_crossing(const StepEdge& edge, DividedNodes& divided);
+    void join(DividedNodes::Node& node, std::int32_t from, std::int32_t to);
+    void gather_heights(const PlanTopology& plan, const ColumnHeights& columns,
+                        const OwnHeights& own, const DividedNodes& divided);
+    std::span<std::int32_t> levels_of(std::size_t post) {
+        return {&level_[offset_[post]], offset_[post + 1] - offset_[post]};
+    }
+    bool is_valid(const PlanTopology& plan) const;
 
     std::vector<std::vector<std::int32_t>> layer_block_;  ///< of each rock mass
     std::vector<std::size_t> offset_, node_offset_;

@@ -19,7 +19,6 @@ namespace realmodel::structures {
 using cutting::CutterSurface;
 using cutting::NodeId;
 using cutting::Position;
-using cutting::unordered;
 using spatial::Box;
 
 namespace {
