@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "arrangement/polygons.hpp"
+#include "base/keep_single.hpp"
 #include "base/ulp.hpp"
 #include "booleans/pieces.hpp"
 

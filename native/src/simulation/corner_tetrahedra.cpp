@@ -54,23 +54,6 @@ void keep(Rows& rows, std::vector<std::int32_t>& labels, const IsKept& is_kept) 
     labels.resize(kept);
 }
 
-/// Which tetrahedra and triangles meet in each vertex.
-struct Incidence {
-    std::vector<std::vector<std::int32_t>> tetrahedra, triangles;
-
-    explicit Incidence(const FilledMesh& mesh)
-        : tetrahedra(mesh.points.size()), triangles(mesh.points.size()) {
-        add(mesh.tetrahedra, tetrahedra);
-        add(mesh.triangles, triangles);
-    }
-    template <class Rows>
-    static void add(const Rows& rows, std::vector<std::vector<std::int32_t>>& of_vertex) {
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            for (const std::int32_t v : rows[i])
-                of_vertex[index(v)].push_back(static_cast<std::int32_t>(i));
-    }
-};
-
 /// The unit normal, outward, of the face across from a corner.
 Vec3 normal(const FilledMesh& mesh, const Tetrahedron& corners, std::size_t corner) {
     std::array<Vec3, 3> at{};
@@ -89,7 +72,8 @@ class Round {
 public:
     explicit Round(FilledMesh& mesh)
         : mesh_(mesh),
-          incidence_(mesh),
+          tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
+          triangles_at_(rows_at(mesh, mesh.triangles)),
           tetrahedra_(mesh.tetrahedra),
           triangles_(mesh.triangles),
           is_taken_(mesh.tetrahedra.size(), 0),
@@ -127,7 +111,7 @@ private:
     /// Whether no other tetrahedron has the face.
     bool is_outside(const Tetrahedron& corners, std::size_t corner, std::size_t own) const {
         const Triangle face = opposite(corners, corner);
-        for (const std::int32_t other : incidence_.tetrahedra[index(face[0])]) {
+        for (const std::int32_t other : tetrahedra_at_[index(face[0])]) {
             const Tetrahedron& its = tetrahedra_[index(other)];
             if (index(other) != own && is_gone_[index(other)] == 0 && has(its, face[0]) &&
                 has(its, face[1]) && has(its, face[2]))
@@ -152,7 +136,7 @@ private:
             for (std::size_t j = 0; j < i; ++j)
                 if (!(dot(normals[i], normals[j]) > kFlat)) return false;
         std::vector<std::size_t> rows;
-        for (const std::int32_t f : incidence_.triangles[index(inside[0])]) {
+        for (const std::int32_t f : triangles_at_[index(inside[0])]) {
             const Triangle& face = triangles_[index(f)];
             // what is inside must not be on the outside, or a boundary, elsewhere
             const bool is_own =
@@ -167,7 +151,7 @@ private:
             rows.push_back(*row);
         }
         for (const std::int32_t v : corners)
-            for (const std::int32_t other : incidence_.tetrahedra[index(v)])
+            for (const std::int32_t other : tetrahedra_at_[index(v)])
                 is_taken_[index(other)] = 1;
         is_gone_[t] = 1;
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -189,7 +173,7 @@ private:
 
     /// The row of a face with sorted corners among the triangles.
     std::optional<std::size_t> row_of(const Triangle& sorted) const {
-        for (const std::int32_t f : incidence_.triangles[index(sorted[0])]) {
+        for (const std::int32_t f : triangles_at_[index(sorted[0])]) {
             const Triangle& face = mesh_.triangles[index(f)];
             if (mesh_.surface[index(f)] != kGone && has(face, sorted[0]) && has(face, sorted[1]) &&
                 has(face, sorted[2]))
@@ -212,7 +196,7 @@ private:
                                [&](std::int32_t v) { return has(corners, v); });
         };
         std::vector<std::int32_t> around;
-        for (const std::int32_t t : incidence_.tetrahedra[index(middle_of[0])]) {
+        for (const std::int32_t t : tetrahedra_at_[index(middle_of[0])]) {
             if (!has_all(tetrahedra_[index(t)])) continue;
             if (is_taken_[index(t)] != 0) return false;
             around.push_back(t);
@@ -236,7 +220,7 @@ private:
             is_taken_[index(t)] = 1;
             split(mesh_.tetrahedra, mesh_.region, index(t), middle_of, added);
         }
-        for (const std::int32_t f : incidence_.triangles[index(middle_of[0])])
+        for (const std::int32_t f : triangles_at_[index(middle_of[0])])
             if (has_all(mesh_.triangles[index(f)]))
                 split(mesh_.triangles, mesh_.surface, index(f), middle_of, added);
         return true;
@@ -254,8 +238,8 @@ private:
     }
 
     FilledMesh& mesh_;
-    Incidence incidence_;
-    // as they were before the round, which incidence_ is of
+    // as they were before the round
+    const Buckets<std::int32_t> tetrahedra_at_, triangles_at_;
     const std::vector<Tetrahedron> tetrahedra_;
     const std::vector<Triangle> triangles_;
     std::vector<std::uint8_t> is_taken_, is_gone_;

@@ -6,6 +6,7 @@
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::simulation {
@@ -237,8 +238,7 @@ ElementQuality::Skewed ElementQuality::skewed(bool divided) const {
         const ColumnFronts parts = tetrahedra(whole);
         find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, found);
     }
-    std::sort(found.tall.begin(), found.tall.end());
-    found.tall.erase(std::unique(found.tall.begin(), found.tall.end()), found.tall.end());
+    sort_unique(found.tall);
     return found;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
@@ -28,14 +27,7 @@ public:
         : mesh_(mesh),
           most_(most),
           start_(mesh.points),
-          around_(bucketize<std::int32_t>(mesh.points.size(),
-                                          [&](const auto& put) {
-                                              for (std::size_t t = 0; t < mesh.tetrahedra.size();
-                                                   ++t) {
-                                                  for (const std::int32_t v : mesh.tetrahedra[t])
-                                                      put(index(v), static_cast<std::int32_t>(t));
-                                              }
-                                          })),
+          around_(rows_at(mesh, mesh.tetrahedra)),
           freedom_(mesh.points.size(), kInside) {
         std::vector<std::int32_t> surface(mesh.points.size(), INT32_MIN);
         for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

@@ -32,9 +32,8 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
         is_free[b] = 1;
     }
     for (;;) {
-        ColumnRepair columns(plan, lines, blocks, heights, layering, execution.progress);
-        columns.run();
-        LayeredMesh made = columns.finish(faults);
+        LayeredMesh made =
+            repaired_columns({lines, blocks, plan, heights}, faults, layering, execution.progress);
         // blocks that are too thick for their top or base get twice as many layers
         bool again = false;
         for (const std::int32_t block : made.skewed.tall) {

@@ -2,6 +2,7 @@
 #include "simulation/line_edges.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/counting_sort.hpp"
@@ -64,6 +65,7 @@ LineEdges::LineEdges(const PlanLines& lines, const meshing::FlatMesh& mesh)
 }
 
 void LineEdges::divide(std::int32_t a, std::int32_t b, std::int32_t middle) {
+    assert(a != middle && b != middle && segment(a, middle) < 0 && segment(middle, b) < 0);
     const std::int32_t own = segment(a, b);
     if (own < 0) return;
     is_on_line_.resize(std::max(is_on_line_.size(), index(middle) + 1));

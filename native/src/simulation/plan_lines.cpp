@@ -4,12 +4,14 @@
 // after they were moved, whatever they were; and anchors are apart, so no angle between two is
 // sharp.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
@@ -64,8 +66,7 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
         }
     }
     for (auto& own : neighbors) {
-        std::sort(own.begin(), own.end());
-        own.erase(std::unique(own.begin(), own.end()), own.end());
+        sort_unique(own);
     }
     const auto nearest = [&](std::int32_t from, const PlanPoint& p) {
         double best = squared_distance(anchors[index(from)], p);
@@ -225,6 +226,7 @@ std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
             choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(best));
             if (choices.empty()) next.erase(before);
         } while (here != start && next.contains(here));
+        assert(here == start);
         rings.push_back(std::move(ring));
     }
     return rings;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simulation/plan_topology.hpp"
 
+#include <cassert>
+
 #include "base/vectors.hpp"
+#include "exact/orient2d.hpp"
 #include "simulation/plan_adaption.hpp"
 
 namespace realmodel::simulation {
@@ -21,6 +24,25 @@ PlanTopology::PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh)
     }
     posts_ = Posts(mesh_, edges);
     spread_rocks(lines);
+    assert(is_valid());
+}
+
+/// What columns rely on: triangles are counter-clockwise, and of the edges between divided nodes
+/// all are steps, so that a triangle has one at most.
+[[maybe_unused]] bool PlanTopology::is_valid() const {
+    for (std::size_t t = 0; t < triangles(); ++t) {
+        const auto [a, b, c] = corners(t);
+        if (exact::orient2d(point(a), point(b), point(c)) <= 0) return false;
+        int steps = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            steps += is_inner_step(t, i);
+            if (is_divided(corners(t)[i]) && is_divided(corners(t)[(i + 1) % 3]) &&
+                !is_inner_step(t, i))
+                return false;
+        }
+        if (steps > 1) return false;
+    }
+    return true;
 }
 
 /// Segments say which rock mass lies on their sides; it reaches as far as the next segments.

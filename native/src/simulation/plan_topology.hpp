@@ -58,6 +58,7 @@ public:
 
 private:
     void spread_rocks(const PlanLines& lines);
+    bool is_valid() const;
 
     meshing::FlatMesh mesh_;
     std::vector<std::array<std::int32_t, 3>> segment_;

@@ -19,6 +19,7 @@ std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& r
     std::int32_t last = -1;
     for (const Removal& removal : removals) {
         if (!several && removal.node == last) continue;
+        assert(std::abs(removal.height - removal.into) == 1);
         const std::size_t first = node_offset_[index(removal.node)],
                           gone = first + index(removal.height), kept = first + index(removal.into);
         if (is_used[gone] != 0 || is_used[kept] != 0) continue;
@@ -53,6 +54,7 @@ std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& r
     node_offset_ = std::move(offset);
     height_.resize(to);
     first_height_.resize(to);
+    assert(is_valid(plan));
     return count;
 }
 
@@ -106,6 +108,7 @@ bool PostLevels::ease(const std::vector<Move>& moves, double most, double gap, b
             for (std::size_t at = end; at-- > first;)
                 move(at, share(at) * by);
         }
+        assert(std::is_sorted(&height_[first], &height_[first] + (end - first)));
     }
     return any;
 }

@@ -2,6 +2,7 @@
 #include "simulation/post_levels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -89,9 +90,8 @@ std::vector<std::vector<std::int32_t>> ending_blocks(const PlanTopology& plan,
 
 /// The levels of all posts, `stride` for each, without what is thinner than asked: levels that are
 /// nearer are joined, and so are those of thin ends of layers.
-std::vector<double> thick_levels(const PlanTopology& plan, const PlanLines& lines,
-                                 const RockBlocks& blocks, const ColumnHeights& columns,
-                                 double thickness) {
+std::vector<double> thick_levels(const ColumnInput& input, double thickness) {
+    const auto& [lines, blocks, plan, columns] = input;
     const auto ending = ending_blocks(plan, lines);
     std::vector<double> heights(plan.post_count() * columns.stride());
     for (std::size_t p = 0; p < plan.post_count(); ++p) {
@@ -111,8 +111,8 @@ std::vector<double> thick_levels(const PlanTopology& plan, const PlanLines& line
 }
 
 /// How thick each block is at most.
-std::vector<double> thickest_of(const RockBlocks& blocks, const ColumnHeights& columns,
-                                std::span<const double> joined) {
+std::vector<double> thickest_of(const ColumnInput& input, std::span<const double> joined) {
+    const auto& [lines, blocks, plan, columns] = input;
     std::vector<double> thickest(blocks.rock.size(), 0);
     for (std::size_t p = 0; p < columns.size(); ++p) {
         const std::int32_t rock = columns.rock(p);
@@ -128,192 +128,238 @@ std::vector<double> thickest_of(const RockBlocks& blocks, const ColumnHeights& c
 
 }  // namespace
 
-PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const RockBlocks& blocks,
-                       const ColumnHeights& columns, const Layering& layering) {
-    const double thickness = layering.minimum_thickness;
-    const auto joined = thick_levels(plan, lines, blocks, columns, thickness);
-    const auto layers = number_layers(blocks, layering, thickest_of(blocks, columns, joined));
-    const OwnHeights own = divide_blocks(blocks, columns, joined, layers, thickness);
-    DividedNodes divided{{}, std::vector<std::int32_t>(plan.nodes(), -1)};
-    for (std::size_t p = 0; p < plan.post_count(); ++p) {
-        if (columns.rock(p) < 0 || !plan.is_divided(plan.post_node(p))) continue;
-        std::int32_t& number = divided.number[index(plan.post_node(p))];
-        if (number < 0) {
-            number = static_cast<std::int32_t>(divided.nodes.size());
-            divided.nodes.emplace_back();
+/// Makes the levels of all posts, step by step: run().
+class LevelBuilder {
+public:
+    LevelBuilder(PostLevels& made, const ColumnInput& input, double thickness)
+        : made_(made), input_(input), thickness_(thickness), divided_of_(input.plan.nodes(), -1) {}
+
+    void run(const Layering& layering) {
+        const auto joined = thick_levels(input_, thickness_);
+        const auto layers = number_layers(layering, thickest_of(input_, joined));
+        const OwnHeights own = divide_blocks(joined, layers);
+        find_divided();
+        for (DividedNode& node : divided_)
+            share_heights(node, own);
+        if (!divided_.empty()) join_crossing();
+        gather_heights(own);
+    }
+
+private:
+    /// The heights of each post alone, one post after another.
+    struct OwnHeights {
+        std::vector<double> heights;
+        std::vector<std::size_t> begin{0};
+        std::span<const double> of(std::size_t post) const {
+            return std::span(heights).subspan(begin[post], begin[post + 1] - begin[post]);
         }
-        divided.nodes[index(number)].posts.push_back(static_cast<std::int32_t>(p));
-    }
-    for (DividedNodes::Node& node : divided.nodes)
-        share_heights(node, own, thickness);
-    if (!divided.nodes.empty()) join_crossing(plan, divided);
-    gather_heights(plan, columns, own, divided);
-    assert(is_valid(plan));
-}
+    };
+    /// A node with several posts, which share heights.
+    struct DividedNode {
+        std::vector<std::int32_t> posts;
+        std::vector<double> heights;
+    };
+    /// An edge on a step: its ends, and the posts of its left and its right side there.
+    struct StepEdge {
+        std::array<std::int32_t, 2> nodes;
+        std::array<std::array<std::size_t, 2>, 2> posts;
+    };
 
-/// The layers of each block, and the block of each layer.
-std::vector<std::int32_t> PostLevels::number_layers(const RockBlocks& blocks,
-                                                    const Layering& layering,
-                                                    std::span<const double> thickest) {
-    std::vector<std::int32_t> layers(blocks.rock.size());
-    layer_block_.resize(blocks.count());
-    for (std::size_t b = 0; b < layers.size(); ++b) {
-        const double wanted = layering.layer_thickness > 0
-                                  ? std::ceil(thickest[b] / layering.layer_thickness)
-                                  : layering.layers[b];
-        if (wanted > kMostLayers)
-            throw InputError("too_large", "a layer would be divided into more than 100000", -1,
-                             {static_cast<std::int64_t>(b)});
-        layers[b] = std::max(1, static_cast<std::int32_t>(wanted));
-        if (layering.layer_thickness > 0 && layering.layers[b] > 0)
-            layers[b] = std::min(layers[b], layering.layers[b]);
-        auto& own = layer_block_[index(blocks.rock[b])];
-        own.insert(own.end(), index(layers[b]), static_cast<std::int32_t>(b));
+    std::span<std::int32_t> levels_of(std::size_t post) {
+        return std::span(made_.level_)
+            .subspan(made_.offset_[post], made_.offset_[post + 1] - made_.offset_[post]);
     }
-    return layers;
-}
 
-/// Blocks become layers, but no more than their thickness allows; where there are fewer than
-/// elsewhere the uppermost end. Levels are numbers of the post's own heights at first.
-PostLevels::OwnHeights PostLevels::divide_blocks(const RockBlocks& blocks,
-                                                 const ColumnHeights& columns,
-                                                 std::span<const double> joined,
-                                                 std::span<const std::int32_t> layers,
-                                                 double thickness) {
-    offset_.assign(1, 0);
-    OwnHeights own;
-    for (std::size_t p = 0; p < columns.size(); ++p) {
-        const std::int32_t rock = columns.rock(p);
-        if (rock >= 0) {
-            const double* const z = &joined[p * columns.stride()];
-            const auto first = index(blocks.first[index(rock)]);
-            std::int32_t at = 0;
-            own.heights.push_back(z[0]);
-            level_.push_back(at);
-            for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
-                const double thick = z[b + 1] - z[b];
-                std::int32_t parts = 0;
-                if (thick > 0) {
-                    const double wanted =
-                        std::min<double>(layers[first + b], std::floor(thick / thickness));
-                    parts = std::max(1, static_cast<std::int32_t>(wanted));
+    void find_divided() {
+        const PlanTopology& plan = input_.plan;
+        for (std::size_t p = 0; p < plan.post_count(); ++p) {
+            if (input_.heights.rock(p) < 0 || !plan.is_divided(plan.post_node(p))) continue;
+            std::int32_t& number = divided_of_[index(plan.post_node(p))];
+            if (number < 0) {
+                number = static_cast<std::int32_t>(divided_.size());
+                divided_.emplace_back();
+            }
+            divided_[index(number)].posts.push_back(static_cast<std::int32_t>(p));
+        }
+    }
+
+    /// The layers of each block, and the block of each layer.
+    std::vector<std::int32_t> number_layers(const Layering& layering,
+                                            std::span<const double> thickest) {
+        const RockBlocks& blocks = input_.blocks;
+        std::vector<std::int32_t> layers(blocks.rock.size());
+        made_.layer_block_.resize(blocks.count());
+        for (std::size_t b = 0; b < layers.size(); ++b) {
+            const double wanted = layering.layer_thickness > 0
+                                      ? std::ceil(thickest[b] / layering.layer_thickness)
+                                      : layering.layers[b];
+            if (wanted > kMostLayers)
+                throw InputError("too_large", "a layer would be divided into more than 100000", -1,
+                                 {static_cast<std::int64_t>(b)});
+            layers[b] = std::max(1, static_cast<std::int32_t>(wanted));
+            if (layering.layer_thickness > 0 && layering.layers[b] > 0)
+                layers[b] = std::min(layers[b], layering.layers[b]);
+            auto& own = made_.layer_block_[index(blocks.rock[b])];
+            own.insert(own.end(), index(layers[b]), static_cast<std::int32_t>(b));
+        }
+        return layers;
+    }
+
+    /// Blocks become layers, but no more than their thickness allows; where there are fewer than
+    /// elsewhere the uppermost end. Levels are numbers of the post's own heights at first.
+    OwnHeights divide_blocks(std::span<const double> joined, std::span<const std::int32_t> layers) {
+        const auto& [lines, blocks, plan, columns] = input_;
+        made_.offset_.assign(1, 0);
+        OwnHeights own;
+        for (std::size_t p = 0; p < columns.size(); ++p) {
+            const std::int32_t rock = columns.rock(p);
+            if (rock >= 0) {
+                const double* const z = &joined[p * columns.stride()];
+                const auto first = index(blocks.first[index(rock)]);
+                std::int32_t at = 0;
+                own.heights.push_back(z[0]);
+                made_.level_.push_back(at);
+                for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
+                    const double thick = z[b + 1] - z[b];
+                    std::int32_t parts = 0;
+                    if (thick > 0) {
+                        const double wanted =
+                            std::min<double>(layers[first + b], std::floor(thick / thickness_));
+                        parts = std::max(1, static_cast<std::int32_t>(wanted));
+                    }
+                    for (std::int32_t k = 1; k <= parts; ++k)
+                        own.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
+                    for (std::int32_t k = 1; k <= layers[first + b]; ++k)
+                        made_.level_.push_back(at + std::min(k, parts));
+                    at += parts;
                 }
-                for (std::int32_t k = 1; k <= parts; ++k)
-                    own.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
-                for (std::int32_t k = 1; k <= layers[first + b]; ++k)
-                    level_.push_back(at + std::min(k, parts));
-                at += parts;
+            }
+            made_.offset_.push_back(made_.level_.size());
+            own.begin.push_back(own.heights.size());
+        }
+        return own;
+    }
+
+    /// Heights of the posts of one node that are nearer than the thickness become one.
+    void share_heights(DividedNode& node, const OwnHeights& own) {
+        struct Entry {
+            double height;
+            std::size_t post;  ///< of the node's
+            auto operator<=>(const Entry&) const = default;
+        };
+        std::vector<Entry> all;
+        for (std::size_t k = 0; k < node.posts.size(); ++k) {
+            for (const double height : own.of(index(node.posts[k])))
+                all.push_back({height, k});
+        }
+        std::sort(all.begin(), all.end());
+        std::vector<std::vector<std::int32_t>> joined(node.posts.size());
+        for (const Entry& entry : all) {
+            if (node.heights.empty() || entry.height - node.heights.back() >= 0.999 * thickness_)
+                node.heights.push_back(entry.height);
+            joined[entry.post].push_back(static_cast<std::int32_t>(node.heights.size()) - 1);
+        }
+        for (std::size_t k = 0; k < node.posts.size(); ++k) {
+            for (std::int32_t& level : levels_of(index(node.posts[k])))
+                level = joined[k][index(level)];
+        }
+    }
+
+    /// Where a level of one side of a step crosses one of the other between two nodes, the two are
+    /// joined at the node where they are nearer. Each time a node has fewer heights, so this ends.
+    void join_crossing() {
+        const PlanTopology& plan = input_.plan;
+        std::vector<StepEdge> edges;
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (!plan.is_inner_step(t, i) || index(plan.neighbor(t, i)) < t) continue;
+                const std::size_t j = (i + 1) % 3;
+                edges.push_back({{plan.corners(t)[i], plan.corners(t)[j]},
+                                 {{{plan.post(t, i), plan.post(t, j)}, plan.posts_beyond(t, i)}}});
             }
         }
-        offset_.push_back(level_.size());
-        own.begin.push_back(own.heights.size());
-    }
-    return own;
-}
-
-/// Heights of the posts of one node that are nearer than the thickness become one.
-void PostLevels::share_heights(DividedNodes::Node& node, const OwnHeights& own, double thickness) {
-    struct Entry {
-        double height;
-        std::size_t post;  ///< of the node's
-        auto operator<=>(const Entry&) const = default;
-    };
-    std::vector<Entry> all;
-    for (std::size_t k = 0; k < node.posts.size(); ++k) {
-        for (const double height : own.of(index(node.posts[k])))
-            all.push_back({height, k});
-    }
-    std::sort(all.begin(), all.end());
-    std::vector<std::vector<std::int32_t>> joined(node.posts.size());
-    for (const Entry& entry : all) {
-        if (node.heights.empty() || entry.height - node.heights.back() >= 0.999 * thickness)
-            node.heights.push_back(entry.height);
-        joined[entry.post].push_back(static_cast<std::int32_t>(node.heights.size()) - 1);
-    }
-    for (std::size_t k = 0; k < node.posts.size(); ++k) {
-        for (std::int32_t& level : levels_of(index(node.posts[k])))
-            level = joined[k][index(level)];
-    }
-}
-
-/// Where a level of one side of a step crosses one of the other between two nodes, the two are
-/// joined at the node where they are nearer. Each time a node has fewer heights, so this ends.
-void PostLevels::join_crossing(const PlanTopology& plan, DividedNodes& divided) {
-    std::vector<StepEdge> edges;
-    for (std::size_t t = 0; t < plan.triangles(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!plan.is_inner_step(t, i) || index(plan.neighbor(t, i)) < t) continue;
-            const std::size_t j = (i + 1) % 3;
-            edges.push_back({{plan.corners(t)[i], plan.corners(t)[j]},
-                             {{{plan.post(t, i), plan.post(t, j)}, plan.posts_beyond(t, i)}}});
-        }
-    }
-    for (bool any = true; any;) {
-        any = false;
-        for (const StepEdge& edge : edges) {
-            while (join_first_crossing(edge, divided))
-                any = true;
-        }
-    }
-}
-
-bool PostLevels::join_first_crossing(const StepEdge& edge, DividedNodes& divided) {
-    const auto side = [&](std::size_t of, std::size_t end) { return levels(edge.posts[of][end]); };
-    const std::array left{side(0, 0), side(0, 1)}, right{side(1, 0), side(1, 1)};
-    if (left[0].empty() || left[1].empty() || right[0].empty() || right[1].empty()) return false;
-    const auto node = [&](std::size_t end) -> DividedNodes::Node& {
-        return divided.nodes[index(divided.number[index(edge.nodes[end])])];
-    };
-    for (std::size_t i = 0; i < left[0].size(); ++i) {
-        for (std::size_t j = 0; j < right[0].size(); ++j) {
-            const std::int32_t at0 = left[0][i] - right[0][j], at1 = left[1][i] - right[1][j];
-            if ((at0 > 0) == (at1 > 0) || at0 == 0 || at1 == 0) continue;
-            const auto gap = [&](std::size_t end) {
-                const auto& own = node(end).heights;
-                return std::abs(own[index(left[end][i])] - own[index(right[end][j])]);
-            };
-            const std::size_t end = gap(0) <= gap(1) ? 0 : 1;
-            const auto [from, to] = unordered(left[end][i], right[end][j]);
-            join(node(end), from, to);
-            return true;
-        }
-    }
-    return false;
-}
-
-void PostLevels::join(DividedNodes::Node& node, std::int32_t from, std::int32_t to) {
-    node.heights[index(from)] = (node.heights[index(from)] + node.heights[index(to)]) / 2;
-    node.heights.erase(node.heights.begin() + from + 1, node.heights.begin() + to + 1);
-    for (const std::int32_t p : node.posts) {
-        for (std::int32_t& level : levels_of(index(p))) {
-            if (level > to) {
-                level -= to - from;
-            } else if (level > from) {
-                level = from;
+        for (bool any = true; any;) {
+            any = false;
+            for (const StepEdge& edge : edges) {
+                while (join_first_crossing(edge))
+                    any = true;
             }
         }
     }
-}
 
-/// The heights of all nodes.
-void PostLevels::gather_heights(const PlanTopology& plan, const ColumnHeights& columns,
-                                const OwnHeights& own, const DividedNodes& divided) {
-    std::vector<std::int32_t> post_of(plan.nodes(), -1);
-    for (std::size_t p = 0; p < plan.post_count(); ++p) {
-        if (columns.rock(p) >= 0) post_of[index(plan.post_node(p))] = static_cast<std::int32_t>(p);
-    }
-    node_offset_.assign(1, 0);
-    for (std::size_t n = 0; n < plan.nodes(); ++n) {
-        std::span<const double> heights;
-        if (divided.number[n] >= 0) {
-            heights = divided.nodes[index(divided.number[n])].heights;
-        } else if (post_of[n] >= 0) {
-            heights = own.of(index(post_of[n]));
+    bool join_first_crossing(const StepEdge& edge) {
+        const auto side = [&](std::size_t of, std::size_t end) {
+            return made_.levels(edge.posts[of][end]);
+        };
+        const std::array left{side(0, 0), side(0, 1)}, right{side(1, 0), side(1, 1)};
+        if (left[0].empty() || left[1].empty() || right[0].empty() || right[1].empty())
+            return false;
+        const auto node = [&](std::size_t end) -> DividedNode& {
+            return divided_[index(divided_of_[index(edge.nodes[end])])];
+        };
+        for (std::size_t i = 0; i < left[0].size(); ++i) {
+            for (std::size_t j = 0; j < right[0].size(); ++j) {
+                const std::int32_t at0 = left[0][i] - right[0][j], at1 = left[1][i] - right[1][j];
+                if ((at0 > 0) == (at1 > 0) || at0 == 0 || at1 == 0) continue;
+                const auto gap = [&](std::size_t end) {
+                    const auto& own = node(end).heights;
+                    return std::abs(own[index(left[end][i])] - own[index(right[end][j])]);
+                };
+                const std::size_t end = gap(0) <= gap(1) ? 0 : 1;
+                const auto [from, to] = unordered(left[end][i], right[end][j]);
+                join(node(end), from, to);
+                return true;
+            }
         }
-        height_.insert(height_.end(), heights.begin(), heights.end());
-        node_offset_.push_back(height_.size());
+        return false;
     }
-    first_height_ = height_;
+
+    void join(DividedNode& node, std::int32_t from, std::int32_t to) {
+        node.heights[index(from)] = (node.heights[index(from)] + node.heights[index(to)]) / 2;
+        node.heights.erase(node.heights.begin() + from + 1, node.heights.begin() + to + 1);
+        for (const std::int32_t p : node.posts) {
+            for (std::int32_t& level : levels_of(index(p))) {
+                if (level > to) {
+                    level -= to - from;
+                } else if (level > from) {
+                    level = from;
+                }
+            }
+        }
+    }
+
+    /// The heights of all nodes.
+    void gather_heights(const OwnHeights& own) {
+        const auto& [lines, blocks, plan, columns] = input_;
+        std::vector<std::int32_t> post_of(plan.nodes(), -1);
+        for (std::size_t p = 0; p < plan.post_count(); ++p) {
+            if (columns.rock(p) >= 0)
+                post_of[index(plan.post_node(p))] = static_cast<std::int32_t>(p);
+        }
+        made_.node_offset_.assign(1, 0);
+        for (std::size_t n = 0; n < plan.nodes(); ++n) {
+            std::span<const double> heights;
+            if (divided_of_[n] >= 0) {
+                heights = divided_[index(divided_of_[n])].heights;
+            } else if (post_of[n] >= 0) {
+                heights = own.of(index(post_of[n]));
+            }
+            made_.height_.insert(made_.height_.end(), heights.begin(), heights.end());
+            made_.node_offset_.push_back(made_.height_.size());
+        }
+        made_.first_height_ = made_.height_;
+    }
+
+    PostLevels& made_;
+    const ColumnInput& input_;
+    const double thickness_;
+    std::vector<DividedNode> divided_;
+    std::vector<std::int32_t> divided_of_;  ///< of each node, -1: it has one post
+};
+
+PostLevels::PostLevels(const ColumnInput& input, const Layering& layering) {
+    LevelBuilder(*this, input, layering.minimum_thickness).run(layering);
+    assert(is_valid(input.plan));
 }
 
 /// What columns rely on: the heights of a node ascend, and so do the levels of each of its posts,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,14 +10,21 @@
 
 namespace realmodel::simulation {
 
+/// What columns are made from.
+struct ColumnInput {
+    const PlanLines& lines;
+    const RockBlocks& blocks;
+    const PlanTopology& plan;
+    const ColumnHeights& heights;  ///< of each post
+};
+
 /// The heights of all posts once layers are divided and nothing thin is left. The posts of a node
 /// share its heights, which ascend by the minimum thickness at least. Level l of a post is the
 /// bottom of layer l of its rock mass, counted upward through its blocks.
 class PostLevels {
 public:
     /// @throws InputError kind too_large
-    PostLevels(const PlanTopology& plan, const PlanLines& lines, const RockBlocks& blocks,
-               const ColumnHeights& columns, const Layering& layering);
+    PostLevels(const ColumnInput& input, const Layering& layering);
 
     /// How many layers a rock mass has, and the block of each.
     std::span<const std::int32_t> layer_blocks(std::int32_t rock) const {
@@ -62,43 +68,7 @@ public:
               std::span<const std::uint8_t> has_flat_base, std::span<std::uint8_t> is_moved);
 
 private:
-    /// The heights of each post alone, one post after another.
-    struct OwnHeights {
-        std::vector<double> heights;
-        std::vector<std::size_t> begin{0};
-        std::span<const double> of(std::size_t post) const {
-            return std::span(heights).subspan(begin[post], begin[post + 1] - begin[post]);
-        }
-    };
-    /// Nodes with several posts, which share heights.
-    struct DividedNodes {
-        struct Node {
-            std::vector<std::int32_t> posts;
-            std::vector<double> heights;
-        };
-        std::vector<Node> nodes;
-        std::vector<std::int32_t> number;  ///< of each node of the plan, -1: it is none
-    };
-    /// An edge on a step: its ends, and the posts of its left and its right side there.
-    struct StepEdge {
-        std::array<std::int32_t, 2> nodes;
-        std::array<std::array<std::size_t, 2>, 2> posts;
-    };
-
-    std::vector<std::int32_t> number_layers(const RockBlocks& blocks, const Layering& layering,
-                                            std::span<const double> thickest);
-    OwnHeights divide_blocks(const RockBlocks& blocks, const ColumnHeights& columns,
-                             std::span<const double> joined, std::span<const std::int32_t> layers,
-                             double thickness);
-    void share_heights(DividedNodes::Node& node, const OwnHeights& own, double thickness);
-    void join_crossing(const PlanTopology& plan, DividedNodes& divided);
-    bool join_first_crossing(const StepEdge& edge, DividedNodes& divided);
-    void join(DividedNodes::Node& node, std::int32_t from, std::int32_t to);
-    void gather_heights(const PlanTopology& plan, const ColumnHeights& columns,
-                        const OwnHeights& own, const DividedNodes& divided);
-    std::span<std::int32_t> levels_of(std::size_t post) {
-        return {&level_[offset_[post]], offset_[post + 1] - offset_[post]};
-    }
+    friend class LevelBuilder;
     bool is_valid(const PlanTopology& plan) const;
 
     std::vector<std::vector<std::int32_t>> layer_block_;  ///< of each rock mass

@@ -8,6 +8,7 @@
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "simulation/column_heights.hpp"
 
@@ -85,12 +86,6 @@ std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress
     return found;
 }
 
-template <class Rows>
-void sort_once(Rows& rows) {
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-}
-
 }  // namespace
 
 Traces traces_of(const ComplexView& model, Progress* progress) {
@@ -104,7 +99,7 @@ Traces traces_of(const ComplexView& model, Progress* progress) {
         traces.points.push_back(plan(trace.from));
         traces.points.push_back(plan(trace.to));
     }
-    sort_once(traces.points);
+    sort_unique(traces.points);
     const auto number = [&](std::int32_t v) {
         const auto at = std::lower_bound(traces.points.begin(), traces.points.end(), plan(v));
         assert(at != traces.points.end() && *at == plan(v));
@@ -114,7 +109,7 @@ Traces traces_of(const ComplexView& model, Progress* progress) {
         const auto ends = unordered(number(trace.from), number(trace.to));
         if (ends[0] != ends[1]) traces.segments.push_back({ends, trace.block});
     }
-    sort_once(traces.segments);
+    sort_unique(traces.segments);
     return traces;
 }
 

@@ -6,6 +6,7 @@
 #include <queue>
 #include <tuple>
 
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "simulation/cleaning/change_check.hpp"
@@ -77,18 +78,13 @@ private:
         }
     }
 
-    static void sort_once(std::vector<Edge>& edges) {
-        std::sort(edges.begin(), edges.end());
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    }
-
     void list_all_edges() {
         edges_.clear();
         next_edge_ = 0;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
             if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, edges_);
         }
-        sort_once(edges_);
+        sort_unique(edges_);
     }
 
     /// The next of the listed edges and of those that came since, by length; false: there is none.
@@ -111,15 +107,9 @@ private:
         return false;
     }
 
-    static bool contains(std::span<const std::int32_t> numbers, std::int32_t number) {
-        return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
-    }
-
     static bool next_to(std::span<const std::int32_t> loop, std::int32_t u, std::int32_t v) {
-        const auto at =
-            static_cast<std::size_t>(std::find(loop.begin(), loop.end(), u) - loop.begin());
-        const std::size_t n = loop.size();
-        return at < n && (loop[(at + 1) % n] == v || loop[(at + n - 1) % n] == v);
+        const auto found = beside(loop, u);
+        return found && contains(*found, v);
     }
 
     void join_short_edges() {
@@ -193,7 +183,7 @@ private:
         fresh_edges_.clear();
         for (const std::int32_t f : complex_.vertex_faces(vertex))
             list_edges_of(complex_.corners(f), vertex, fresh_edges_);
-        sort_once(fresh_edges_);
+        sort_unique(fresh_edges_);
         for (const Edge& edge : fresh_edges_)
             queue_.push(edge);
     }

@@ -2,8 +2,12 @@
 #include "simulation/cleaning/editable_complex.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <map>
 #include <string>
 
+#include "base/counting_sort.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
@@ -51,19 +55,11 @@ std::vector<std::int32_t> copy_of(std::span<const std::int32_t> numbers) {
 /// Lists of the faces that have each of `count` things; visit(face, see) calls see(thing).
 template <class Visit>
 ListPool faces_of(std::size_t count, std::size_t faces, const Visit& visit) {
-    std::vector<std::int64_t> offsets(count + 1, 0);
-    for (std::size_t f = 0; f < faces; ++f)
-        visit(f, [&](std::int32_t thing) { ++offsets[index(thing) + 1]; });
-    for (std::size_t i = 0; i < count; ++i)
-        offsets[i + 1] += offsets[i];
-    std::vector<std::int64_t> next(offsets.begin(), offsets.end() - 1);
-    std::vector<std::int32_t> found(static_cast<std::size_t>(offsets[count]));
-    for (std::size_t f = 0; f < faces; ++f) {
-        visit(f, [&](std::int32_t thing) {
-            found[static_cast<std::size_t>(next[index(thing)]++)] = static_cast<std::int32_t>(f);
-        });
-    }
-    return {std::span<const std::int64_t>(offsets), std::move(found)};
+    const auto found = bucketize<std::int32_t>(count, [&](const auto& put) {
+        for (std::size_t f = 0; f < faces; ++f)
+            visit(f, [&](std::int32_t thing) { put(index(thing), static_cast<std::int32_t>(f)); });
+    });
+    return {std::span<const std::uint32_t>(found.offsets), copy_of(found.values)};
 }
 
 }  // namespace
@@ -190,6 +186,19 @@ FaceShape EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
     return found;
 }
 
+/// Whether the faces of a cell use each of its edges as often one way as the other.
+[[maybe_unused]] bool EditableComplex::is_closed(std::int32_t cell) const {
+    std::map<std::array<std::int32_t, 2>, int> uses;
+    for (const std::int32_t f : cell_faces(cell)) {
+        std::int32_t from = corners(f).back();
+        for (const std::int32_t to : corners(f)) {
+            uses[unordered(from, to)] += (from < to) == (cells(f)[0] == cell) ? 1 : -1;
+            from = to;
+        }
+    }
+    return std::ranges::all_of(uses, [](const auto& edge) { return edge.second == 0; });
+}
+
 CellShape EditableComplex::measured(std::int32_t cell) const {
     std::vector<SeenFace> seen;
     for (const std::int32_t f : cell_faces(cell))
@@ -214,6 +223,7 @@ void EditableComplex::apply(const Change& change) {
         }
     };
     for (const std::int32_t f : change.removed) {
+        assert(has_face(f));
         touch(cells(f));
         remove(f);
     }
@@ -236,10 +246,11 @@ void EditableComplex::apply(const Change& change) {
         }
         touch(face.cells);
     }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    for (const std::int32_t c : touched)
+    sort_unique(touched);
+    for (const std::int32_t c : touched) {
         cell_shapes_[index(c)] = measured(c);
+        assert(!has_cell(c) || is_closed(c));
+    }
 }
 
 ComplexCounts EditableComplex::counts() const {
@@ -252,17 +263,14 @@ ComplexCounts EditableComplex::counts() const {
     for (std::int32_t v = 0; v < vertex_count(); ++v) {
         ends.clear();
         for (const std::int32_t f : vertex_faces(v)) {
-            const auto loop = corners(f);
-            const auto at =
-                static_cast<std::size_t>(std::find(loop.begin(), loop.end(), v) - loop.begin());
-            for (const std::size_t step : {std::size_t{1}, loop.size() - 1}) {
-                const std::int32_t w = loop[(at + step) % loop.size()];
+            const auto near = beside(corners(f), v);
+            assert(near.has_value());
+            for (const std::int32_t w : *near) {
                 if (w > v) ends.push_back(w);
             }
         }
-        std::sort(ends.begin(), ends.end());
-        found.edges +=
-            static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+        sort_unique(ends);
+        found.edges += ends.size();
     }
     return found;
 }

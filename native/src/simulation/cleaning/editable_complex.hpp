@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,19 @@
 #include "simulation/cleaning/list_pool.hpp"
 
 namespace realmodel::simulation {
+
+inline bool contains(std::span<const std::int32_t> numbers, std::int32_t number) {
+    return std::ranges::find(numbers, number) != numbers.end();
+}
+
+/// The corners after and before one in a loop; nothing where it has no such corner.
+inline std::optional<std::array<std::int32_t, 2>> beside(std::span<const std::int32_t> loop,
+                                                         std::int32_t corner) {
+    const auto at = static_cast<std::size_t>(std::ranges::find(loop, corner) - loop.begin());
+    const std::size_t n = loop.size();
+    if (at == n) return std::nullopt;
+    return std::array{loop[(at + 1) % n], loop[(at + n - 1) % n]};
+}
 
 /// The area vector of a face, away from its first cell, and its center, as OpenFOAM has them: of
 /// the triangles between its edges and the mean of its corners.
@@ -104,6 +119,7 @@ public:
 
 private:
     void remove(std::int32_t face);
+    bool is_closed(std::int32_t cell) const;
 
     ComplexView model_;
     std::vector<Vec3> points_;

@@ -254,8 +254,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
                     [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
     for (const auto& border : borders)
         edges.insert(edges.end(), border.begin(), border.end());
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
     BorderChains chains;
     if (edges.empty()) return chains;
     std::vector<PlanPosition> ends;
@@ -266,8 +265,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
             largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
         }
     }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    sort_unique(ends);
 
     const double reach = largest * 0x1p-50;  // four to eight units in the last place
     const spatial::PointBins vertices(ends);
