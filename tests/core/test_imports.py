@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who imports whom in the add-on, at the top of a file or inside a function: nobody in a circle."""
+"""Who imports whom in the add-on, at the top of a file, inside a function or for types alone: nobody in a
+circle. The folders of core are steps (docs/dev/architecture.md), and each imports from earlier ones only."""
 
 import ast
 from graphlib import CycleError, TopologicalSorter
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "addon" / "realmodel"
+CORE = PACKAGE / "core"
 
 
 def _modules(package):
@@ -21,16 +23,12 @@ def _modules(package):
 
 
 class _Imports(ast.NodeVisitor):
-    """The modules that a module imports, but for the checker of types alone."""
+    """The modules that a module imports."""
 
     def __init__(self, name, file, modules):
         self.package = name if file.name == "__init__.py" else name.rpartition(".")[0]
         self.modules, self.found = modules, set()
         self.visit(ast.parse(file.read_text()))
-
-    def visit_If(self, node):
-        if not (isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
-            self.generic_visit(node)
 
     def visit_ImportFrom(self, node):
         if not node.level:
@@ -50,7 +48,11 @@ class _Imports(ast.NodeVisitor):
 def _cycle(package):
     """The modules of one circle, or None."""
     modules = _modules(package)
-    imports = {name: _Imports(name, file, modules).found for name, file in modules.items()}
+    return _circle({name: _Imports(name, file, modules).found for name, file in modules.items()})
+
+
+def _circle(imports):
+    """The first circle in {name: names}, or None."""
     try:
         TopologicalSorter(imports).prepare()
     except CycleError as error:
@@ -58,11 +60,47 @@ def _cycle(package):
     return None
 
 
+@pytest.mark.parametrize("depth", [1, 2])
+def test_the_folders_of_the_core_are_steps(depth):
+    """depth: 1 for the folders of core; 2 for the folders in these, too, each by itself."""
+    modules = _modules(PACKAGE)
+    imports = {}
+    for name, file in modules.items():
+        if CORE in file.parents:
+            steps = {_step(modules[found], depth) for found in _Imports(name, file, modules).found}
+            imports.setdefault(_step(file, depth), set()).update(steps - {_step(file, depth)})
+    assert _circle(imports) is None
+    assert not any(step.startswith("..") for steps in imports.values() for step in steps)
+
+
+def _step(file, depth):
+    """The folder of a file in core; a file that is in none is a step by itself."""
+    parts = file.relative_to(CORE).parts if CORE in file.parents else ("..",)
+    return "/".join(parts[:-1][:depth] or parts)
+
+
+def test_a_folder_of_the_core_says_what_comes_in_and_goes_out():
+    folders = {file.parent for file in CORE.rglob("*.py")}
+    for folder in folders - {CORE}:
+        text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
+        assert "Comes in: " in text, folder
+        assert "Goes out: " in text, folder
+    assert max(len(list(folder.glob("*.py"))) for folder in folders) <= 20
+
+
 def test_no_module_imports_itself_through_others():
     assert _cycle(PACKAGE) is None
 
 
-@pytest.mark.parametrize("text", ["from . import a", "def f():\n    from . import a", "from .a import x"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from . import a",
+        "def f():\n    from . import a",
+        "from .a import x",
+        "if TYPE_CHECKING:\n    from . import a",
+    ],
+)
 def test_a_circle_would_be_found(tmp_path, text):
     package = tmp_path / "sample"
     package.mkdir()
