@@ -3,6 +3,7 @@
 circle. The folders of core are steps (docs/dev/architecture.md), and each imports from earlier ones only."""
 
 import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -60,17 +61,29 @@ def _circle(imports):
     return None
 
 
-@pytest.mark.parametrize("depth", [1, 2])
-def test_the_folders_of_the_core_are_steps(depth):
-    """depth: 1 for the folders of core; 2 for the folders in these, too, each by itself."""
+def _imports_of_steps(depth):
+    """{step: steps that it imports from} of core."""
     modules = _modules(PACKAGE)
     imports = {}
     for name, file in modules.items():
         if CORE in file.parents:
             steps = {_step(modules[found], depth) for found in _Imports(name, file, modules).found}
             imports.setdefault(_step(file, depth), set()).update(steps - {_step(file, depth)})
-    assert _circle(imports) is None
-    assert not any(step.startswith("..") for steps in imports.values() for step in steps)
+    return imports
+
+
+def test_each_step_imports_from_steps_above_it_in_the_document():
+    text = (PACKAGE.parents[1] / "docs" / "dev" / "architecture.md").read_text()
+    steps = re.findall(r"^\| `(\w+)`", text.split("| step |")[1].split("\n\n")[0], re.MULTILINE)
+    imports = _imports_of_steps(1)
+    assert {step for step in imports if not step.endswith(".py")} == set(steps)
+    for n, step in enumerate(steps):
+        assert imports[step] <= set(steps[:n]) | {"plots.py"}, step
+    assert imports["plots.py"] <= set(steps)
+
+
+def test_folders_within_steps_are_in_no_circle():
+    assert _circle(_imports_of_steps(2)) is None
 
 
 def _step(file, depth):
