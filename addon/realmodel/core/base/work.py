@@ -25,7 +25,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
-_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or the name of the extension in Blender
+_PACKAGE = __package__.removesuffix(".core.base")  # "realmodel", or the name of the extension in Blender
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
