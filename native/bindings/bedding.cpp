@@ -30,7 +30,7 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     const Indices& face_vertices, const Indices& face_cells,
     const std::vector<HistoryArrays>& given, const Indices& faces, const Array<bool>& reversed,
     const Indices& history, const Indices& layer, const Indices& histories_of_corners, int threads,
-    const Progress* control) {
+    Progress* control) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -57,7 +57,7 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     {
         const py::gil_scoped_release unlocked;
         made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
-                                   threads, control);
+                                   {threads, control});
     }
     return {to_array(std::move(made.height)), to_array(std::move(made.thickness)),
             to_array(std::move(made.depth))};
