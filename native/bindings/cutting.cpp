@@ -114,8 +114,9 @@ py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
     return to_dict(std::move(section));
 }
 
-py::tuple triangulate_faces(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-                            const Indices& face_vertices, WatchedExecution* execution) {
+std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
+    const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+    const Indices& face_vertices, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices");
     const auto positions = view(vertices);
     const auto offsets = view(face_offsets);
@@ -126,7 +127,7 @@ py::tuple triangulate_faces(const Array<double>& vertices, const Array<std::int6
         const py::gil_scoped_release unlocked;
         found = cutting::triangulate_faces(positions, offsets, corners, run(execution));
     }
-    return py::make_tuple(to_array(std::move(found.triangles)), to_array(std::move(found.offsets)));
+    return {to_array(std::move(found.triangles)), to_array(std::move(found.offsets))};
 }
 
 }  // namespace

@@ -61,14 +61,16 @@ interpolation::Drift drift_of(const std::string& name) {
     throw InputError("option", "drift \"" + name + "\" is not known");
 }
 
-py::tuple kriged_tuple(interpolation::Kriged&& kriged) {
-    return py::make_tuple(to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)),
-                          kriged.alone);
+/// heights, variances, nodes with no point within the radius
+using KrigedArrays = std::tuple<Array<double>, Array<double>, std::int64_t>;
+
+KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
+    return {to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)), kriged.alone};
 }
 
-py::tuple krige(const Array<double>& points, const Array<double>& nodes, const py::dict& variogram,
-                const NeighborhoodTuple& neighborhood, const std::string& drift,
-                WatchedExecution* execution) {
+KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
+                   const py::dict& variogram, const NeighborhoodTuple& neighborhood,
+                   const std::string& drift, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto model = variogram_of(variogram);
@@ -81,9 +83,9 @@ py::tuple krige(const Array<double>& points, const Array<double>& nodes, const p
     return kriged_tuple(std::move(kriged));
 }
 
-py::tuple krige_left_out(const Array<double>& points, const py::dict& variogram,
-                         const NeighborhoodTuple& neighborhood, const std::string& drift,
-                         WatchedExecution* execution) {
+KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
+                            const NeighborhoodTuple& neighborhood, const std::string& drift,
+                            WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto model = variogram_of(variogram);
     const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift)};

@@ -24,14 +24,16 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-py::tuple polygon_edges(const Indices& offsets, const Indices& corners, std::size_t vertices) {
+std::tuple<Array<std::int32_t>, Array<std::int32_t>> polygon_edges(const Indices& offsets,
+                                                                   const Indices& corners,
+                                                                   std::size_t vertices) {
     shells::PolygonEdges found;
     const auto begins = view(offsets), numbers = view(corners);
     {
         const py::gil_scoped_release unlocked;
         found = shells::polygon_edges(begins, numbers, vertices);
     }
-    return py::make_tuple(to_array(std::move(found.edges)), to_array(std::move(found.of_corner)));
+    return {to_array(std::move(found.edges)), to_array(std::move(found.of_corner))};
 }
 
 py::list shell_arrays(std::vector<shells::Shell>&& shells) {

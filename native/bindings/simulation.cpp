@@ -192,16 +192,17 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     return made;
 }
 
-py::tuple describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-                         const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
+std::tuple<Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>>
+describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
+               const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
     simulation::CellDescriptions found;
     {
         const py::gil_scoped_release unlocked;
         found = simulation::describe_cells({view_of(face_offsets), view_of(face_vertices)},
                                            view_of(begin), view_of(sides));
     }
-    return py::make_tuple(to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
-                          to_array(std::move(found.counts)), to_array(std::move(found.lengths)));
+    return {to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
+            to_array(std::move(found.counts)), to_array(std::move(found.lengths))};
 }
 
 Array<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {

@@ -153,8 +153,9 @@ std::size_t columns_of(const Array<double>& vertices) {
     return columns;
 }
 
-py::object joined_mesh(const strata::Joins& joins, const Array<double>& vertices,
-                       const Indices& triangles, WatchedExecution* execution) {
+std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
+    const strata::Joins& joins, const Array<double>& vertices, const Indices& triangles,
+    WatchedExecution* execution) {
     const std::size_t columns = columns_of(vertices);
     require_columns(triangles, 3, "triangles");
     std::optional<strata::JoinedMesh> mesh;
@@ -166,9 +167,9 @@ py::object joined_mesh(const strata::Joins& joins, const Array<double>& vertices
                 ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)}, run(execution))
                 : joins.mesh(strata::RegionView{view(vertices), view(triangles)}, run(execution));
     }
-    if (!mesh) return py::none();
-    return py::make_tuple(to_array(std::move(mesh->vertices), columns),
-                          to_array(std::move(mesh->triangles), 3));
+    if (!mesh) return std::nullopt;
+    return std::tuple(to_array(std::move(mesh->vertices), columns),
+                      to_array(std::move(mesh->triangles), 3));
 }
 
 Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices) {
@@ -189,14 +190,16 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                              std::nullopt, false);
 }
 
-py::tuple cell_sides(const Indices& face_cells, std::size_t cells, WatchedExecution* execution) {
+std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices& face_cells,
+                                                                  std::size_t cells,
+                                                                  WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
     strata::CellSides found;
     {
         const py::gil_scoped_release release;
         found = strata::cell_sides(faces, cells, run(execution).progress);
     }
-    return py::make_tuple(to_array(std::move(found.offsets)), to_array(std::move(found.sides)));
+    return {to_array(std::move(found.offsets)), to_array(std::move(found.sides))};
 }
 
 Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,

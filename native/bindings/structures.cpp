@@ -57,8 +57,9 @@ Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::
     return array;
 }
 
-py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArrays>& structures,
-                          WatchedExecution* execution) {
+std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
+    const py::dict& rock, const std::vector<StructureArrays>& structures,
+    WatchedExecution* execution) {
     const PartArrays arrays(rock);
     const auto views = views_of(structures);
     std::vector<structures::Part> parts;
@@ -73,8 +74,7 @@ py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArray
         low.push_back(part.low);
         high.push_back(part.high);
     }
-    return py::make_tuple(sides_array(sides, views.size()), to_array(std::move(low)),
-                          to_array(std::move(high)));
+    return {sides_array(sides, views.size()), to_array(std::move(low)), to_array(std::move(high))};
 }
 
 /// triangles (K, 3, 3), is_continuation (K,), kept

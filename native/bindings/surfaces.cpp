@@ -41,8 +41,8 @@ Array<std::int32_t> hull_border(const Array<double>& nodes) {
     return to_array(std::move(border));
 }
 
-py::array outside_hull(const Array<double>& points, const Array<double>& nodes,
-                       WatchedExecution* execution) {
+Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes,
+                         WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<std::uint8_t> outside;
@@ -67,9 +67,12 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
 }
 
 template <auto method>
-py::tuple on_part(const Array<double>& points, const Array<double>& nodes,
-                  const Array<double>& border, const std::array<double, 4>& all,
-                  const std::array<double, 4>& window, bool is_whole, WatchedExecution* execution) {
+std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
+                                               const Array<double>& nodes,
+                                               const Array<double>& border,
+                                               const std::array<double, 4>& all,
+                                               const std::array<double, 4>& window, bool is_whole,
+                                               WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
@@ -78,8 +81,7 @@ py::tuple on_part(const Array<double>& points, const Array<double>& nodes,
         const py::gil_scoped_release unlocked;
         found = method(from, to, around, run(execution));
     }
-    return py::make_tuple(to_array(std::move(found.z)),
-                          to_array(std::move(found.certain)).attr("view")("bool"));
+    return {to_array(std::move(found.z)), to_array(std::move(found.certain)).attr("view")("bool")};
 }
 
 Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
