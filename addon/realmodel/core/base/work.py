@@ -99,7 +99,7 @@ class Work:
         native, call = native_module(), cast(Callable[..., Result], function)
         execution = options.setdefault("execution", native.Execution())
         with self._lock:
-            self._execution = cast(Native.Execution, execution)
+            self._execution = cast("Native.Execution", execution)
         try:
             self.check()
             return call(*arguments, **options)
