@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "arrangement/triangulate.hpp"
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/space_predicates.hpp"
 
 namespace realmodel::booleans {
@@ -28,11 +28,11 @@ std::size_t shared_corners(const Corners& a, const Corners& b) {
 }
 
 /// Turns of exact points, which loop corners number as nodes.
-class PointTurns : public cutting::CornerTurns {
+class PointTurns : public arrangement::CornerTurns {
 public:
     PointTurns(const SpacePoints& points, const View& view) : points_(points), view_(view) {}
-    int operator()(const cutting::LoopCorner& a, const cutting::LoopCorner& b,
-                   const cutting::LoopCorner& c) const override {
+    int operator()(const arrangement::LoopCorner& a, const arrangement::LoopCorner& b,
+                   const arrangement::LoopCorner& c) const override {
         return view_.sign() * exact::orient2d(points_, view_.axis(), SpacePointId(a.node),
                                               SpacePointId(b.node), SpacePointId(c.node));
     }
@@ -204,21 +204,22 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
 
 /// A region in triangles of its nodes.
 std::vector<Corners> ExactDivision::divided(const Region& region) const {
-    std::vector<cutting::Loop> loops;
+    std::vector<arrangement::Loop> loops;
     std::vector<arrangement::Position> positions;
     const auto [axis, facing] = arrangement_.view_of(region.triangle);
     arrangement::Position normal{0, 0, 0};
     normal[axis] = facing;
     const View view(normal);
     for (const auto nodes : region.loops) {
-        cutting::Loop& loop = loops.emplace_back();
+        arrangement::Loop& loop = loops.emplace_back();
         for (const SpacePointId p : nodes) {
             positions.push_back(pieces_.points.rounded(p));
             loop.push_back({p.number(), view(positions.back())});
         }
     }
-    std::vector<std::array<cutting::LoopCorner, 3>> found;
-    cutting::triangulate(loops, view.rounding(positions), found, PointTurns(pieces_.points, view));
+    std::vector<std::array<arrangement::LoopCorner, 3>> found;
+    arrangement::triangulate(loops, view.rounding(positions), found,
+                             PointTurns(pieces_.points, view));
     std::vector<Corners> triangles;
     for (const auto& t : found)
         triangles.push_back(

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "cutting/plane_cross.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "spatial/corner_grid.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 
 namespace {
 
@@ -321,17 +320,6 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
 
 }  // namespace
 
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    std::vector<Position> positions;
-    for (const NodeId v : polygon)
-        positions.push_back(model.vertex(v));
-    const View view(polygon_normal(positions));
-    Loop loop;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        loop.push_back({polygon[i], view(positions[i])});
-    return {std::move(loop), view.rounding(positions)};
-}
-
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
     return exact::orient2d(a.at, b.at, c.at);
 }
@@ -385,4 +373,4 @@ bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
     return clean;
 }
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

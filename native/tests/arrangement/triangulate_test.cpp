@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 namespace {
 
 class Corners {
@@ -196,4 +196,4 @@ TEST(Triangulate, FewTrianglesReachAcross) {
 }
 
 }  // namespace
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement
