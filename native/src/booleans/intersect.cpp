@@ -6,10 +6,10 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "booleans/facet_cells.hpp"
 #include "booleans/facets.hpp"
 #include "booleans/loops.hpp"
 #include "booleans/refinement.hpp"
-#include "booleans/space_cells.hpp"
 #include "exact/double_double_interval.hpp"
 
 namespace realmodel::booleans {
@@ -24,8 +24,8 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Progress* progr
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         poll(progress, e);
         std::array<int, 2> net{0, 0};
-        for (const FacetUse& use : mesh.uses_of(e)) {
-            const Facet& facet = mesh.facets[index(use.facet)];
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
+            const Facet& facet = mesh.facets[index(use.item)];
             for (std::size_t source = 0; source < 2; ++source)
                 net[source] += use.direction * facet.times[source];
         }
@@ -36,7 +36,7 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Progress* progr
 }
 
 /// The parts of each surface that hang together across edges that are in no loop.
-void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCells& cells,
+void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const FacetCells& cells,
                        Refinement& result, const Progress* progress) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
@@ -45,14 +45,14 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
         poll(progress, e);
         if (loops.of_edge[e] >= 0) continue;
         std::array<std::int32_t, 2> first{-1, -1};
-        for (const FacetUse& use : mesh.uses_of(e)) {
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             for (std::int32_t source = 0; source < 2; ++source) {
-                if (!mesh.facets[index(use.facet)].is_of[index(source)]) continue;
+                if (!mesh.facets[index(use.item)].is_of[index(source)]) continue;
                 std::int32_t& other = first[index(source)];
                 if (other < 0) {
-                    other = 2 * use.facet + source;
+                    other = 2 * use.item + source;
                 } else {
-                    joined.join(other, 2 * use.facet + source);
+                    joined.join(other, 2 * use.item + source);
                 }
             }
         }
@@ -67,7 +67,7 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
             own = static_cast<std::int32_t>(result.sub_surfaces.size());
             const auto& [below, above] = cells.of_facet[index(facet)];
             const bool is_between =
-                below != above && below != SpaceCells::kOutside && above != SpaceCells::kOutside;
+                below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
             result.sub_surfaces.push_back({source, {}, {}, is_between});
         }
         SubSurface& part = result.sub_surfaces[index(own)];
@@ -97,16 +97,16 @@ DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
 }
 
 void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
-                     const SpaceCells& cells, Refinement& result, const Progress* progress) {
+                     const FacetCells& cells, Refinement& result, const Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         poll(progress, f);
         const auto& [below, above] = cells.of_facet[f];
         if (below == above) continue;
         const auto& [a, b, c] = mesh.facets[f].corners;
-        if (below != SpaceCells::kOutside)
+        if (below != FacetCells::kOutside)
             result.sub_blocks[index(below) - 1].triangles.push_back({a, b, c});
-        if (above != SpaceCells::kOutside)
+        if (above != FacetCells::kOutside)
             result.sub_blocks[index(above) - 1].triangles.push_back({a, c, b});
     }
     for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
@@ -145,7 +145,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
     if (progress != nullptr) progress->begin(0.8, 0.9, "finding facets");
     const FacetMesh mesh = facets_of(parts, threads, progress);
     if (progress != nullptr) progress->begin(0.9, 0.99, "finding what is inside");
-    const SpaceCells cells = cells_of(parts.vertices, mesh, threads, progress);
+    const FacetCells cells = cells_of(parts.vertices, mesh, threads, progress);
     Loops loops = find_loops(mesh, progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());

@@ -172,7 +172,7 @@ TEST(Triangulate, FewTrianglesReachAcross) {
         const Loop loop = corners.loop(positions);
         std::vector<std::int8_t> sides;
         for (const PlanePosition& p : positions)
-            sides.push_back(p[0] > 0 ? kAbove : kBelow);
+            sides.push_back(p[0] > 0 ? 1 : -1);
         std::vector<std::array<LoopCorner, 3>> any, found;
         EXPECT_TRUE(triangulate(std::span(&loop, 1), {1e-12, 1e-12}, any));
         EXPECT_TRUE(triangulate_beside(loop, sides, {1e-12, 1e-12}, found));
