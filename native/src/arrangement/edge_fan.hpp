@@ -60,8 +60,8 @@ void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
 /// @param loop_of  loop_of(item): its nodes
 /// @throws InputError kind too_large, Cancelled
 template <class LoopOf>
-EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of, int threads,
-                  const Progress* progress) {
+EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
+                  const Execution& execution) {
     constexpr std::size_t kChunk = 1 << 12;
     auto sorted = sorted_in_buckets<EdgeUse>(
         nodes, (items + kChunk - 1) / kChunk,
@@ -71,7 +71,7 @@ EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of, i
                           [&](const EdgeUse& use) { put(index(use.edge[0]), use); });
             }
         },
-        threads, progress);
+        execution);
     EdgeUses edges{std::move(sorted.values)};
     for (std::size_t i = 1; i <= edges.uses.size(); ++i) {
         if (i == edges.uses.size() || edges.uses[i].edge != edges.uses[i - 1].edge)

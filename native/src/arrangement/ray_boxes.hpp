@@ -30,7 +30,7 @@ public:
 
     /// The numbers of the boxes that a ray may meet, in order.
     /// @throws Cancelled
-    std::vector<std::int32_t> find(const spatial::Box& ray, const Progress* progress) {
+    std::vector<std::int32_t> find(const spatial::Box& ray, Progress* progress) {
         std::vector<std::int32_t> found;
         if (!tree_ && ++rays_ > kFewRays) tree_.emplace(std::move(boxes_), progress);
         if (tree_) {

@@ -66,12 +66,11 @@ bool is_triangle(const Region& region) {
 
 }  // namespace
 
-ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int threads,
-                             Progress* progress)
+ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen,
+                             const Execution& execution)
     : pieces_(pieces),
       chosen_(std::move(chosen)),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       arrangement_(pieces.points) {
     find_candidates();
     find_meetings();
@@ -94,7 +93,7 @@ bool ExactDivision::is_aside(const Corners& own, const Corners& other,
 void ExactDivision::find_candidates() {
     const std::size_t count = chosen_.size();
     std::vector<Box> boxes(count);
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, {threads_, progress_}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
     });
@@ -110,7 +109,7 @@ void ExactDivision::find_candidates() {
                                  pieces_.points.rounded(c[2]));
     };
     parallel_ranges(
-        tree.leaf_count(), kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        tree.leaf_count(), kChunk, {threads_, progress_}, [&](std::size_t begin, std::size_t end) {
             auto& pairs = found[begin / kChunk];
             std::int32_t last = -1;  // the pairs of a piece follow one another
             std::optional<exact::SideFilter> plane;
@@ -129,7 +128,7 @@ void ExactDivision::find_candidates() {
         });
     for (const auto& pairs : found)
         candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
-    parallel_sort(candidates_, std::less<>(), threads_, progress_);
+    parallel_sort(candidates_, std::less<>(), {threads_, progress_});
 }
 
 void ExactDivision::find_meetings() {
@@ -150,7 +149,7 @@ void ExactDivision::find_meetings() {
     }
     const std::size_t count = candidates_.size();
     std::vector<std::vector<Meeting>> found((count + kChunk - 1) / kChunk);
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, {threads_, progress_}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
             if (met && is_contact(*met)) found[begin / kChunk].push_back(*met);
@@ -233,7 +232,7 @@ void ExactDivision::divide(const std::vector<Meeting>& at) {
         if (progress_ != nullptr) progress_->check();  // points take time
         arrangement_.insert(met);
     }
-    arrangement_.divide(threads_, progress_);
+    arrangement_.divide({threads_, progress_});
     divide_regions();
 }
 
@@ -243,7 +242,7 @@ void ExactDivision::divide_regions() {
     std::vector<std::int32_t> as(regions.size(), -1);
     std::vector<std::uint8_t> is_reversed(regions.size(), 0);
     std::vector<std::vector<SpacePointId>> outlines(regions.size());
-    parallel_ranges(regions.size(), kChunk, threads_, progress_,
+    parallel_ranges(regions.size(), kChunk, {threads_, progress_},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t r = begin; r < end; ++r) {
                             if (!is_triangle(regions[r]))
@@ -269,7 +268,7 @@ void ExactDivision::divide_regions() {
                                          corners[2]) != view.second;
     }
     std::vector<std::vector<Corners>> triangles(regions.size());
-    parallel_ranges(regions.size(), kChunk, threads_, progress_,
+    parallel_ranges(regions.size(), kChunk, {threads_, progress_},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t r = begin; r < end; ++r) {
                             if (as[r] == static_cast<std::int32_t>(r))

@@ -22,12 +22,11 @@ namespace {
 
 class CellFinder {
 public:
-    CellFinder(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-               Progress* progress)
+    CellFinder(const std::vector<Position>& vertices, const FacetMesh& mesh,
+               const Execution& execution)
         : vertices_(vertices),
           mesh_(mesh),
-          threads_(threads),
-          progress_(progress),
+          execution_(execution),
           cells_(2 * mesh.facets.size() + 1) {}
 
     FacetCells run() {
@@ -57,14 +56,13 @@ private:
 
     const std::vector<Position>& vertices_;
     const FacetMesh& mesh_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     arrangement::SpaceCells cells_;
 };
 
 /// What is between two facets that follow one another around an edge is one place.
 void CellFinder::join_around_edges() {
-    parallel_ranges(mesh_.edges.size(), 1 << 10, threads_, progress_,
+    parallel_ranges(mesh_.edges.size(), 1 << 10, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e) {
                             const auto fan = fan_of(e);
@@ -102,14 +100,14 @@ void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
     DisjointSets connected(count);
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
-        poll(progress_, e);
+        poll(execution_.progress, e);
         const auto uses = mesh_.edges[e];
         for (const EdgeUse& use : uses)
             connected.join(uses[0].item, use.item);
     }
     std::vector<Box> boxes(count);
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         for (const std::int32_t v : mesh_.facets[f].corners)
             boxes[f].include(vertices_[index(v)]);
     }
@@ -119,7 +117,7 @@ void CellFinder::join_along_rays() {
     std::vector<std::int32_t> part_of(count, -1);
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         const auto root = index(connected.find(static_cast<std::int32_t>(f)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(parts.size());
@@ -130,7 +128,7 @@ void CellFinder::join_along_rays() {
     }
     for (const auto& facets : parts) {
         for (std::size_t attempt = 0;; ++attempt) {
-            if (progress_ != nullptr) progress_->check();
+            if (execution_.progress != nullptr) execution_.progress->check();
             // of the places that are tried in a facet two at most are in line with an edge
             assert(attempt / facets.size() <= 2 * mesh_.edges.size());
             if (cast(facets[attempt % facets.size()], static_cast<int>(attempt / facets.size()),
@@ -169,7 +167,8 @@ bool CellFinder::cast(std::int32_t facet, int attempt, arrangement::RayBoxes& bo
         int side;  ///< 1: the ray comes out above the facet, -1 below
     };
     std::vector<Crossing> crossings;
-    for (const std::int32_t other : boxes.find(arrangement::ray_box(points, p, axis), progress_)) {
+    for (const std::int32_t other :
+         boxes.find(arrangement::ray_box(points, p, axis), execution_.progress)) {
         const auto tips = corners(points, other);
         if (other == facet) {
             const int side = exact::orient2d(points, axis, tips[0], tips[1], tips[2]);
@@ -204,7 +203,7 @@ FacetCells CellFinder::number_cells() {
     using Winding = std::array<std::int32_t, 2>;
     const std::size_t count = mesh_.facets.size();
     cells_.number([&](std::size_t side) {
-        poll(progress_, side);
+        poll(execution_.progress, side);
         return true;
     });
     assert(cells_.of(kOutsideSide) == FacetCells::kOutside);
@@ -212,7 +211,7 @@ FacetCells CellFinder::number_cells() {
     found.of_facet.resize(count);
     cells_.connect([&](const auto& visit) {
         for (std::size_t f = 0; f < count; ++f) {
-            poll(progress_, f);
+            poll(execution_.progress, f);
             auto& [below, above] = found.of_facet[f];
             below = cells_.of(index(side_of(f, 0)));
             above = cells_.of(index(side_of(f, 1)));
@@ -223,7 +222,7 @@ FacetCells CellFinder::number_cells() {
     windings[FacetCells::kOutside] = Winding{0, 0};
     std::size_t round = 0;
     const auto beyond = [&](const arrangement::SpaceCells::Way& way, const Winding& winding) {
-        poll(progress_, round++);
+        poll(execution_.progress, round++);
         Winding next = winding;
         for (std::size_t source = 0; source < 2; ++source)
             next[source] -= way.direction * mesh_.facets[index(way.facet)].times[source];
@@ -237,9 +236,9 @@ FacetCells CellFinder::number_cells() {
 
 }  // namespace
 
-FacetCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-                    Progress* progress) {
-    return CellFinder(vertices, mesh, threads, progress).run();
+FacetCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                    const Execution& execution) {
+    return CellFinder(vertices, mesh, execution).run();
 }
 
 }  // namespace realmodel::booleans

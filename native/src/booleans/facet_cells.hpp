@@ -22,7 +22,7 @@ struct FacetCells {
 };
 
 /// @throws InputError kind too_large; Cancelled
-FacetCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-                    Progress* progress);
+FacetCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                    const Execution& execution);
 
 }  // namespace realmodel::booleans

@@ -24,25 +24,25 @@ struct Keyed {
     auto operator<=>(const Keyed&) const = default;
 };
 
-void find_facets(const Parts& parts, FacetMesh& mesh, int threads, const Progress* progress) {
+void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution) {
     const std::size_t count = parts.triangles.size();
     std::vector<Keyed> keyed(count);
-    parallel_ranges(count, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             keyed[i] = {parts.triangles[i].corners, static_cast<std::int32_t>(i)};
             std::sort(keyed[i].sorted.begin(), keyed[i].sorted.end());
         }
     });
-    parallel_sort(keyed, std::less<>(), threads, progress);
+    parallel_sort(keyed, std::less<>(), execution);
     std::vector<std::int32_t> first(count);  // of the parts that coincide
     for (std::size_t i = 0, begin = 0; i < count; ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         if (keyed[i].sorted != keyed[begin].sorted) begin = i;
         first[index(keyed[i].part)] = keyed[begin].part;
     }
     mesh.of_part.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         const Part& part = parts.triangles[i];
         if (first[i] == static_cast<std::int32_t>(i)) {
             mesh.of_part[i] = static_cast<std::int32_t>(mesh.facets.size());
@@ -58,18 +58,18 @@ void find_facets(const Parts& parts, FacetMesh& mesh, int threads, const Progres
 
 }  // namespace
 
-FacetMesh facets_of(const Parts& parts, int threads, const Progress* progress) {
+FacetMesh facets_of(const Parts& parts, const Execution& execution) {
     FacetMesh mesh;
-    find_facets(parts, mesh, threads, progress);
+    find_facets(parts, mesh, execution);
     const std::size_t count = mesh.facets.size();
     checked_number(2 * count + 1, "sides of triangles");  // those who ask number them
     mesh.edges = arrangement::edges_of(
         count,
         parts.vertices.size(), [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; },
-        threads, progress);
+        execution);
     mesh.edges_of.resize(count);
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-        poll(progress, e);
+        poll(execution.progress, e);
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             const auto& corners = mesh.facets[index(use.item)].corners;
             std::size_t k = 0;

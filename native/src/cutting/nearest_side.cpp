@@ -86,7 +86,7 @@ NearestSide::NearestSide(const CutterSurface& surface)
     const auto edges = arrangement::edges_of(
         border_.size(),
         surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
-        1, nullptr);
+        {1, nullptr});
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (edges[e].size() != 1) continue;
         const auto t = index(edges[e][0].item);

@@ -33,7 +33,7 @@ void SurfaceOverlay::find_active_faces() {
     }
     tree_ = std::make_unique<BoxTree>(std::move(boxes));
     active_.assign(model_.face_count(), 0);
-    parallel_ranges(active_.size(), 1 << 12, threads_, progress_,
+    parallel_ranges(active_.size(), 1 << 12, {threads_, progress_},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t f = begin; f < end; ++f) {
                             if (first_passed(model_.face(f)) >= 0) active_[f] = 1;
@@ -176,7 +176,7 @@ void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
     constexpr std::size_t kFaces = 1 << 9;  // at a time
     std::vector<FaceParts> found((faces.size() + kFaces - 1) / kFaces);
     parallel_ranges(
-        faces.size(), kFaces, threads_, progress_,
+        faces.size(), kFaces, {threads_, progress_},
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 divide(faces[i], model_.face(index(faces[i])), found[begin / kFaces]);
@@ -194,7 +194,7 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     const std::size_t count = parts_.triangles.size() - first;
     std::vector<std::vector<std::array<NodeId, 2>>> found((count + kTriangles - 1) / kTriangles);
     parallel_ranges(
-        count, kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        count, kTriangles, {threads_, progress_}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto& t = parts_.triangles[first + i];
                 bool flat = true;

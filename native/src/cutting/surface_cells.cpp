@@ -32,7 +32,7 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 
 SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding,
                            std::span<const std::uint8_t> reaches, const Rules& rules,
-                           const Progress* progress)
+                           Progress* progress)
     : overlay_(overlay),
       items_(overlay.size() + overlay.model().face_count()),
       cells_(items_ + overlay.size()) {
@@ -54,7 +54,7 @@ SurfaceCells::SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding
 /// Joins items that are in the same part: those around a cell that does not reach the surface, and
 /// those around an edge that is none of the surface's.
 void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std::uint8_t> reaches,
-                               const Progress* progress) {
+                               Progress* progress) {
     const SurfaceOverlay& overlay = overlay_;
     const ComplexView& model = overlay.model();
     const auto regions = static_cast<std::int32_t>(overlay.size());
@@ -99,8 +99,8 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
                 }
             }
         },
-        overlay.threads(), progress);
-    parallel_ranges(overlay.node_count(), kChunk, overlay.threads(), progress,
+        {overlay.threads(), progress});
+    parallel_ranges(overlay.node_count(), kChunk, {overlay.threads(), progress},
                     [&](std::size_t first_node, std::size_t end_node) {
                         for (std::size_t node = first_node; node < end_node; ++node) {
                             const auto own = uses[node];
@@ -119,14 +119,14 @@ void SurfaceCells::join_beside(const CutterWinding& winding, std::span<const std
 /// What bounds one sector around an edge is in one part. This is said of sectors beside the model,
 /// too, for the sake of cells that rounding flattened away, but where the rules say otherwise.
 void SurfaceCells::join_sectors(const CutterWinding& winding, const Rules& rules,
-                                const Progress* progress) {
+                                Progress* progress) {
     const auto side_of = [&](std::size_t item, std::size_t side) -> std::int32_t {
         const auto number = static_cast<std::int32_t>(item);
         if (!overlay_.of_cutter(item)) return winding.level(item) < 0 ? number : -1;
         if (rules.is_left_out(item)) return -1;
         return side == 0 ? number : static_cast<std::int32_t>(items_ + item);
     };
-    parallel_ranges(winding.edge_count(), 1 << 10, overlay_.threads(), progress,
+    parallel_ranges(winding.edge_count(), 1 << 10, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e) {
                             const auto uses = winding.edge(e);

@@ -31,8 +31,7 @@ public:
     };
     /// @param reaches  of cells (cells_near_surface)
     SurfaceCells(SurfaceOverlay& overlay, const CutterWinding& winding,
-                 std::span<const std::uint8_t> reaches, const Rules& rules,
-                 const Progress* progress);
+                 std::span<const std::uint8_t> reaches, const Rules& rules, Progress* progress);
 
     std::size_t size() const { return cells_.size(); }
     /// The part that a face's region or a face (counted after all regions) is in, or that is below
@@ -52,9 +51,9 @@ public:
     const arrangement::SpaceCells& cells() const { return cells_; }
 
 private:
-    void join_sectors(const CutterWinding& winding, const Rules& rules, const Progress* progress);
+    void join_sectors(const CutterWinding& winding, const Rules& rules, Progress* progress);
     void join_beside(const CutterWinding& winding, std::span<const std::uint8_t> reaches,
-                     const Progress* progress);
+                     Progress* progress);
 
     SurfaceOverlay& overlay_;
     std::size_t items_;  ///< regions and faces; sides 1 of regions come after them

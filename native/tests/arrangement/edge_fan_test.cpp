@@ -64,8 +64,8 @@ TEST(EdgeUse, KnowsWhatIsAheadGoingRound) {
 
 TEST(EdgesOf, EachEdgeHasAllItsUses) {
     const std::vector<std::array<NodeId, 3>> triangles{{0, 1, 2}, {2, 1, 3}, {1, 2, 4}};
-    const EdgeUses edges = edges_of(
-        3, 5, [&](std::size_t t) -> const auto& { return triangles[t]; }, 1, nullptr);
+    const EdgeUses edges =
+        edges_of(3, 5, [&](std::size_t t) -> const auto& { return triangles[t]; }, {1, nullptr});
     ASSERT_EQ(edges.size(), 7U);
     std::vector<std::array<NodeId, 2>> ends;
     for (std::size_t e = 0; e < edges.size(); ++e)
