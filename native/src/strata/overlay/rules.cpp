@@ -192,14 +192,14 @@ SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
 }
 
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
-    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, {threads_, progress_});
-    raised.index(geometry_, {threads_, progress_});
+    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, execution_);
+    raised.index(geometry_, execution_);
     return raised;
 }
 
 SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                                    const SurfaceTiling& surface) const {
-    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, {threads_, progress_});
+    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, execution_);
     SurfaceTiling covered;
     for (const SurfaceTiling* part : {&newer, &rest}) {
         for (std::size_t p = 0; p < part->plane.size(); ++p) {
@@ -213,7 +213,7 @@ SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTili
 
 SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
                                     const SurfaceTiling& e, bool fills) const {
-    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, {threads_, progress_});
+    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, execution_);
     SurfaceTiling lowest = e;
     if (fills) std::ranges::replace_if(lowest.plane, &PlaneId::has_value, kSky);
     return lowest;
@@ -221,7 +221,7 @@ SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
 
 SurfaceTiling TilingRaising::stays(SurfaceTiling lowest) const {
     std::ranges::replace(lowest.plane, kSky, kVoid);
-    lowest.index(geometry_, {threads_, progress_});
+    lowest.index(geometry_, execution_);
     return lowest;
 }
 
