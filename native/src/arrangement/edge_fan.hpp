@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,6 +51,7 @@ void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];
+            assert(a != b);
             visit(EdgeUse{unordered(a, b), item, static_cast<std::int8_t>(a < b ? 1 : -1)});
         }
     }

@@ -2,6 +2,7 @@
 #include "arrangement/triangulate.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -246,6 +247,7 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
 
 bool Ring::cut_ears() {
     bool clean = true;
+    [[maybe_unused]] const std::size_t corners = count_ + triangles_.size();
     enter_corners();
     Care care = first_care();
     std::int32_t tip = entry_, stop = entry_;
@@ -277,6 +279,7 @@ bool Ring::cut_ears() {
         tip = stop;
         care = first_care();
     }
+    assert(!clean || triangles_.size() + 2 == corners);
     return clean;
 }
 

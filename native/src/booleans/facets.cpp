@@ -2,6 +2,7 @@
 #include "booleans/facets.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
@@ -67,6 +68,7 @@ FacetMesh facets_of(const Parts& parts, const Execution& execution) {
         count,
         parts.vertices.size(), [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; },
         execution);
+    assert(mesh.edges.uses.size() == 3 * count);
     mesh.edges_of.resize(count);
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         poll(execution.progress, e);

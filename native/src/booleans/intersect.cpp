@@ -2,6 +2,7 @@
 #include "realmodel/booleans/intersect.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
@@ -33,6 +34,22 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
             is_closed[source] = is_closed[source] && net[source] == 0;
     }
     return is_closed;
+}
+
+/// Whether the winding of each closed surface changes with each facet by how often that is one of
+/// its parts: around each edge all changes add up to zero.
+[[maybe_unused]] bool are_wound(const FacetMesh& mesh, const FacetCells& cells,
+                                const std::array<bool, 2>& is_closed) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const auto& [below, above] = cells.of_facet[f];
+        for (std::size_t source = 0; source < 2; ++source) {
+            if (is_closed[source] &&
+                cells.winding[index(below)][source] - cells.winding[index(above)][source] !=
+                    mesh.facets[f].times[source])
+                return false;
+        }
+    }
+    return true;
 }
 
 /// The parts of each surface that hang together across edges that are in no loop.
@@ -83,6 +100,21 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const FacetCel
     }
 }
 
+/// Whether triangles pass each edge as often one way as the other.
+[[maybe_unused]] bool is_closed(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                                std::size_t vertices) {
+    const auto edges = arrangement::edges_of(
+        triangles.size(), vertices, [&](std::size_t t) -> const auto& { return triangles[t]; },
+        {1});
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        int net = 0;
+        for (const arrangement::EdgeUse& use : edges[e])
+            net += use.direction;
+        if (net != 0) return false;
+    }
+    return true;
+}
+
 /// Six times the volume between a triangle and an origin.
 DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
                                   const std::array<std::int32_t, 3>& t, const Position& origin) {
@@ -119,6 +151,7 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
                                      vertices[index(block.triangles[0][0])]);
         }
         block.volume = (sum.high + sum.low) / 6;
+        assert(is_closed(block.triangles, vertices.size()));
         for (std::size_t source = 0; source < 2; ++source)
             block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
@@ -154,6 +187,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
         result.vertices.insert(result.vertices.end(), p.begin(), p.end());
     std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
     result.is_closed = closed_surfaces(mesh, execution.progress);
+    assert(are_wound(mesh, cells, result.is_closed));
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
         poll(execution.progress, t);
         const Part& part = parts.triangles[t];

@@ -2,6 +2,7 @@
 #include "booleans/loops.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -62,6 +63,7 @@ private:
         const auto number = static_cast<std::int32_t>(result_.loops.size());
         IntersectionLoop loop{LoopKind::kOpen, {start}};
         for (std::int32_t at = start;;) {
+            assert(result_.of_edge[index(edge)] < 0);  // each edge is in one loop
             result_.of_edge[index(edge)] = number;
             const auto& ends = mesh_.edges.ends(index(edge));
             at = ends[0] == at ? ends[1] : ends[0];
@@ -75,6 +77,7 @@ private:
                 break;
             }
             const auto first = first_of(at);
+            assert(first->first == at && std::next(first)->first == at);
             edge = first->second == edge ? std::next(first)->second : first->second;
         }
         result_.loops.push_back(std::move(loop));
