@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +16,13 @@ namespace realmodel::arrangement {
 using Position = Vec3;
 using PlanePosition = Vec2;
 using NodeId = std::int32_t;
+
+/// How far a cross product of two steps may be off where each corner is by `rounding`.
+inline double slack(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c,
+                    const PlanePosition& rounding) {
+    return rounding[0] * (std::abs(b[1] - a[1]) + std::abs(c[1] - b[1])) +
+           rounding[1] * (std::abs(b[0] - a[0]) + std::abs(c[0] - b[0]));
+}
 
 /// Many polygons in one array.
 struct Polygons {

@@ -166,7 +166,8 @@ TEST(BeddingTest, NumbersOutOfRangeAreRefused) {
     const Polygon good{0, false, 0, -1};
     const std::vector<std::int32_t> few{0}, wrong{0, 0, 1};
     for (const auto& histories : {few, wrong}) {
-        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&good, 1}, histories, {1}), InputError);
+        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&good, 1}, histories, {1}),
+                     InputError);
     }
 }
 

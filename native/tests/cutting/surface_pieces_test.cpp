@@ -3,11 +3,11 @@
 
 #include <map>
 
+#include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
 #include "cutting/surface_parts.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {
@@ -38,7 +38,7 @@ struct Parted {
     validation::OwnedComplex complex;
     ComplexView model = complex.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
     SurfaceParts parts{overlay, winding, sides, nullptr};
