@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/counting_sort.hpp"
-
 #include "meshing/plan_predicates.hpp"
 
 namespace realmodel::meshing {
