@@ -13,7 +13,7 @@
 #include "cutting/face_splitting.hpp"
 #include "cutting/halves.hpp"
 #include "cutting/model_check.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
@@ -76,9 +76,8 @@ public:
         report(0.7, "putting the halves together");
         std::vector<HalfCell> half_cells;
         number_cells(half_cells);
-        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, threads_,
-                     progress_)
-            .run();
+        round_parts(RoundedParts(model_, new_positions_, pieces_, half_cells, threads_, progress_),
+                    {false, false});
         return assemble_halves(model_, new_positions_, pieces_, half_cells, threads_, progress_);
     }
 

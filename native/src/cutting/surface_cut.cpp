@@ -7,7 +7,7 @@
 #include "base/parallel.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -28,9 +28,9 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
     if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, progress);
     if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches, threads,
-                 progress)
-        .run();
+    round_parts(RoundedParts(near, overlay.new_positions(), made.pieces, made.half_cells, threads,
+                             progress),
+                made.touches);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");

@@ -12,11 +12,11 @@
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "exact/space_predicates.hpp"
 #include "realmodel/base/errors.hpp"
 #include "strata/cells/volumes.hpp"
+#include "structures/joined_rounding.hpp"
 #include "structures/near_cells.hpp"
 #include "structures/wanted_parts.hpp"
 
@@ -225,9 +225,9 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     begin(progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, progress);
     begin(progress, 0.85, 0.92, "rounding what was cut");
-    cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          threads, progress, true, least_rounding)
-        .run();
+    round_joined_parts(cutting::RoundedParts(near, overlay.new_positions(), made.pieces,
+                                             made.half_cells, threads, progress, true),
+                       made.touches, least_rounding);
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;

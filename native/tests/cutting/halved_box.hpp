@@ -6,7 +6,7 @@
 #include <set>
 
 #include "cutting/halves.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
 
 namespace realmodel::cutting {
 
@@ -50,7 +50,7 @@ protected:
         pieces_.add(std::array{8, 9, 11, 10}, {-1, {0, 0}, {kBelow, kAbove}, true, {0, 1}});
     }
     Cut rounded() {
-        PartRounding(model_, new_, pieces_, parts_, {false, false}, 1, nullptr).run();
+        round_parts(RoundedParts(model_, new_, pieces_, parts_, 1, nullptr), {false, false});
         return assemble_halves(model_, new_, pieces_, parts_, 1, nullptr);
     }
     static void expect_distinct(const CellComplex& half) {
