@@ -44,8 +44,7 @@ public:
         std::atomic<bool> any = false;
         for (const std::vector<Edge>& round : rounds_) {
             constexpr std::size_t kAtOnce = 1 << 3;
-            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, parts_.threads,
-                             parts_.progress,
+            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, parts_.execution,
                              [&] {
                                  return [&, scratch = Scratch()](std::size_t chunk) mutable {
                                      const std::size_t begin = chunk * kAtOnce;
@@ -239,7 +238,7 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
     constexpr std::size_t kPieces = 1 << 12;  // at a time
     std::vector<std::vector<Edge>> found((pieces.size() + kPieces - 1) / kPieces);
     parallel_ranges(
-        pieces.size(), kPieces, parts.threads, parts.progress,
+        pieces.size(), kPieces, parts.execution,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];

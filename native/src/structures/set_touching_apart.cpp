@@ -87,7 +87,7 @@ std::vector<std::size_t> shortest_way_back(std::span<const EdgeOfPiece> uses) {
 std::vector<Edge> touching_edges(const RoundedParts& parts) {
     std::vector<std::vector<Edge>> of_parts(parts.half_cells.size());
     parallel_ranges(
-        of_parts.size(), 1 << 6, parts.threads, parts.progress,
+        of_parts.size(), 1 << 6, parts.execution,
         [&](std::size_t begin, std::size_t end) {
             std::vector<Edge> uses;
             for (std::size_t part = begin; part < end; ++part) {

@@ -112,7 +112,7 @@ void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
     // a node that is added moves no other
     std::vector<std::uint8_t> is_whole(parts.pieces.size());
     parallel_ranges(
-        parts.pieces.size(), 1 << 12, parts.threads, parts.progress,
+        parts.pieces.size(), 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 is_whole[p] =

@@ -35,7 +35,7 @@ std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
     constexpr std::size_t kFar = SIZE_MAX;
     Array<std::size_t> slot(pieces.size());
     parallel_ranges(
-        pieces.size(), 1 << 12, parts.threads, parts.progress,
+        pieces.size(), 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];

@@ -17,7 +17,7 @@ void visit_where(const RoundedParts& parts, std::size_t count, const IsIt& is_it
                  const Visit& visit) {
     std::atomic<std::size_t> first{count};
     parallel_ranges(
-        count, 1 << 12, parts.threads, parts.progress,
+        count, 1 << 12, parts.execution,
         [&](std::size_t begin, std::size_t end) {
             if (first.load(std::memory_order_relaxed) < begin) return;
             std::size_t i = begin;

@@ -68,7 +68,7 @@ void keep_sound(const RoundedParts& parts, Contraction& contraction,
     const std::vector<std::int32_t> all(involved.begin(), involved.end());
     std::vector<std::uint8_t> is_sound(all.size());
     constexpr std::size_t kAtOnce = 1 << 6;
-    parallel_workers((all.size() + kAtOnce - 1) / kAtOnce, parts.threads, parts.progress,
+    parallel_workers((all.size() + kAtOnce - 1) / kAtOnce, parts.execution,
                      [&] {
                          return [&, scratch = Contraction::Scratch()](std::size_t chunk) mutable {
                              const std::size_t end = std::min(all.size(), (chunk + 1) * kAtOnce);

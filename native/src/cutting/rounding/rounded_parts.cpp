@@ -7,15 +7,14 @@
 namespace realmodel::cutting {
 
 RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positions,
-                           Pieces& polygons, std::vector<HalfCell>& cells, int on_threads,
-                           const Progress* with_progress, bool of_several)
+                           Pieces& polygons, std::vector<HalfCell>& cells, bool of_several,
+                           const Execution& executed)
     : model(of),
       new_positions(positions),
       pieces(polygons),
       half_cells(cells),
-      threads(on_threads),
-      progress(with_progress),
-      are_joined(of_several) {
+      are_joined(of_several),
+      execution(executed) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)

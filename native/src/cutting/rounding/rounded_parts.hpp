@@ -7,6 +7,7 @@
 #include "base/counting_sort.hpp"
 #include "cutting/distinct.hpp"
 #include "cutting/pieces.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
@@ -18,8 +19,7 @@ struct RoundedParts {
     /// @param of_several  whether the cells are of several models, of which each was rounded by
     ///                    itself
     RoundedParts(const ComplexView& of, std::vector<Position>& positions, Pieces& polygons,
-                 std::vector<HalfCell>& cells, int on_threads, const Progress* with_progress,
-                 bool of_several = false);
+                 std::vector<HalfCell>& cells, bool of_several, const Execution& executed);
 
     bool is_new(NodeId node) const { return index(node) >= vertices.size(); }
     const Position& at(NodeId node) const {
@@ -61,9 +61,8 @@ struct RoundedParts {
     std::vector<Position>& new_positions;
     Pieces& pieces;
     std::vector<HalfCell>& half_cells;
-    int threads;
-    const Progress* progress;
     bool are_joined;
+    Execution execution;
 
     std::vector<Position> vertices;              ///< of the model, as `at` gives them
     std::vector<std::uint8_t> on_base, on_wall;  ///< of nodes
