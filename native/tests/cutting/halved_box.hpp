@@ -49,9 +49,10 @@ protected:
         }
         pieces_.add(std::array{8, 9, 11, 10}, {-1, {0, 0}, {kBelow, kAbove}, true, {0, 1}});
     }
+    RoundedParts rounded_parts() { return {model_, new_, pieces_, parts_, false, {1, nullptr}}; }
     Cut rounded() {
-        round_parts(RoundedParts(model_, new_, pieces_, parts_, 1, nullptr), {false, false});
-        return assemble_halves(model_, new_, pieces_, parts_, 1, nullptr);
+        round_parts(rounded_parts(), {false, false});
+        return assemble_halves(model_, new_, pieces_, parts_, {1, nullptr});
     }
     static void expect_distinct(const CellComplex& half) {
         const std::set<Position> found(half.vertices.begin(), half.vertices.end());
