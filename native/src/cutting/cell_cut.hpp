@@ -66,8 +66,8 @@ private:
     std::size_t next_edge(const DirectedEdge& arriving, const std::vector<bool>& taken) const;
     bool find_parts(std::span<const PieceRef> refs, CellCut& result);
     bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
-    void attach_shells(std::span<const PieceRef> refs, const CellCut& result,
-                       std::vector<std::int32_t>& root) const;
+    void attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
+                        DisjointSets& sets) const;
     std::int8_t side_of(std::size_t local, std::span<const PieceRef> refs) const;
     void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
     void join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts that a cell falls into.
 #include <algorithm>
-#include <numeric>
 
 #include "cutting/cell_cut.hpp"
 #include "cutting/shell.hpp"
@@ -79,10 +78,10 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
         for (const std::int8_t side : {kBelow, kAbove})
             join_at_edge({uses_.data() + begin, end - begin}, side, pieces, sets);
     }
+    attach_hollows(refs, result, sets);
     std::vector<std::int32_t> root(count);
     for (std::size_t i = 0; i < count; ++i)
         root[i] = sets.find(static_cast<std::int32_t>(i));
-    attach_shells(refs, result, root);
     // a part that rounding has turned inside out may meet the one that it goes to along an edge
     if (model_.cell_kind != CellKind::kBlocks && !use_edges_twice(root, pieces)) return false;
 
@@ -131,47 +130,27 @@ bool CellCutter::use_edges_twice(const std::vector<std::int32_t>& root, std::int
     return false;
 }
 
-/// The wall of a hollow within a part is a boundary of its own: one with a negative volume. It goes
-/// to the part around it. So do parts that rounding has turned inside out.
-void CellCutter::attach_shells(std::span<const PieceRef> refs, const CellCut& result,
-                               std::vector<std::int32_t>& root) const {
+/// Joins the walls of hollows within parts with the parts around them.
+void CellCutter::attach_hollows(std::span<const PieceRef> refs, const CellCut& result,
+                                DisjointSets& sets) const {
+    const auto count = static_cast<std::int32_t>(refs.size() + 2 * result.caps.size());
+    const Position origin = position(pieces_.polygons[index(refs[0].piece)][0]);
     for (const std::int8_t side : {kBelow, kAbove}) {
-        std::vector<std::int32_t> roots;
-        for (std::size_t i = 0; i < root.size(); ++i) {
-            if (side_of(i, refs) == side && root[i] == static_cast<std::int32_t>(i))
-                roots.push_back(root[i]);
+        Shells shells;
+        for (std::int32_t i = 0; i < count; ++i) {
+            if (side_of(index(i), refs) == side) shells[sets.find(i)];
         }
-        if (roots.size() < 2) continue;
-        std::vector<Shell> shells(root.size());
-        const Position origin = position(pieces_.polygons[index(refs[0].piece)][0]);
-        for (std::size_t i = 0; i < root.size(); ++i) {
-            if (side_of(i, refs) != side) continue;
-            const bool is_cap = i >= refs.size();
-            const bool reversed = is_cap ? side == kAbove : refs[i].which == 1;
-            shells[index(root[i])].add(is_cap ? result.caps[(i - refs.size()) / 2]
-                                              : pieces_.polygons[index(refs[i].piece)],
-                                       reversed ? -1 : 1, origin,
-                                       [this](NodeId node) { return position(node); });
+        if (shells.size() < 2) continue;
+        for (std::int32_t i = 0; i < count; ++i) {
+            if (side_of(index(i), refs) != side) continue;
+            const bool is_cap = index(i) >= refs.size();
+            const bool reversed = is_cap ? side == kAbove : refs[index(i)].which == 1;
+            shells.at(sets.find(i))
+                .add(is_cap ? result.caps[(index(i) - refs.size()) / 2]
+                            : pieces_.polygons[index(refs[index(i)].piece)],
+                     reversed ? -1 : 1, origin, [this](NodeId node) { return position(node); });
         }
-        const auto volume = [&](std::int32_t r) { return shells[index(r)].sixfold_volume; };
-        std::int32_t largest = roots[0];
-        for (const std::int32_t r : roots) {
-            if (volume(r) > volume(largest)) largest = r;
-        }
-        std::vector<std::int32_t> owner(root.size());
-        std::iota(owner.begin(), owner.end(), 0);
-        for (const std::int32_t r : roots) {
-            if (volume(r) >= 0 || r == largest) continue;
-            owner[index(r)] = largest;
-            for (const std::int32_t s : roots) {
-                if (volume(s) < volume(owner[index(r)]) && volume(s) > 0 &&
-                    shells[index(s)].box.contains(shells[index(r)].box))
-                    owner[index(r)] = s;
-            }
-        }
-        for (std::size_t i = 0; i < root.size(); ++i) {
-            if (side_of(i, refs) == side) root[i] = owner[index(root[i])];
-        }
+        join_hollows(shells, sets);
     }
 }
 

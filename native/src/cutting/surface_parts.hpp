@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -99,10 +98,7 @@ private:
     void join_parts(Progress* progress);
     void join_across();
     void join_round_edge(std::span<const SlotUse> uses);
-    /// By half and first slot.
-    using Shells = std::map<std::pair<std::int8_t, std::int32_t>, Shell>;
     void attach_hollows(Progress* progress);
-    void attach_hollows(const Shells& of_cell);
     void number_parts();
     void write_patches(Progress* progress);
     void write_caps(Progress* progress);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two halves of a box, put together by hand.
-#include "halved_box.hpp"
+#include "../halved_box.hpp"
 
 namespace realmodel::cutting {
 namespace {
