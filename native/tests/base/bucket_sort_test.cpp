@@ -26,7 +26,7 @@ Numbers sorted(const Numbers& numbers, double low, double high, const Execution&
 }
 
 void expect_sorted(Numbers numbers, double low = 0, double high = 1) {
-    const Numbers one = sorted(numbers, low, high, {1}), three = sorted(numbers, low, high, 3);
+    const Numbers one = sorted(numbers, low, high, {1}), three = sorted(numbers, low, high, {3});
     std::sort(numbers.begin(), numbers.end());
     EXPECT_EQ(one, numbers);
     EXPECT_EQ(three, numbers);

@@ -25,7 +25,7 @@ struct Wound {
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
 };
 

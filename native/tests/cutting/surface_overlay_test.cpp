@@ -37,7 +37,7 @@ struct Overlaid {
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
 };
 
 TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {

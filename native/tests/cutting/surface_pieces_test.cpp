@@ -38,7 +38,7 @@ struct Parted {
     validation::OwnedComplex complex;
     ComplexView model = complex.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
     SurfaceParts parts{overlay, winding, sides, nullptr};

@@ -326,7 +326,7 @@ TEST(FlatTetrahedraTest, CornersOnSurfacesMoveByHalfOfTheToleranceAtMost) {
 TEST(FlatTetrahedraTest, WhatIsRoundStays) {
     FilledMesh mesh = octahedron({0.1, 0, 0}, false);
     const auto before = mesh.points;
-    EXPECT_EQ(thicken_flat_tetrahedra(mesh, {1, nullptr}), 0u);
+    EXPECT_EQ(thicken_flat_tetrahedra(mesh, 1, nullptr), 0u);
     EXPECT_EQ(mesh.points, before);
 }
 

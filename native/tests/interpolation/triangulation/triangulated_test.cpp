@@ -15,7 +15,7 @@ namespace realmodel::interpolation {
 namespace {
 
 using Method = std::vector<double> (*)(std::span<const std::array<double, 3>>,
-                                       std::span<const std::array<double, 2>>, int, Progress*);
+                                       std::span<const std::array<double, 2>>, const Execution&);
 constexpr std::array<Method, 2> methods{linear_on_triangulation, natural_neighbors};
 
 TEST(Triangulated, ByHand) {
@@ -58,8 +58,8 @@ TEST(Triangulated, RefusesAndStops) {
 }
 
 using PartMethod = PartValues (*)(std::span<const std::array<double, 3>>,
-                                  std::span<const std::array<double, 2>>, const PointsAround&, int,
-                                  Progress*);
+                                  std::span<const std::array<double, 2>>, const PointsAround&,
+                                  const Execution&);
 constexpr std::array<PartMethod, 2> part_methods{linear_on_part, natural_neighbors_of_part};
 
 /// Of hills and of a lattice, the nodes also on points, on edges, on the hull and beside it.

@@ -48,7 +48,7 @@ TEST(CellComponents, RefuseCellsThatAreNotThere) {
 
 TEST(CellSides, AreTheSidesOfFacesInOrder) {
     const std::vector<Sides> faces{{1, 0}, {0, -1}, {1, -1}};
-    const CellSides sides = cell_sides(faces, {2, nullptr});
+    const CellSides sides = cell_sides(faces, 2, nullptr);
     const auto same = [](const auto& found, const std::vector<std::uint32_t>& expected) {
         return std::ranges::equal(found, expected);
     };

@@ -69,7 +69,7 @@ TEST_F(DistinctPositionsTest, WhereNothingMayMoveTheCellIsReported) {
 
 TEST_F(DistinctPositionsTest, WhatIsOnTheBorderOfATileStaysThere) {
     const TileBorder border{{0, 0, 4, 4}, {{0, {true, false}}, {1, {true, false}}}, {}};
-    spread({{{4, 2}, {4, 2}, {1, 0.5}}}, {0, &border});
+    spread({{{4, 2}, {4, 2}, {1, 0.5}}}, 0, &border);
     // the second one is coincident
     places_.coincident = {1};
     make_distinct(geometry_, {}, places_, loops_, &border, {1, nullptr});
@@ -81,7 +81,7 @@ TEST_F(DistinctPositionsTest, WhatIsOnTheBorderOfATileStaysThere) {
 
 TEST_F(DistinctPositionsTest, WhatRoundedToTheBorderOfATileMovesInside) {
     const TileBorder border{{0, 0, 4, 4}, {{1, {false, false}}, {2, {false, true}}}, {}};
-    EXPECT_TRUE(spread({{{1, 3}, {4, 2}, {0, 0}}}, {0, &border}).empty());
+    EXPECT_TRUE(spread({{{1, 3}, {4, 2}, {0, 0}}}, 0, &border).empty());
     EXPECT_EQ(loops_.positions[1][0], std::nextafter(4.0, 0.0));
     EXPECT_NEAR(loops_.positions[1][1], 2.0, 1e-15);
     EXPECT_GT(loops_.positions[2][0], 0.0);
