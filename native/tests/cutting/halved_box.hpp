@@ -51,7 +51,10 @@ protected:
         }
         pieces_.add(std::array{8, 9, 11, 10}, {-1, {0, 0}, {kBelow, kAbove}, true, {0, 1}});
     }
-    RoundedParts rounded_parts() { return {model_, new_, pieces_, parts_, false, {1, nullptr}}; }
+    RoundedParts rounded_parts(bool are_joined = false) {
+        return {model_, new_, pieces_, parts_, are_joined, {1, nullptr}};
+    }
+    NodeLoop nodes(std::size_t piece) const { return from_least(pieces_.polygons[piece]); }
     Cut rounded() {
         round_parts(rounded_parts(), {false, false});
         return assemble_halves(model_, new_, pieces_, parts_, {1, nullptr});

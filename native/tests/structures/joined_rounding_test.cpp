@@ -9,10 +9,8 @@ namespace realmodel::structures {
 namespace {
 
 using cutting::kBelow;
-using cutting::kOn;
 using cutting::loop_of;
 using cutting::NodeId;
-using cutting::Piece;
 using cutting::Position;
 using cutting::RoundedParts;
 
@@ -44,7 +42,7 @@ TEST_F(JoinedHalves, PolygonsOfTwoPartsStay) {
 }
 
 TEST_F(JoinedHalves, AnEdgeAsShortAsRoundingIsContracted) {
-    new_[1] = {ulp(0.5), 0, 0.5};  // beside node 8
+    new_[1] = {0, 0, 0.5 + ulp(0.5)};  // beside node 8
     RoundedParts parts = rounded_parts(true);
     join_short_edges(parts, 0);
     EXPECT_EQ(nodes(kCap), loop_of({8, 11, 10}));
@@ -73,21 +71,21 @@ TEST_F(JoinedHalves, ShortEdgesStayWhereAPartWouldVanish) {
 }
 
 TEST_F(JoinedHalves, WhereAPartTouchesItselfTheWayRoundGetsANodeOfItsOwn) {
-    // part 2 lies outside along the edge of 8 and 9, and part 0 comes back to that edge beyond it
+    // part 2 lies along the edge of 8 and 9, and part 0 comes back to that edge beyond it
+    new_.insert(new_.end(), {{0.5, -1, 0}, {0.5, -1, 1}});
     parts_.push_back({0, kBelow});
-    add_piece({8, 9, 0}, {0, 2});
-    add_piece({8, 9, 1}, {2, 0});
+    add_piece({8, 9, 12}, {0, 2});
+    add_piece({8, 9, 13}, {2, 0});
     RoundedParts parts = rounded_parts(true);
     set_touching_apart(parts);
-    ASSERT_EQ(new_.size(), 5U);
-    EXPECT_EQ(new_[4], (Position{0.5, 0, 0.5}));
-    EXPECT_EQ(nodes(11), loop_of({0, 8, 12, 9}));
-    EXPECT_EQ(nodes(12), loop_of({1, 8, 12, 9}));
+    ASSERT_EQ(new_.size(), 7U);
+    EXPECT_EQ(new_[6], (Position{0.5, 0, 0.5}));
+    EXPECT_EQ(nodes(11), loop_of({8, 14, 9, 12}));
+    EXPECT_EQ(nodes(12), loop_of({8, 14, 9, 13}));
     EXPECT_EQ(nodes(kCap), loop_of({8, 9, 11, 10}));
 }
 
 TEST_F(JoinedHalves, RoundedTogetherTheyAreSound) {
-    new_[1] = {ulp(0.5), 0, 0.5};
     add_piece({10, 11, 9, 8}, {0, -1});
     add_piece({8, 9, 11, 10}, {0, -1});
     round_joined_parts(rounded_parts(true), {false, false}, 0);

@@ -36,9 +36,13 @@ TEST_F(DivideBent, DoubledPolygonsAreDivided) {
 }
 
 TEST_F(DivideBent, TheMiddleOfAPolygonIsWhereNoOtherNodeIs) {
-    new_.push_back({0.5, 0.5, 0.5});
-    EXPECT_EQ(pieces_after({kCap}), 14U);
-    EXPECT_NE(new_.at(5), new_.at(4));
+    RoundedParts parts = rounded_parts();
+    parts.taken.insert({0.5, 0.5, 0.5});
+    std::vector<std::uint8_t> is_doubled(pieces_.size(), 0);
+    is_doubled[kCap] = 1;
+    divide_bent(parts, is_doubled);
+    ASSERT_EQ(new_.size(), 5U);
+    EXPECT_NE(new_[4], (Position{0.5, 0.5, 0.5}));
 }
 
 TEST_F(DivideBent, WhatIsAskedForToo) {

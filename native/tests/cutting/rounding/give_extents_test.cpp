@@ -9,8 +9,8 @@ TEST_F(AHalvedBox, AFlatPartGetsAUnitOfThickness) {
     cut_at(0);
     RoundedParts parts = rounded_parts();
     give_extents(parts);
-    EXPECT_EQ(new_[0], (Position{0, 0, ulp(0)}));
-    for (std::size_t i = 1; i < 4; ++i)
+    EXPECT_EQ(new_[1], (Position{1, 0, ulp(0)}));  // the first of its polygons
+    for (const std::size_t i : {0U, 2U, 3U})
         EXPECT_EQ(new_[i][2], 0);
 }
 
