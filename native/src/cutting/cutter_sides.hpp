@@ -8,8 +8,8 @@
 
 #include "base/disjoint_sets.hpp"
 #include "cutting/cutter_winding.hpp"
+#include "cutting/edge_intersections.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/plane_edges.hpp"
 
 namespace realmodel::cutting {
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -205,6 +206,7 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         for (std::size_t k = 0; k < 2; ++k) {
             if (model.cell(f, k) >= 0) own[k] = number_[index(model.cell(f, k))];
         }
+        assert(own[0] >= 0 || own[1] >= 0);
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
@@ -256,6 +258,7 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
             half_cells.push_back({c, sides[index(c)]});
         }
     }
+    assert(next == order.end());
     // pieces in the order of the model's faces, then caps
     const Pieces near = std::move(pieces);
     std::vector<std::int32_t> of_faces(near.size());

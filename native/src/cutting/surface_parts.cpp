@@ -173,6 +173,7 @@ void SurfaceParts::make_patches(Progress* progress) {
             add_patch({face, sides_.of_region(region), &*chunk, next});
         }
     }
+    assert(of_active == active.end() && (chunk == divided_.end() || next == chunk->face.size()));
 }
 
 /// Calls visit(use) for all edges of the slots of cells that reach the surface.
@@ -367,6 +368,7 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
         joined_->join(begun.back(), step.slot);
         begun.pop_back();
     }
+    assert(begun.empty());
 }
 
 /// Joins the walls of hollows that the surface cuts out of cells with the parts around them.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 #include <map>
 
 #include "cutting/rounding/equal_pieces.hpp"
@@ -33,6 +34,7 @@ void cancel_facing(cutting::RoundedParts& parts) {
             auto& own = left[times > 0 ? 0 : 1];
             own.insert(own.end(), index(std::abs(times)), part);
         }
+        assert(left[0].size() + left[1].size() <= before);
         if (left[0].size() + left[1].size() == before) continue;
         any = true;
         const auto first = pieces.polygons[equal[0]];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <set>
@@ -107,7 +108,8 @@ private:
                 round = std::max(round, rounds[index(part)]);
             for (const std::int32_t part : own)
                 rounds[index(part)] = round + 1;
-            if (rounds_.size() <= round) rounds_.resize(round + 1);
+            assert(round <= rounds_.size());  // one after another
+            if (rounds_.size() == round) rounds_.emplace_back();
             rounds_[round].push_back(edge);
         }
     }
@@ -128,6 +130,7 @@ private:
             found = contracted(part, to, from, scratch);
             if (!found || found->touches > now(part, scratch)->touches) return false;
         }
+        assert(contraction_.becomes[index(to)] == to && !nodes_.at(from).empty());
         become(from, to);
         auto& nodes = nodes_.at(to);
         auto& added = nodes_.at(from);

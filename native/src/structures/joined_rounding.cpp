@@ -2,6 +2,7 @@
 #include "structures/joined_rounding.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "cutting/rounding/part_rounding.hpp"
@@ -33,6 +34,7 @@ bool is_warped(std::span<const Position> corners) {
 
 void round_joined_parts(cutting::RoundedParts&& parts, const std::array<bool, 2>& touches,
                         double least_rounding) {
+    assert(parts.are_joined && parts.are_closed());
     // The order of cutting::round_parts(). Short edges come after nodes in one position, for each
     // is weighed by what the parts are like without these, and what faces each other then cancels
     // before nodes are set apart. Nodes in the middle of polygons may make others the same once
@@ -49,6 +51,7 @@ void round_joined_parts(cutting::RoundedParts&& parts, const std::array<bool, 2>
     cancel_facing(parts);
     set_touching_apart(parts);
     cutting::drop_empty(parts);
+    assert(parts.are_closed() && parts.are_apart());
 }
 
 }  // namespace realmodel::structures

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 #include <functional>
 #include <map>
 
@@ -150,6 +151,7 @@ void set_touching_apart(RoundedParts& parts) {
             std::vector<std::size_t> way = shortest_way_back(own);
             if (way.empty()) break;
             std::ranges::sort(way, std::greater<>{});  // each is erased without moving the next
+            assert(way.size() > 1);                    // the parts on it close around the edge
             const NodeId middle = add_between(parts, uses[begin].edge);
             for (const std::size_t use : way) {
                 nodes_on[own[use].piece].push_back({uses[begin].edge, middle});

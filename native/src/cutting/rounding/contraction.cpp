@@ -111,6 +111,8 @@ std::optional<Contraction::Shape> Contraction::shape(std::int32_t part, Scratch&
 void Contraction::apply() {
     Pieces kept;
     std::vector<NodeId> loop;
+    // what a node became stays: no chains
+    assert(std::ranges::all_of(becomes, [this](NodeId n) { return becomes[index(n)] == n; }));
     for (std::size_t p = 0; p < parts_.pieces.size(); ++p) {
         loop.clear();
         add_contracted(p, loop);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/parallel.hpp"
@@ -109,6 +110,7 @@ NodeId add_middle(RoundedParts& parts, std::size_t piece) {
 
 void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
                  bool (*is_bent_too)(std::span<const Position> corners)) {
+    assert(is_doubled.size() == parts.pieces.size());
     // a node that is added moves no other
     std::vector<std::uint8_t> is_whole(parts.pieces.size());
     parallel_ranges(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 
 #include "cutting/rounding/part_rounding.hpp"
 
@@ -17,6 +18,7 @@ void drop_hollow(RoundedParts& parts) {
                                   return std::ranges::count(pieces[p].parts, number) == 1;
                               });
         if (!has_both) continue;
+        assert(std::ranges::is_permutation(pieces.polygons[both[0]], pieces.polygons[both[1]]));
         any = true;
         std::array<std::size_t, 2> own{};
         std::array<std::int32_t, 2> beyond{};  // the parts of this half there, or none

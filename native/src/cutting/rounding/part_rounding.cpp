@@ -4,6 +4,7 @@
 namespace realmodel::cutting {
 
 void round_parts(RoundedParts&& parts, const std::array<bool, 2>& touches) {
+    assert(parts.are_closed());
     // First what moves many nodes at once or takes parts away, so that no later pass is done in
     // vain. Nodes are one before those that are left move: each moves for good to a position that
     // no other has. Extents are given by moves, too, and may bend polygons: these are divided when
@@ -15,6 +16,7 @@ void round_parts(RoundedParts&& parts, const std::array<bool, 2>& touches) {
     give_extents(parts);
     divide_bent(parts, glue_doubled(parts));
     drop_empty(parts);
+    assert(parts.are_closed() && parts.are_apart());
 }
 
 }  // namespace realmodel::cutting

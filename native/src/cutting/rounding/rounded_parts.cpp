@@ -2,6 +2,7 @@
 #include "cutting/rounding/rounded_parts.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace realmodel::cutting {
@@ -56,6 +57,27 @@ bool RoundedParts::is_upright(std::size_t piece) const {
 bool RoundedParts::is_whole_face(std::size_t piece) const {
     const std::int32_t face = pieces[piece].face;
     return face >= 0 && std::ranges::equal(pieces.polygons[piece], model.face(index(face)));
+}
+
+bool RoundedParts::are_closed() const {
+    std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> sums;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const auto nodes = pieces.polygons[p];
+        for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
+            const std::int32_t part = pieces[p].parts[i % 2];
+            const NodeId a = nodes[i / 2], b = nodes[(i / 2 + 1) % nodes.size()];
+            if (part >= 0) sums[{part, unordered(a, b)}] += (a < b) == (i % 2 == 0) ? 1 : -1;
+        }
+    }
+    return std::ranges::all_of(sums, [](const auto& sum) { return sum.second == 0; });
+}
+
+bool RoundedParts::are_apart() const {
+    std::vector<NodeId> nodes = pieces.polygons.nodes;
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    Positions found;
+    return std::ranges::all_of(nodes, [&](NodeId node) { return found.insert(at(node)); });
 }
 
 void RoundedParts::update() {

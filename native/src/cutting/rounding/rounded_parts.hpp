@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cassert>
 #include <span>
 #include <vector>
 
 #include "base/counting_sort.hpp"
-#include "cutting/distinct.hpp"
 #include "cutting/pieces.hpp"
+#include "cutting/positions.hpp"
 #include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
@@ -25,7 +26,10 @@ struct RoundedParts {
     const Position& at(NodeId node) const {
         return is_new(node) ? new_positions[index(node) - vertices.size()] : vertices[index(node)];
     }
-    Position& moving(NodeId node) { return new_positions[index(node) - vertices.size()]; }
+    Position& moving(NodeId node) {
+        assert(is_new(node));
+        return new_positions[index(node) - vertices.size()];
+    }
     /// A new node at a position, or beside it where there is one already.
     NodeId add_node(Position p, Freedom freedom);
     /// How a node may move that is where some others are: on all of their faces.
@@ -49,6 +53,12 @@ struct RoundedParts {
     bool is_upright(std::size_t piece) const;
     /// Whether a piece is a face of the model as it was.
     bool is_whole_face(std::size_t piece) const;
+
+    // What holds for all parts, for assertions: they take long.
+    /// Whether each uses its edges as often in one direction as in the other.
+    bool are_closed() const;
+    /// Whether no two nodes of polygons are in one position.
+    bool are_apart() const;
 
     /// Finds the arrays below anew, for other pieces or nodes.
     void update();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/distinct.hpp"
+#include "cutting/positions.hpp"
 
 #include <gtest/gtest.h>
 

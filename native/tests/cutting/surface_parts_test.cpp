@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/surface_parts.hpp"
+
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "../validation/small_complex.hpp"
-#include "cutting/surface_parts.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
 #include "small_polygons.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/plane_edges.hpp"
+#include "cutting/edge_intersections.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -77,7 +77,7 @@ std::int32_t SurfaceOverlay::first_passed(std::span<const NodeId> polygon) const
     return first == INT32_MAX ? -1 : first;
 }
 
-void SurfaceOverlay::FaceParts::add(std::int32_t face, std::span<const Corners> more) {
+void SurfaceOverlay::FaceParts::add(std::int32_t face, std::span<const LoopTriangle> more) {
     for (const auto& t : more) {
         triangles.push_back({t[0].node, t[1].node, t[2].node});
         face_of_triangle.push_back(face);
@@ -107,9 +107,9 @@ void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
         return;
     }
     auto [loop, rounding] = loop_of(model_, polygon);
-    std::vector<Corners> triangles;
+    std::vector<LoopTriangle> triangles;
     if (loop.size() == 3) {
-        const Corners own{loop[0], loop[1], loop[2]};
+        const LoopTriangle own{loop[0], loop[1], loop[2]};
         parts.add(face, std::span(&own, 1));
         return;
     }
@@ -154,7 +154,7 @@ void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) con
             continue;
         }
         const auto [loop, rounding] = loop_of(model_, beside[i]);
-        std::vector<Corners> triangles;
+        std::vector<LoopTriangle> triangles;
         triangulate(std::span(&loop, 1), rounding, triangles);
         parts.add(faces[i], triangles);
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts that a cell falls into.
 #include <algorithm>
+#include <cassert>
 
-#include "cutting/cell_cut.hpp"
+#include "cutting/cell_cutter.hpp"
 #include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
@@ -94,6 +95,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
             part = static_cast<std::int32_t>(result.part_side.size());
             result.part_side.push_back(side_of(i, refs));
         }
+        assert(result.part_side[index(part)] == side_of(i, refs));
         result.part[i] = part;
     }
     return true;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cutting/plane_edges.hpp"
+#include "cutting/edge_intersections.hpp"
 #include "cutting/polygons.hpp"
 #include "cutting/triangulate.hpp"
 

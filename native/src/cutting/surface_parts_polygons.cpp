@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The polygons around parts of cells.
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
@@ -117,8 +118,10 @@ void SurfaceParts::number_parts() {
         const Slot& own = slots_[index(root)];
         half_cells.push_back({own.cell, own.half, loses_[index(own.cell)] != 0});
     }
-    for (std::size_t s = 0; s < slots_.size(); ++s)
+    for (std::size_t s = 0; s < slots_.size(); ++s) {
         part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
+        assert(half_cells[index(part_[s])].side == slots_[s].half);
+    }
 }
 
 /// Adds some of the polygons between two slots: they turn counter-clockwise, the other
@@ -134,6 +137,7 @@ void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_
         origin.sides[k] = slot.half;
         origin.parts[k] = part_[index(slots[k])];
     }
+    assert(origin.parts[0] >= 0 || origin.parts[1] >= 0);
     if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
     for (std::size_t p = first; p < end; ++p) {
         if (reversed) {

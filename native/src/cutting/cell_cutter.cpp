@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/cell_cut.hpp"
+#include "cutting/cell_cutter.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 
 #include "cutting/plane_cross.hpp"
@@ -199,9 +200,11 @@ void CellCutter::trace_loops() {
         if (taken[start]) continue;
         Loop& loop = loops_.emplace_back();
         // As many edges arrive at each node as leave it: a walk can only end where it began.
+        [[maybe_unused]] std::size_t last = start;
         for (std::size_t e = start; e < open_.size(); e = next_edge(open_[e], taken)) {
-            if (taken[e]) break;
+            assert(!taken[e]);
             taken[e] = true;
+            last = e;
             positions.push_back(points_.rounded(open_[e].from));
             loop.push_back(corner(open_[e].from));
             if (open_[e].to == open_[start].from) {
@@ -216,6 +219,7 @@ void CellCutter::trace_loops() {
                 if (next == start) break;
             }
         }
+        assert(open_[last].to == open_[start].from);
     }
     rounding_ = points_.view().rounding(positions);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/cell_cutter.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "cutting/cell_cut.hpp"
-#include "cutting/face_splitting.hpp"
+#include "cutting/face_splitter.hpp"
 #include "prism.hpp"
 #include "small_polygons.hpp"
 

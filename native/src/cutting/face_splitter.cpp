@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/face_splitting.hpp"
+#include "cutting/face_splitter.hpp"
 
 #include <algorithm>
 #include <array>
