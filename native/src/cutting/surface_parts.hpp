@@ -66,7 +66,8 @@ private:
         std::int32_t region;
         std::array<std::vector<std::int32_t>, 2> slots;
         /// Slots with the region between them, -1 nothing wanted: of cells that lie one below and
-        /// one above it, and of those that overlap on one side and make up for each other.
+        /// one above it, and pairs of cells that overlap on one side, of which one
+        /// is there as often too much as the other too little.
         std::vector<std::array<std::int32_t, 2>> across, beside;
     };
     /// A slot at one of its edges.

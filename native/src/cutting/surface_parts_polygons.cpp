@@ -187,8 +187,8 @@ void SurfaceParts::write_patches(Progress* progress) {
     }
 }
 
-/// Between what is on either side of the surface; of cells that overlap or are inside out on one
-/// side, those that make up for each other have the polygon between them.
+/// Between what is on either side of the surface; where on one side two cells overlap, or one is
+/// inside out, the polygon is between these two.
 void SurfaceParts::write_caps(Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
