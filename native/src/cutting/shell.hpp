@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+
+#include "base/disjoint_sets.hpp"
 #include "cutting/polygons.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -25,5 +28,13 @@ struct Shell {
         }
     }
 };
+
+/// Those of a cell on one side of the cutter, by a set of what bounds it.
+using Shells = std::map<std::int32_t, Shell>;
+
+/// The wall of a hollow bounds the part around it, and what rounding turned inside out goes with
+/// the part beside it: joins the sets of shells without a positive volume with one that is larger,
+/// the smallest whose box contains theirs, or else the smallest.
+void join_hollows(const Shells& shells, DisjointSets& sets);
 
 }  // namespace realmodel::cutting

@@ -3,6 +3,7 @@
 #include "structures/branch_sides.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
@@ -100,6 +101,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     for (const auto& met : meetings)
         arrangement.insert(met);
     arrangement.divide({1, nullptr});
+    assert(branch != other && own <= triangles.size());
     const cutting::NearestSide nearest(surface.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {

@@ -3,6 +3,7 @@
 #include "structures/mean_plane.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -17,8 +18,6 @@ using cutting::Position;
 using meshing::PlanPoint;
 
 namespace {
-
-using Corners = std::array<Position, 3>;
 
 /// The directions of a plane and a point of it.
 struct Plane {
@@ -105,6 +104,7 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
     }
     // an edge through another place is in two parts, and gapes there
     if (passed != rises.size()) return std::nullopt;
+    assert(std::ranges::find(depth, -1) == depth.end());
     std::vector<std::array<std::int32_t, 3>> found;
     for (std::size_t t = 0; t < depth.size(); ++t) {
         if (depth[t] == 0) found.push_back(mesh.triangles[t]);
@@ -114,7 +114,7 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
 
 }  // namespace
 
-std::optional<std::vector<Corners>> continued_in_mean_plane(
+std::optional<std::vector<std::array<Position, 3>>> continued_in_mean_plane(
     const cutting::CutterSurface& fault, std::span<const std::array<NodeId, 2>> border,
     std::span<const double> lengths) {
     const auto plane = mean_plane(fault);
@@ -154,7 +154,7 @@ std::optional<std::vector<Corners>> continued_in_mean_plane(
         add(corner, plane->at(corner));
     const auto filled = outside(places, edges);
     if (!filled) return std::nullopt;
-    std::vector<Corners> triangles;
+    std::vector<std::array<Position, 3>> triangles;
     for (const auto& t : *filled)
         triangles.push_back({corners[index(t[0])], corners[index(t[1])], corners[index(t[2])]});
     for (const double length : lengths) {
