@@ -16,6 +16,18 @@ struct CutterSurface {
     bool is_closed = false;  ///< every edge has an even number of triangles
 };
 
+/// As long as 1, or 0 if it is.
+Position unit(const Position& p);
+
+/// An edge that an odd number of triangles have, as one of them runs, and the third corner of that.
+struct OpenEdge {
+    NodeId from, to, corner;
+};
+std::vector<OpenEdge> border_of(const CutterSurface& surface);
+
+/// Away from an edge, in the plane of its triangle, as long as 1.
+Position away_from(const CutterSurface& surface, const OpenEdge& edge);
+
 /// Whether three points lie in one line, exactly.
 bool in_one_line(const Position& a, const Position& b, const Position& c);
 

@@ -74,17 +74,6 @@ struct PieceRef {
     std::int32_t which = 0;  ///< 0 or 1: whose outside its polygon turns counter-clockwise from
 };
 
-/// The pieces of each cell that is cut.
-struct CellPieces {
-    std::vector<std::int32_t> cells;  ///< the model's numbers of the cells that are cut, ascending
-    std::vector<std::int64_t> offsets{0};
-    std::vector<PieceRef> refs;
-
-    std::span<const PieceRef> operator[](std::size_t i) const {
-        return {refs.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
-    }
-};
-
 /// A cell of a half: the model's cell that it is or is part of, and the half.
 struct HalfCell {
     std::int32_t cell;

@@ -21,16 +21,12 @@ using cutting::CutterSurface;
 using cutting::dot;
 using cutting::minus;
 using cutting::NodeId;
+using cutting::OpenEdge;
 using cutting::Position;
-using cutting::unordered;
+using cutting::unit;
 using spatial::Box;
 
 namespace {
-
-Position unit(const Position& p) {
-    const double size = std::sqrt(dot(p, p));
-    return size > 0 ? Position{p[0] / size, p[1] / size, p[2] / size} : Position{0, 0, 0};
-}
 
 Position sum(const Position& a, const Position& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -39,27 +35,6 @@ Position sum(const Position& a, const Position& b) {
 Position beyond(const Position& p, const Position& direction, double length) {
     return {p[0] + length * direction[0], p[1] + length * direction[1],
             p[2] + length * direction[2]};
-}
-
-/// An edge of one triangle, as that triangle runs.
-struct OpenEdge {
-    NodeId from, to, corner;
-};
-
-std::vector<OpenEdge> border_of(const CutterSurface& surface) {
-    std::map<std::array<NodeId, 2>, std::pair<int, OpenEdge>> users;
-    for (const auto& t : surface.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
-            ++count;
-            edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
-        }
-    }
-    std::vector<OpenEdge> border;
-    for (const auto& [key, use] : users) {
-        if (use.first % 2 == 1) border.push_back(use.second);
-    }
-    return border;
 }
 
 /// How far a continuation goes on, in two steps, by the size of a box around the rock and all
@@ -116,24 +91,13 @@ public:
 private:
     Position at(NodeId v) const { return fault_.vertices[index(v)]; }
 
-    /// Away from an edge, in the plane of its triangle.
-    Position away_from(const OpenEdge& edge) const {
-        const Position along = minus(at(edge.to), at(edge.from));
-        const Position inward = minus(at(edge.corner), at(edge.from));
-        const double share = dot(inward, along) / dot(along, along);
-        Position away;
-        for (std::size_t k = 0; k < 3; ++k)
-            away[k] = share * along[k] - inward[k];
-        return unit(away);
-    }
-
     void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
         const auto are_beyond = [](const std::vector<std::uint8_t>& own, const OpenEdge& edge) {
             return own[index(edge.from)] != 0 && own[index(edge.to)] != 0;
         };
         std::vector<std::vector<std::int32_t>> leaving(fault_.vertices.size());
         for (const OpenEdge& edge : border_) {
-            const Position away = away_from(edge);
+            const Position away = cutting::away_from(fault_, edge);
             const bool is_steep = std::abs(away[2]) >= 0.5;
             const bool in_plane =
                 std::ranges::any_of(beyond, [&](const auto& own) { return are_beyond(own, edge); });
