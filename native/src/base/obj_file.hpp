@@ -11,16 +11,19 @@
 
 namespace realmodel {
 
-/// A Wavefront OBJ file with all digits, for dumps.
+/// A Wavefront OBJ file that is written: what the dumps of several folders are. Coordinates have 17
+/// digits. Throws std::runtime_error where the file cannot be written.
 class ObjFile {
 public:
+    using Position = std::array<double, 3>;
+
     explicit ObjFile(const char* path) : file_(path) {
         if (!file_) throw std::runtime_error(std::string("cannot write ") + path);
         file_.precision(std::numeric_limits<double>::max_digits10);
     }
 
     void begin_group(const std::string& name) { file_ << "g " << name << '\n'; }
-    void add_vertex(const std::array<double, 3>& at) {
+    void add_vertex(const Position& at) {
         file_ << "v " << at[0] << ' ' << at[1] << ' ' << at[2] << '\n';
         ++vertices_;
     }
@@ -32,9 +35,9 @@ public:
         file_ << '\n';
     }
     /// A face, or a line of two corners, with vertices of its own.
-    void add(char kind, std::span<const std::array<double, 3>> corners) {
+    void add(char kind, std::span<const Position> corners) {
         const std::size_t first = vertices_ + 1;
-        for (const auto& corner : corners)
+        for (const Position& corner : corners)
             add_vertex(corner);
         file_ << kind;
         for (std::size_t i = 0; i < corners.size(); ++i)

@@ -5,8 +5,6 @@
 #include <cassert>
 #include <cstdlib>
 
-#include "cutting/plane_cross.hpp"
-
 namespace realmodel::cutting {
 
 void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
@@ -141,7 +139,7 @@ bool CellCutter::is_in_caps(const std::array<NodeId, 2>& edge) const {
     for (const DirectedEdge& e : open_) {
         const PlanePosition p = corner(e.from).at, q = corner(e.to).at;
         if ((p[1] > middle[1]) == (q[1] > middle[1])) continue;
-        if (q[1] > p[1] ? cross(p, q, middle) > 0 : cross(p, q, middle) < 0)
+        if (q[1] > p[1] ? twice_area(p, q, middle) > 0 : twice_area(p, q, middle) < 0)
             times += q[1] > p[1] ? 1 : -1;
     }
     return times != 0;

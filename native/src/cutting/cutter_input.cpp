@@ -6,7 +6,6 @@
 #include <map>
 
 #include "cutting/cutter_surface.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"
@@ -288,7 +287,7 @@ void SurfaceInput::extend_border() {
     }
     std::map<NodeId, NodeId> beyond;
     for (const auto& [v, way] : outward) {
-        const double size = std::sqrt(dot(way, way));
+        const double size = length(way);
         if (size < 0.1) continue;  // the border runs back: it is a slit there
         Position p = surface_.vertices[index(v)];
         for (std::size_t k = 0; k < 3; ++k)

@@ -2,14 +2,23 @@
 #include "cutting/cutter_surface.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "cutting/edge_intersections.hpp"
-#include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
+
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    std::vector<Position> positions;
+    for (const NodeId v : polygon)
+        positions.push_back(model.vertex(v));
+    const View view(polygon_normal(positions));
+    Loop loop;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        loop.push_back({polygon[i], view(positions[i])});
+    return {std::move(loop), view.rounding(positions)};
+}
 
 void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons) {
     const auto [loop, rounding] = loop_of(model, model.face(face));
@@ -29,11 +38,6 @@ void triangulate_face(const ComplexView& model, std::size_t face,
     triangulate(std::span(&loop, 1), rounding, found);
     for (const auto& t : found)
         triangles.push_back({t[0].node, t[1].node, t[2].node});
-}
-
-Position unit(const Position& p) {
-    const double size = std::sqrt(dot(p, p));
-    return size > 0 ? Position{p[0] / size, p[1] / size, p[2] / size} : Position{0, 0, 0};
 }
 
 std::vector<OpenEdge> border_of(const CutterSurface& surface) {
@@ -57,10 +61,7 @@ Position away_from(const CutterSurface& surface, const OpenEdge& edge) {
     const Position along = minus(surface.vertices[index(edge.to)], o);
     const Position inward = minus(surface.vertices[index(edge.corner)], o);
     const double share = dot(inward, along) / dot(along, along);
-    Position away;
-    for (std::size_t k = 0; k < 3; ++k)
-        away[k] = share * along[k] - inward[k];
-    return unit(away);
+    return unit(minus(times(share, along), inward));
 }
 
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {

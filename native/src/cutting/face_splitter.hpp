@@ -6,7 +6,6 @@
 
 #include "cutting/edge_intersections.hpp"
 #include "cutting/polygons.hpp"
-#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cutting/edge_intersections.hpp"
-#include "cutting/triangulate.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

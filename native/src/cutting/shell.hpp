@@ -24,7 +24,7 @@ struct Shell {
             box.include(at(polygon[i]));
             if (i < 2) continue;
             sixfold_volume +=
-                sign * cutting::sixfold_volume(origin, first, at(polygon[i - 1]), at(polygon[i]));
+                sign * realmodel::sixfold_volume(origin, first, at(polygon[i - 1]), at(polygon[i]));
         }
     }
 };

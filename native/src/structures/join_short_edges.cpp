@@ -246,10 +246,9 @@ void join_short_edges(RoundedParts& parts, double least_rounding) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces.polygons[p];
                 for (std::size_t i = 0; i < nodes.size(); ++i) {
-                    const Edge edge =
-                        cutting::unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
+                    const Edge edge = unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
                     if (!parts.is_new(edge[1])) continue;
-                    const Position away = cutting::minus(parts.at(edge[0]), parts.at(edge[1]));
+                    const Position away = minus(parts.at(edge[0]), parts.at(edge[1]));
                     if (std::ranges::all_of(away,
                                             [allowed](double x) { return std::abs(x) <= allowed; }))
                         found[begin / kPieces].push_back(edge);

@@ -17,7 +17,7 @@ namespace {
 /// coordinates.
 bool is_warped(std::span<const Position> corners) {
     constexpr double kUnits = 8;  // in the last place, by which coordinates may be off
-    const Position normal = cutting::polygon_normal(corners);
+    const Position normal = polygon_normal(corners);
     double allowed = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         double largest = 0;
@@ -26,7 +26,7 @@ bool is_warped(std::span<const Position> corners) {
         allowed += kUnits * std::abs(normal[axis]) * (std::nextafter(largest, HUGE_VAL) - largest);
     }
     return !std::ranges::all_of(corners, [&](const Position& p) {
-        return std::abs(cutting::dot(normal, cutting::minus(p, corners[0]))) <= allowed;
+        return std::abs(dot(normal, minus(p, corners[0]))) <= allowed;
     });
 }
 

@@ -13,9 +13,6 @@
 
 namespace realmodel::structures {
 
-using cutting::cross;
-using cutting::dot;
-using cutting::minus;
 using cutting::NodeId;
 using cutting::Position;
 using meshing::PlanPoint;
@@ -38,14 +35,6 @@ struct Plane {
     }
 };
 
-bool make_unit(Position& p) {
-    const double size = std::sqrt(dot(p, p));
-    if (!(size > 0)) return false;
-    for (double& x : p)
-        x /= size;
-    return true;
-}
-
 /// The plane through the middle of a surface, by areas, at right angles to its mean normal.
 std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     const auto at = [&](NodeId v) { return surface.vertices[index(v)]; };
@@ -53,8 +42,8 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     Position normal{0, 0, 0}, total{0, 0, 0};
     double whole = 0;
     for (const auto& t : surface.triangles) {
-        const Position own = cross(minus(at(t[1]), at(t[0])), minus(at(t[2]), at(t[0])));
-        const double area = std::sqrt(dot(own, own));
+        const Position own = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
+        const double area = length(own);
         whole += area;
         for (std::size_t k = 0; k < 3; ++k) {
             normal[k] += own[k];
@@ -62,10 +51,11 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
                 total[k] += area * (at(v)[k] - first[k]);
         }
     }
-    if (!make_unit(normal)) return std::nullopt;
+    normal = unit(normal);
+    if (normal == Position{}) return std::nullopt;
     Position strike{-normal[1], normal[0], 0};
     if (elementary::hypot(normal[0], normal[1]) < 1e-6) strike = cross({0, 1, 0}, normal);
-    make_unit(strike);
+    strike = unit(strike);
     Position middle = first;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] += total[k] / (3 * whole);

@@ -12,7 +12,6 @@ namespace realmodel::structures {
 using cutting::NodeId;
 using cutting::Pieces;
 using cutting::RoundedParts;
-using cutting::unordered;
 
 namespace {
 

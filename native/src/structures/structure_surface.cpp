@@ -16,26 +16,13 @@
 
 namespace realmodel::structures {
 
-using cutting::cross;
 using cutting::CutterSurface;
-using cutting::dot;
-using cutting::minus;
 using cutting::NodeId;
 using cutting::OpenEdge;
 using cutting::Position;
-using cutting::unit;
 using spatial::Box;
 
-namespace {
-
-Position sum(const Position& a, const Position& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-Position beyond(const Position& p, const Position& direction, double length) {
-    return {p[0] + length * direction[0], p[1] + length * direction[1],
-            p[2] + length * direction[2]};
-}
+namespace {}
 
 /// How far a continuation goes on, in two steps, by the size of a box around the rock and all
 /// structures.
@@ -66,8 +53,8 @@ public:
             const Position& way = direction_[i];
             Position a = at(edge.from), b = at(edge.to);
             for (const double length : lengths_) {
-                const Position far_a = beyond(at(edge.from), way, length);
-                const Position far_b = beyond(at(edge.to), way, length);
+                const Position far_a = moved(at(edge.from), length, way);
+                const Position far_b = moved(at(edge.to), length, way);
                 triangles_.push_back({b, a, far_a});
                 triangles_.push_back({b, far_a, far_b});
                 a = far_a;
@@ -80,8 +67,8 @@ public:
             const auto& outs = leaving[v];
             for (std::size_t i = 0; i < std::min(ins.size(), outs.size()); ++i) {
                 // both edges run back from v: their middle points away from the surface
-                const Position away = sum(unit(minus(at(v), at(ins[i].first))),
-                                          unit(minus(at(v), at(outs[i].first))));
+                const Position away = plus(unit(minus(at(v), at(ins[i].first))),
+                                           unit(minus(at(v), at(outs[i].first))));
                 add_fan(at(v), ins[i].second, outs[i].second, away, 0);
             }
         }
@@ -137,7 +124,7 @@ private:
     bool overlap(std::int32_t i, std::int32_t next) const {
         constexpr double kTurns = 0.25;  // a little overlap, nearly in one plane, parts nothing
         const OpenEdge &one = border_[index(i)], &other = border_[index(next)];
-        const Position normal = unit(sum(normal_of(one), normal_of(other)));
+        const Position normal = unit(plus(normal_of(one), normal_of(other)));
         return dot(normal, cross(direction_[index(i)], direction_[index(next)])) < -kTurns;
     }
     Position normal_of(const OpenEdge& edge) const {
@@ -159,15 +146,15 @@ private:
         };
         for (std::size_t i = 0; i < border_.size(); ++i) {
             const Position along = minus(at(border_[i].to), at(border_[i].from));
-            const double length = std::sqrt(dot(along, along));
+            const double size = length(along);
             Sum& all = sum_of(i);
-            all.way = beyond(all.way, own[i], length);
-            all.whole += length;
+            all.way = moved(all.way, size, own[i]);
+            all.whole += size;
             ++all.edges;
         }
         for (std::size_t i = 0; i < border_.size(); ++i) {
             const Sum& all = sum_of(i);
-            if (all.edges > 1 && std::sqrt(dot(all.way, all.way)) >= kRound * all.whole)
+            if (all.edges > 1 && length(all.way) >= kRound * all.whole)
                 direction_[i] = unit(all.way);
         }
     }
@@ -178,7 +165,7 @@ private:
                  int depth) {
         if (from == to) return;
         if (depth < 4 && dot(from, to) < 0.5) {
-            Position middle = sum(from, to);
+            Position middle = plus(from, to);
             if (dot(middle, middle) < 0.1) middle = away;
             middle = unit(middle);
             if (dot(middle, middle) > 0) {
@@ -187,8 +174,8 @@ private:
                 return;
             }
         }
-        const Position a = beyond(p, from, lengths_[0]), b = beyond(p, to, lengths_[0]);
-        const Position far_a = beyond(p, from, lengths_[1]), far_b = beyond(p, to, lengths_[1]);
+        const Position a = moved(p, lengths_[0], from), b = moved(p, lengths_[0], to);
+        const Position far_a = moved(p, lengths_[1], from), far_b = moved(p, lengths_[1], to);
         triangles_.push_back({p, a, b});
         triangles_.push_back({b, a, far_a});
         triangles_.push_back({b, far_a, far_b});
@@ -232,7 +219,7 @@ bool passes(const Box& box, const std::array<Position, 3>& triangle) {
             if (at_a >= 0) kept.push_back(a);
             if ((at_a < 0) != (at_b < 0)) {
                 const double share = at_a / (at_a - at_b);
-                kept.push_back(beyond(a, minus(b, a), share));
+                kept.push_back(moved(a, share, minus(b, a)));
             }
         }
         left = std::move(kept);
@@ -244,7 +231,7 @@ bool passes(const Box& box, const std::array<Position, 3>& triangle) {
 bool divides(const CutterSurface& fault, const Box& rock) {
     const Position extent = minus(rock.high, rock.low);
     Box near = rock;
-    near.widen(1e-6 * std::sqrt(dot(extent, extent)));
+    near.widen(1e-6 * length(extent));
     const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
     return std::ranges::none_of(
                border_of(fault),
@@ -267,11 +254,11 @@ std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
         for (const auto& t : own.triangles) {
             const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
                                      own.vertices[index(t[2])]};
-            const Position normal = cutting::polygon_normal(corners);
+            const Position normal = polygon_normal(corners);
             Position middle{0, 0, 0};
             for (std::size_t k = 0; k < 3; ++k)
                 middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
-            above += nearest(middle) * std::sqrt(dot(normal, normal));
+            above += nearest(middle) * length(normal);
         }
         for (std::size_t v = 0; v < found.size(); ++v) {
             if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
@@ -344,7 +331,7 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
             whole.include(p);
     }
     const Position extent = minus(whole.high, whole.low);
-    const double size = std::sqrt(dot(extent, extent));
+    const double size = length(extent);
     SurfaceOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];

@@ -163,11 +163,10 @@ bool WantedParts::is_sliver(std::size_t region) const {
         for (const NodeId node : loops[k])
             corners.push_back(overlay_.position(node));
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            const Position step = cutting::minus(corners[(i + 1) % corners.size()], corners[i]);
-            length += std::sqrt(cutting::dot(step, step));
+            length += realmodel::length(minus(corners[(i + 1) % corners.size()], corners[i]));
         }
-        const Position normal = cutting::polygon_normal(corners);
-        const double size = std::sqrt(cutting::dot(normal, normal));
+        const Position normal = polygon_normal(corners);
+        const double size = realmodel::length(normal);
         area += k == 0 ? size : -size;
         rounding = std::max(rounding, cutting::rounding_of(corners));
     }

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "../arrangement/small_polygons.hpp"
 #include "cutting/face_splitter.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {

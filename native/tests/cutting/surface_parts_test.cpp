@@ -5,10 +5,10 @@
 
 #include <map>
 
+#include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {
