@@ -274,10 +274,10 @@ void SurfaceInput::orient_upward() {
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
 void SurfaceInput::extend_border() {
-    const std::vector<OpenEdge> border = border_of(surface_);
+    const std::vector<CutterBorderEdge> border = border_of(surface_);
     const double width = 256 * rounding_of(surface_.vertices);
     std::map<NodeId, Position> outward;
-    for (const OpenEdge& edge : border) {
+    for (const CutterBorderEdge& edge : border) {
         const Position away = away_from(surface_, edge);
         for (const NodeId v : {edge.from, edge.to}) {
             Position& sum = outward.try_emplace(v, Position{0, 0, 0}).first->second;

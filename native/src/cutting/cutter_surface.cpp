@@ -40,8 +40,8 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         triangles.push_back({t[0].node, t[1].node, t[2].node});
 }
 
-std::vector<OpenEdge> border_of(const CutterSurface& surface) {
-    std::map<std::array<NodeId, 2>, std::pair<int, OpenEdge>> users;
+std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
+    std::map<std::array<NodeId, 2>, std::pair<int, CutterBorderEdge>> users;
     for (const auto& t : surface.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
             auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
@@ -49,14 +49,14 @@ std::vector<OpenEdge> border_of(const CutterSurface& surface) {
             edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
         }
     }
-    std::vector<OpenEdge> border;
+    std::vector<CutterBorderEdge> border;
     for (const auto& [key, use] : users) {
         if (use.first % 2 == 1) border.push_back(use.second);
     }
     return border;
 }
 
-Position away_from(const CutterSurface& surface, const OpenEdge& edge) {
+Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge) {
     const Position o = surface.vertices[index(edge.from)];
     const Position along = minus(surface.vertices[index(edge.to)], o);
     const Position inward = minus(surface.vertices[index(edge.corner)], o);

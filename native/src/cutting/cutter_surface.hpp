@@ -19,13 +19,13 @@ struct CutterSurface {
 };
 
 /// An edge that an odd number of triangles have, as one of them runs, and the third corner of that.
-struct OpenEdge {
+struct CutterBorderEdge {
     NodeId from, to, corner;
 };
-std::vector<OpenEdge> border_of(const CutterSurface& surface);
+std::vector<CutterBorderEdge> border_of(const CutterSurface& surface);
 
 /// Away from an edge, in the plane of its triangle, as long as 1.
-Position away_from(const CutterSurface& surface, const OpenEdge& edge);
+Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge);
 
 /// Whether three points lie in one line, exactly.
 bool in_one_line(const Position& a, const Position& b, const Position& c);

@@ -95,7 +95,7 @@ private:
     }
     void mark_sides();
     void find_cuts();
-    Piece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
+    CutPiece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
     void divide_faces(bool all);
     std::int8_t level_side(std::size_t face, std::size_t which, int facing) const;
     void cut_cells(bool parts);
@@ -115,7 +115,7 @@ private:
     std::vector<std::uint8_t> face_sides_, cell_sides_;
     std::unique_ptr<EdgeIntersections> cuts_;
     std::vector<Position> new_positions_;  ///< of cut edges, which settle_part may move
-    Pieces pieces_;
+    CutPieces pieces_;
     std::vector<std::int32_t> cut_cells_;  ///< the model's numbers, ascending
     Buckets<PieceRef> cell_pieces_;        ///< of these
     std::vector<CellCut> cell_cuts_;
@@ -197,10 +197,11 @@ std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int fac
 }
 
 /// A part of a face on one side of the plane, or in it.
-Piece PlaneCutter::origin(std::size_t face, std::int8_t side,
-                          std::span<const NodeId> polygon) const {
+CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
+                             std::span<const NodeId> polygon) const {
     const std::array cells{model_.cell(face, 0), model_.cell(face, 1)};
-    Piece piece{static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
+    CutPiece piece{
+        static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
     if (side != kOn) return piece;
     std::vector<Position> corners;
     for (const NodeId node : polygon)
@@ -220,15 +221,15 @@ Piece PlaneCutter::origin(std::size_t face, std::int8_t side,
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
     find_cuts();
-    std::vector<Pieces> found((model_.face_count() + kFaces - 1) / kFaces);
+    std::vector<CutPieces> found((model_.face_count() + kFaces - 1) / kFaces);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
     parallel_ranges(
         model_.face_count(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
             FaceSplitter splitter(model_, sides_, *cuts_);
-            FaceParts parts;
-            Pieces& own = found[begin / kFaces];
+            SplitFace parts;
+            CutPieces& own = found[begin / kFaces];
             for (std::size_t f = begin; f < end; ++f) {
                 const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
                 const auto face = model_.face(f);
@@ -256,7 +257,7 @@ void PlaneCutter::divide_faces(bool all) {
             }
         });
     pieces_ = {};
-    for (const Pieces& own : found) {
+    for (const CutPieces& own : found) {
         for (std::size_t p = 0; p < own.size(); ++p)
             pieces_.add(own.polygons[p], own[p]);
     }
