@@ -25,7 +25,7 @@ public:
         for (std::size_t f = 0; f < model_.face_count(); ++f) {
             const auto& loop = complex_.loops[f];
             const NodeLoop face(loop.begin(), loop.end());
-            FaceParts parts;
+            SplitFace parts;
             const auto [low, high] =
                 std::ranges::minmax(loop, {}, [this](std::int32_t v) { return sides_[index(v)]; });
             if (sides_[index(low)] * sides_[index(high)] < 0) {

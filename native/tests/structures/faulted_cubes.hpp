@@ -34,8 +34,8 @@ struct FaultedCubes {
     }
     static spatial::Box around() {
         spatial::Box box;
-        box.include({0, 0, 0});
-        box.include({1, 1, 2});
+        box.include(Position{0, 0, 0});
+        box.include(Position{1, 1, 2});
         return box;
     }
     static std::int8_t side(bool is_above) { return is_above ? 1 : -1; }

@@ -54,7 +54,6 @@ TEST(WantedParts, WhereNothingActsBothSidesAreOneCell) {
     cut.each_region(true, [&](std::size_t r) {
         ++count;
         EXPECT_FALSE(cut.wanted.separates(r));
-        EXPECT_TRUE(cut.wanted.ends_at_outer_face(r, 0));
         const std::int32_t cell = cut.inner(r)[2] < 1 ? 0 : 1;
         EXPECT_EQ(WantedParts::surface_of_cap(cut.wanted.cap_face(r, cell, cell)), kWall);
     });
