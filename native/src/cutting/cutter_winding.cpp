@@ -76,7 +76,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
                     continue;
                 winding_[2 * r] = winding_[2 * r + 1] = 0;
             } else {
-                winding_[2 * r] = number(cast(r));
+                winding_[2 * r] = number(cast(r, progress));
                 Winding above = around(r, 0);
                 for (const std::int32_t face_region : lying_on_[r])
                     cross(above, index(face_region), level_facing(index(face_region)) > 0 ? 1 : 0);
@@ -278,19 +278,26 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
 }
 
 /// What is just below a region, by the triangles that a ray from there crosses.
-Winding CutterWinding::cast(std::size_t region) {
+Winding CutterWinding::cast(std::size_t region, Progress* progress) {
     const SpacePointId p = overlay_.inner_point(region);
     const auto view = overlay_.view_of(region);
     const auto axis = view.first;
     const bool faces_ray = view.second > 0;
     exact::SpacePoints& points = overlay_.points();
     Winding winding;
-    overlay_.each_triangle(axis, p, [&](std::size_t face, const auto& corners) {
-        const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
-        if (side == 0) return;
-        add(winding, overlay_.model().cell(face, 0), side);
-        add(winding, overlay_.model().cell(face, 1), -side);
-    });
+    if (!face_boxes_) face_boxes_.emplace(overlay_.face_boxes());
+    for (const std::int32_t f :
+         face_boxes_->find(arrangement::ray_box(points, p, axis), progress)) {
+        const auto face = index(f);
+        for (const auto& t : overlay_.triangles_of(face)) {
+            const std::array corners{overlay_.exact(t[0]), overlay_.exact(t[1]),
+                                     overlay_.exact(t[2])};
+            const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
+            if (side == 0) continue;
+            add(winding, overlay_.model().cell(face, 0), side);
+            add(winding, overlay_.model().cell(face, 1), -side);
+        }
+    }
     return winding;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "arrangement/ray_boxes.hpp"
 #include "base/counting_sort.hpp"
 #include "cutting/surface_overlay.hpp"
 
@@ -83,9 +84,10 @@ private:
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(const Winding& winding);
     void cross(Winding& winding, std::size_t region, std::size_t entered) const;
-    Winding cast(std::size_t region);
+    Winding cast(std::size_t region, Progress* progress);
 
     SurfaceOverlay& overlay_;
+    std::optional<arrangement::RayBoxes> face_boxes_;  ///< once a ray is cast
     std::vector<std::uint8_t> counts_;
     std::vector<std::int32_t> level_;
     std::vector<std::int8_t> level_facing_;
