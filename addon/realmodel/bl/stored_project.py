@@ -19,7 +19,7 @@ as many digits as it takes, arrays are float64 and int32 in model units. Rock r'
 import json
 
 from ..core import InputRefused, Library, Project, Property, Rock, Surface
-from ..core.units import MODEL_UNIT
+from ..core.base.units import MODEL_UNIT
 from . import stored_arrays
 
 KEY = "realmodel_project"
