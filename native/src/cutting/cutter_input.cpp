@@ -290,10 +290,8 @@ void SurfaceInput::extend_border() {
         const Position along = minus(surface_.vertices[index(b)], o),
                        inward = minus(surface_.vertices[index(c)], o);
         const double share = dot(inward, along) / dot(along, along);
-        Position away;
-        for (std::size_t k = 0; k < 3; ++k)
-            away[k] = share * along[k] - inward[k];
-        const double size = std::sqrt(dot(away, away));
+        const Position away = minus(times(share, along), inward);
+        const double size = length(away);
         if (!(size > 0)) continue;
         for (const NodeId v : {a, b}) {
             for (std::size_t k = 0; k < 3; ++k)
@@ -302,7 +300,7 @@ void SurfaceInput::extend_border() {
     }
     std::vector<NodeId> beyond(outward.size(), -1);
     for (std::size_t v = 0; v < outward.size(); ++v) {
-        const double size = std::sqrt(dot(outward[v], outward[v]));
+        const double size = length(outward[v]);
         if (size < 0.1) continue;  // away from the border, or it runs back: it is a slit there
         Position p = surface_.vertices[v];
         for (std::size_t k = 0; k < 3; ++k)
