@@ -61,10 +61,10 @@ def test_constraints_of_the_project_file(write, tmp_path):
     assert model.volume == pytest.approx(32)
 
     again = build(model.project)  # from the arrays that were read
-    assert np.array_equal(again.rock_inputs[0].region[0], mesh[0])
+    assert np.array_equal(again.rock_inputs[0].region.vertices, mesh[0])
     save_project(model.project, tmp_path / "saved.toml")
     saved = build(load_project(tmp_path / "saved.toml"))
-    assert np.array_equal(saved.rock_inputs[0].region[0], mesh[0])
+    assert np.array_equal(saved.rock_inputs[0].region.vertices, mesh[0])
 
 
 def test_edges_are_shorter_at_constraints(write):

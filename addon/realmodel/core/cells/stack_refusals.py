@@ -83,7 +83,7 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
 def _beyond_its_points(entry, lowest: float) -> str:
     """The advice where the lowest position is not at a point, but extrapolated by a method."""
     for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
-        if shape is None or shape[0][:, 2].min() > lowest or not surface.interpolated:
+        if shape is None or shape.vertices[:, 2].min() > lowest or not surface.interpolated:
             continue
         if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
             least = surface.points[:, 2].min()

@@ -52,7 +52,7 @@ class SurfaceSet:
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
         interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
-        return [*interfaces, *self.structures.shapes][number]
+        return [*interfaces, *self.structures.shapes][number].arrays
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:

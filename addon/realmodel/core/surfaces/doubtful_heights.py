@@ -201,7 +201,7 @@ class _Reach:
     def _heights(self, number: int) -> np.ndarray:
         vertices, _ = shape = self.entry.surfaces[number]
         own = vertices[:: self.step]
-        if len(vertices) == len(self.entry.region[0]) and np.array_equal(own[:, :2], self.plan):
+        if len(vertices) == len(self.entry.region.vertices) and np.array_equal(own[:, :2], self.plan):
             return np.array(own[:, 2])
         return heights_at(self.work, shape, self.plan, self.threads)
 

@@ -13,6 +13,7 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, number_list
 from ..base.mapped_arrays import Keep, as_it_is
+from ..base.sheet import Sheet
 from ..base.text import no_step
 from ..base.work import Work, run
 from ..heights import Interpolation
@@ -25,13 +26,7 @@ from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .planar_mesh import mesh_rings, triangulate_rings
 from .rock_structure import RockStructure
-from .surface_heights import (
-    Triangulation,
-    give_heights,
-    interpolation_order,
-    named_surfaces,
-    settle_method,
-)
+from .surface_heights import give_heights, interpolation_order, named_surfaces, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
 from .wrong_order import points_above_younger
 from .wrong_sides import points_too_low
@@ -49,8 +44,8 @@ _EDGE_LENGTH_KINDS = (
 class RockInput:
     """A rock mass, read and interpolated.
 
-    rock: as given, with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles (T, 3)
-    int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None. interpolations:
+    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its
+    triangulation in plan, or None. interpolations:
     the result for each surface, None for ready meshes. file_faces: for each surface None, or the face of its
     file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
     number (`variance`, `distance`). warnings: of reading and interpolating. whole: for a stage, the entry
@@ -61,8 +56,8 @@ class RockInput:
     """
 
     rock: Rock
-    surfaces: list[Triangulation | None]
-    region: Triangulation | None = None
+    surfaces: list[Sheet | None]
+    region: Sheet | None = None
     interpolations: list[Interpolation | None] = field(default_factory=list)
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
@@ -72,13 +67,13 @@ class RockInput:
     torn: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
 
-    def surface(self, number: int) -> Triangulation:
+    def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
         surface = self.surfaces[number]
         assert surface is not None
         return surface
 
-    def planar_mesh(self) -> Triangulation:
+    def planar_mesh(self) -> Sheet:
         """The triangulation of the region of a rock mass that has one and is meshed."""
         assert self.region is not None
         return self.region
@@ -97,7 +92,9 @@ class RockInput:
     def native(self) -> tuple:
         """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
         rules = [surface.rule for surface in self.rock.surfaces]
-        return self.surfaces, self.region, self.rock.base_elevation, rules
+        surfaces = [self.surface(number).arrays for number in range(len(self.surfaces))]
+        region = None if self.region is None else self.region.arrays
+        return surfaces, region, self.rock.base_elevation, rules
 
     def stage(self, m: int) -> RockInput:
         """The entry with the surfaces up to m only; the region stays the same. A surface that depends on a
@@ -243,19 +240,21 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         return
     try:
         if rock.interpolates:
-            entry.region = mesh_rings(
-                work,
-                rock.rings(),
-                rock.edge_length,
-                rock.mesher,
-                triangles=rock.triangles,
-                size=rock.size,
-                constraints=rock.constraint_lines(),
-                constraint_points=rock.constraint_points(),
-                points=_density_points(rock) if rock.edge_length == AUTO else None,
+            entry.region = Sheet(
+                *mesh_rings(
+                    work,
+                    rock.rings(),
+                    rock.edge_length,
+                    rock.mesher,
+                    triangles=rock.triangles,
+                    size=rock.size,
+                    constraints=rock.constraint_lines(),
+                    constraint_points=rock.constraint_points(),
+                    points=_density_points(rock) if rock.edge_length == AUTO else None,
+                )
             )
         else:
-            entry.region = triangulate_rings(rock.rings())
+            entry.region = Sheet(*triangulate_rings(rock.rings()))
     except InputRefused as error:
         kind = getattr(error.__cause__, "kind", "")
         file, line = rock.edge_length_source() if kind in _EDGE_LENGTH_KINDS else rock.region_source()
@@ -295,12 +294,11 @@ def interpolate_rock(
     attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
     these, and looks for points on wrong sides, too."""
     if keep is not as_it_is and entry.region is not None:
-        nodes, triangles = entry.region
-        entry.region = keep(nodes), keep(triangles)
+        entry.region = Sheet(*map(keep, entry.region))
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()
-        plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
+        plan = Sheet(keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles)
         for number in flat:
             entry.surfaces[number] = plan
     if not flat and entry.draws is None:
@@ -310,8 +308,7 @@ def interpolate_rock(
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number, threads)
         if keep is not as_it_is:
-            vertices, triangles = entry.surface(number)
-            entry.surfaces[number] = keep(vertices), keep(triangles)
+            entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))
             entry.interpolations[number] = None
             del entry.attributes[number]
     if not flat:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..heights import Interpolation, chosen, heights
 from ..heights.interpolation import Task
@@ -19,7 +20,7 @@ from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..project.project import Rock, surface_item
 from ..settings.methods import SURFACE_OPTIONS, checked_options
-from .wrong_sides import Triangulation, heights_at, listed
+from .wrong_sides import heights_at, listed
 
 
 class Trend(NamedTuple):
@@ -27,7 +28,7 @@ class Trend(NamedTuple):
     nodes of the planar mesh, NaN where it has none. interpolation, attributes: of the points that it was made
     from. method, options: by which what points differ from it is interpolated."""
 
-    sheet: Triangulation
+    sheet: Sheet
     z: np.ndarray
     interpolation: Interpolation
     attributes: dict[str, np.ndarray]
@@ -76,7 +77,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
 
 
 def _vertex_attributes(
-    work: Work, points: np.ndarray, result: Interpolation, region: Triangulation, threads: int
+    work: Work, points: np.ndarray, result: Interpolation, region: Sheet, threads: int
 ) -> dict:
     """Attributes (V,) of the vertices that `where_known` keeps, for points interpolated on a region's mesh:
     `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
@@ -150,7 +151,7 @@ def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, thread
 
 
 def _older_points_above(
-    work: Work, rock: Rock, number: int, shape: Triangulation, threads: int
+    work: Work, rock: Rock, number: int, shape: Sheet, threads: int
 ) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
     points = rock.surfaces[number - 1].point_array()
@@ -174,17 +175,17 @@ def settle_method(work: Work, entry, number: int, threads: int) -> None:
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
-def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
+def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:
     """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
     known = np.isfinite(z)
     if known.all():
-        return np.column_stack([nodes, z]), triangles
+        return Sheet(np.column_stack([nodes, z]), triangles)
     kept = triangles[known[triangles].all(axis=1)]
     if not len(kept):
         raise no_triangle_known()
     used = used_vertices(nodes, kept)
     number = np.cumsum(used, dtype=np.int32) - 1
-    return np.column_stack([nodes[used], z[used]]), number[kept]
+    return Sheet(np.column_stack([nodes[used], z[used]]), number[kept])
 
 
 def no_triangle_known() -> InputRefused:
@@ -194,7 +195,9 @@ def no_triangle_known() -> InputRefused:
     )
 
 
-def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
+def _above_older(
+    work: Work, entry, number: int, shape: Sheet, threads: int
+) -> tuple[Sheet, list[BuildWarning]]:
     """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
@@ -214,7 +217,7 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     warning = raised_above(
         rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
     )
-    return (np.column_stack([vertices[:, :2], raised]), triangles), [warning]
+    return Sheet(np.column_stack([vertices[:, :2], raised]), triangles), [warning]
 
 
 def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:

@@ -10,17 +10,16 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Rock
 from ..settings.rules import RULES
 
-Triangulation = tuple[np.ndarray, np.ndarray]
 
-
-def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
+def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
     surface_heights = native_module().surface_heights
-    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
+    return work.native(surface_heights, *shape.arrays, np.ascontiguousarray(plan), threads=threads)
 
 
 def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
@@ -50,7 +49,7 @@ def kept_off(rock: Rock) -> frozenset[int]:
 def below_older(
     work: Work,
     rock: Rock,
-    shapes: list[Triangulation | None],
+    shapes: list[Sheet | None],
     points: dict[int, np.ndarray],
     off: Collection[int],
     threads: int,

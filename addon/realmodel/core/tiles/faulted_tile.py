@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from ..base.work import Work
 from ..cells.assembly import assemble
 from ..cells.blocks import Block
@@ -152,7 +153,7 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels)
         )
         for n, block in enumerate(whole.blocks)
     ]
-    nothing = np.empty((0, 3)), np.empty((0, 3), np.int32)
+    nothing = Sheet(np.empty((0, 3)), np.empty((0, 3), np.int32))
     ends = [nothing] * len(whole.structures)
     for n, shape in zip(window.numbers.tolist(), window.structures.shapes, strict=True):
         ends[n] = shape

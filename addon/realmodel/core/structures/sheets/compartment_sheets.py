@@ -267,6 +267,6 @@ def _drawn_together(surface, family: Family, sheets: Sheets) -> Sheets:
     """Sheets by sides, equal beyond the tips; the same ones where they were."""
     drawn = surface.drawn_together(family, sheets)
     return {
-        sides: sheet if np.array_equal(drawn[sides][0], sheet[0]) else drawn[sides]
+        sides: sheet if np.array_equal(drawn[sides].vertices, sheet.vertices) else drawn[sides]
         for sides, sheet in sheets.items()
     }

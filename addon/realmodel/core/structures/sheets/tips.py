@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.algebra import norm
+from ...base.sheet import Sheet
 from ...base.triangles import (
     crossing_pairs,
     distances_of_pairs,
@@ -25,7 +26,6 @@ from ...base.triangles import (
     shares_hit,
 )
 from ...base.work import Work, native_module
-from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import places_between
 from .near_rows import triangles_met, with_neighbors
@@ -57,7 +57,7 @@ class Trace:
 
 def trace_of(
     work: Work,
-    sheet: Triangulation,
+    sheet: Sheet,
     fault: FaultShape,
     within: Callable[[np.ndarray], np.ndarray],
     threads: int = 0,
@@ -96,7 +96,7 @@ class CrossedEdges(NamedTuple):
     share: np.ndarray
 
 
-def crossed_edges(work: Work, sheet: Triangulation, fault: FaultShape, threads: int = 0) -> CrossedEdges:
+def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape, threads: int = 0) -> CrossedEdges:
     """Where a fault meets the edges of a sheet."""
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault, threads)
@@ -492,14 +492,14 @@ def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.
     return np.column_stack([plan, low]), np.column_stack([plan, high])
 
 
-def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...], Triangulation]:
+def shared(sheets: dict[tuple[int, ...], Sheet]) -> dict[tuple[int, ...], Sheet]:
     """The same, with one object for all sheets that are bitwise equal."""
-    known: dict[bytes, Triangulation] = {}
-    return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
+    known: dict[bytes, Sheet] = {}
+    return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
 def torn_beyond(
-    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+    work: Work, sheet: Sheet, fault: FaultShape, within: Within, threads: int = 0
 ) -> np.ndarray | None:
     """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
     on beyond its ends; None where there is none."""
