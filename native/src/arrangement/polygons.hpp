@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,6 +31,17 @@ inline Position cross(const Position& a, const Position& b) {
 }
 inline double dot(const Position& a, const Position& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+inline double cross(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// How far a cross product of two steps may be off where each corner is by `rounding`.
+inline double slack(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c,
+                    const PlanePosition& rounding) {
+    return rounding[0] * (std::abs(b[1] - a[1]) + std::abs(c[1] - b[1])) +
+           rounding[1] * (std::abs(b[0] - a[0]) + std::abs(c[0] - b[0]));
 }
 
 /// Many polygons in one array.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -36,6 +37,7 @@ public:
     }
     /// The nearest vertex within a distance, of equally near ones the first; kNone: there is none.
     SpacePointId nearest(const exact::SpacePosition& at, double within) const {
+        assert(2 * within <= cell_);
         std::pair<double, SpacePointId> best{within, kNone};
         for (int corner = 0; corner < 8; ++corner) {
             exact::SpacePosition place = at;

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "cutting/plane_cross.hpp"
-
 namespace realmodel::cutting {
 
 void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {

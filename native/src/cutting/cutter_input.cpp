@@ -6,7 +6,6 @@
 #include <map>
 
 #include "cutting/cutter_surface.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "arrangement/joined_polygons.hpp"
+#include "cutting/cutter_surface.hpp"
 
 namespace realmodel::cutting {
 

@@ -6,7 +6,6 @@
 
 #include "cutting/plane_edges.hpp"
 #include "cutting/polygons.hpp"
-#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "arrangement/edge_fan.hpp"
+#include "arrangement/ray_boxes.hpp"
 #include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
 
@@ -82,18 +83,18 @@ std::vector<Box> boxes_of(const CutterSurface& surface) {
 
 NearestSide::NearestSide(const CutterSurface& surface)
     : surface_(surface), tree_(boxes_of(surface)), border_(surface.triangles.size(), 0) {
-    std::map<std::array<NodeId, 2>, std::pair<std::size_t, int>> last;  // user of each edge, count
-    for (std::size_t t = 0; t < border_.size(); ++t) {
-        const auto& own = surface.triangles[t];
+    const auto edges = arrangement::edges_of(
+        border_.size(),
+        surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
+        {1, nullptr});
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() != 1) continue;
+        const auto t = index(edges[e][0].item);
         for (std::size_t i = 0; i < 3; ++i) {
-            auto& [user, count] = last[unordered(own[i], own[(i + 1) % 3])];
-            user = 3 * t + i;
-            ++count;
+            const auto& own = surface.triangles[t];
+            if (unordered(own[i], own[(i + 1) % 3]) == edges.ends(e))
+                border_[t] |= static_cast<std::uint8_t>(1U << i);
         }
-    }
-    for (const auto& [edge, use] : last) {
-        if (use.second == 1)
-            border_[use.first / 3] |= static_cast<std::uint8_t>(1U << (use.first % 3));
     }
 }
 
@@ -159,16 +160,17 @@ bool NearestSide::is_near(const Box& box, double margin) const {
 }
 
 std::int8_t NearestSide::within(const Position& p) const {
-    Box ray;
-    ray.include(p);
-    ray.high[2] = HUGE_VAL;
     exact::SpacePoints points;
-    const exact::SpacePointId from = points.add(p);
+    return within(points, points.add(p), 2, false);
+}
+
+std::int8_t NearestSide::within(exact::SpacePoints& points, exact::SpacePointId p, std::size_t axis,
+                                bool from_below) const {
     bool inside = false;
-    tree_.find(ray, [&](std::int32_t t) {
+    tree_.find(arrangement::ray_box(points, p, axis), [&](std::int32_t t) {
         const auto own = corners(t);
         const std::array of{points.add(own[0]), points.add(own[1]), points.add(own[2])};
-        if (exact::ray_crosses(points, 2, from, of, false) != 0) inside = !inside;
+        if (exact::ray_crosses(points, axis, p, of, from_below) != 0) inside = !inside;
     });
     return inside ? kBelow : kAbove;
 }

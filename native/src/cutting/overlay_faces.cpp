@@ -7,7 +7,6 @@
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
 #include "cutting/surface_overlay.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {

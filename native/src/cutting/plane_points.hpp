@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cutting/plane_edges.hpp"
-#include "cutting/triangulate.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "arrangement/polygons.hpp"
+#include "arrangement/triangulate.hpp"
 
 namespace realmodel::cutting {
 
+using arrangement::CornerTurns;
 using arrangement::cross;
+using arrangement::divide_convex;
 using arrangement::dot;
+using arrangement::Loop;
+using arrangement::LoopCorner;
 using arrangement::minus;
 using arrangement::NodeId;
 using arrangement::PlanePosition;
@@ -15,6 +19,8 @@ using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
 using arrangement::sixfold_volume;
+using arrangement::triangulate;
+using arrangement::triangulate_beside;
 using arrangement::unordered;
 using arrangement::View;
 

@@ -9,7 +9,6 @@
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/cutter_surface.hpp"
-#include "cutting/triangulate.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {

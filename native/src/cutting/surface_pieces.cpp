@@ -5,7 +5,6 @@
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/surface_parts.hpp"
-#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
+#include "arrangement/triangulate.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {
@@ -32,16 +32,16 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
                                      const Position& normal) {
     const arrangement::View view(normal);
     std::vector<Position> corners;
-    std::vector<cutting::Loop> seen;
+    std::vector<arrangement::Loop> seen;
     for (const auto& loop : loops) {
-        cutting::Loop& own = seen.emplace_back();
+        arrangement::Loop& own = seen.emplace_back();
         for (const SpacePointId p : loop) {
             own.push_back({static_cast<cutting::NodeId>(corners.size()), view(points.rounded(p))});
             corners.push_back(points.rounded(p));
         }
     }
-    std::vector<std::array<cutting::LoopCorner, 3>> triangles;
-    cutting::triangulate(seen, view.rounding(corners), triangles);
+    std::vector<std::array<arrangement::LoopCorner, 3>> triangles;
+    arrangement::triangulate(seen, view.rounding(corners), triangles);
     double area = 0, largest = -1;
     Position middle{0, 0, 0};
     for (const auto& t : triangles) {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "../arrangement/small_polygons.hpp"
 #include "cutting/cell_cut.hpp"
 #include "cutting/face_splitting.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {

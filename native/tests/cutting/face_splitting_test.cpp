@@ -5,8 +5,8 @@
 
 #include <map>
 
+#include "../arrangement/small_polygons.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {
@@ -40,31 +40,31 @@ const Outline kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 TEST(FaceSplitting, TwoCutEdgesMakeTwoPartsThatTurnAsTheFace) {
     // nodes 8 and 9 on edges 0-3 and 1-2
     EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0.5}, {0, 0, 1}}),
-              (Parts{{loop_of({0, 1, 9, 8}), kBelow}, {loop_of({9, 2, 3, 8}), kAbove}}));
+              (Parts{{node_loop({0, 1, 9, 8}), kBelow}, {node_loop({9, 2, 3, 8}), kAbove}}));
 }
 
 TEST(FaceSplitting, ThroughCornersNoNodeIsNew) {
     EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0}, {-1, 0, 1}}),
-              (Parts{{loop_of({0, 1, 2}), kBelow}, {loop_of({0, 2, 3}), kAbove}}));
+              (Parts{{node_loop({0, 1, 2}), kBelow}, {node_loop({0, 2, 3}), kAbove}}));
     // through a corner and an edge
     EXPECT_EQ(parts_of_front(prism(kSquare), {{0, 0, 0}, {-1, 0, 2}}),
-              (Parts{{loop_of({0, 1, 8}), kBelow}, {loop_of({0, 8, 2, 3}), kAbove}}));
+              (Parts{{node_loop({0, 1, 8}), kBelow}, {node_loop({0, 8, 2, 3}), kAbove}}));
 }
 
 TEST(FaceSplitting, BothTowersOfAUAreParts) {
     // nodes 16 to 19 on edges 0-7, 1-2, 3-4 and 5-6
     EXPECT_EQ(parts_of_front(u_shape(), {{0, 0, 1.5}, {0, 0, 1}}),
-              (Parts{{loop_of({0, 1, 17, 18, 4, 5, 19, 16}), kBelow},
-                     {loop_of({17, 2, 3, 18}), kAbove},
-                     {loop_of({19, 6, 7, 16}), kAbove}}));
+              (Parts{{node_loop({0, 1, 17, 18, 4, 5, 19, 16}), kBelow},
+                     {node_loop({17, 2, 3, 18}), kAbove},
+                     {node_loop({19, 6, 7, 16}), kAbove}}));
 }
 
 TEST(FaceSplitting, AnEdgeInThePlaneStaysWithThePartBesideIt) {
     // nodes 16 and 17 on edges 0-7 and 1-2; the edge 4-5 lies in the plane
     EXPECT_EQ(parts_of_front(u_shape(), {{0, 0, 1}, {0, 0, 1}}),
-              (Parts{{loop_of({0, 1, 17, 4, 5, 16}), kBelow},
-                     {loop_of({17, 2, 3, 4}), kAbove},
-                     {loop_of({5, 6, 7, 16}), kAbove}}));
+              (Parts{{node_loop({0, 1, 17, 4, 5, 16}), kBelow},
+                     {node_loop({17, 2, 3, 4}), kAbove},
+                     {node_loop({5, 6, 7, 16}), kAbove}}));
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 
 #include <map>
 
+#include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
 #include "cutting/surface_parts.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..project.project import Rock
 from ..settings.rules import RULES
 
@@ -19,7 +19,9 @@ from ..settings.rules import RULES
 def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
     surface_heights = native_module().surface_heights
-    return work.native(surface_heights, *shape.arrays, np.ascontiguousarray(plan), threads=threads)
+    return work.native(
+        surface_heights, *shape.arrays, np.ascontiguousarray(plan), execution=on_threads(threads)
+    )
 
 
 def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 namespace {
 
 class Corners {
@@ -172,7 +172,7 @@ TEST(Triangulate, FewTrianglesReachAcross) {
         const Loop loop = corners.loop(positions);
         std::vector<std::int8_t> sides;
         for (const PlanePosition& p : positions)
-            sides.push_back(p[0] > 0 ? kAbove : kBelow);
+            sides.push_back(p[0] > 0 ? 1 : -1);
         std::vector<std::array<LoopCorner, 3>> any, found;
         EXPECT_TRUE(triangulate(std::span(&loop, 1), {1e-12, 1e-12}, any));
         EXPECT_TRUE(triangulate_beside(loop, sides, {1e-12, 1e-12}, found));
@@ -196,4 +196,4 @@ TEST(Triangulate, FewTrianglesReachAcross) {
 }
 
 }  // namespace
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/tiling/block_raising.hpp"
+#include "strata/overlay/block_raising.hpp"
 
 #include "strata/tiling/triangle_outlines.hpp"
 

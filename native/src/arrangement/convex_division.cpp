@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "cutting/plane_cross.hpp"
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 
 namespace {
 
@@ -179,4 +178,4 @@ bool divide_convex(std::span<const Loop> loops, const PlanePosition& rounding,
     return clean;
 }
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

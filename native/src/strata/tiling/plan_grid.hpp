@@ -7,7 +7,7 @@
 #include "realmodel/base/array.hpp"
 #include "realmodel/base/execution.hpp"
 #include "spatial/small_boxes.hpp"
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "strata/overlay/rules.hpp"
 #include "strata/overlay/whole_triangles.hpp"
-#include "strata/tiling/rules.hpp"
 
 namespace realmodel::strata {
 

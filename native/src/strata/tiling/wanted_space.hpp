@@ -6,7 +6,7 @@
 
 #include "realmodel/strata/stack.hpp"
 #include "spatial/box_tree.hpp"
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

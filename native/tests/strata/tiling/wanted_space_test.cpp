@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/overlay/wanted_space.hpp"
+#include "strata/tiling/wanted_space.hpp"
 
 #include <cmath>
 #include <map>

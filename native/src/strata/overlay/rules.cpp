@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/tiling/rules.hpp"
+#include "strata/overlay/rules.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 #include <algorithm>
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
-#include "cutting/plane_cross.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "spatial/corner_grid.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 
 namespace {
 
@@ -247,6 +247,7 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
 
 bool Ring::cut_ears() {
     bool clean = true;
+    [[maybe_unused]] const std::size_t corners = count_ + triangles_.size();
     enter_corners();
     Care care = first_care();
     std::int32_t tip = entry_, stop = entry_;
@@ -278,6 +279,7 @@ bool Ring::cut_ears() {
         tip = stop;
         care = first_care();
     }
+    assert(!clean || triangles_.size() + 2 == corners);
     return clean;
 }
 
@@ -320,17 +322,6 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
 }
 
 }  // namespace
-
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
-    std::vector<Position> positions;
-    for (const NodeId v : polygon)
-        positions.push_back(model.vertex(v));
-    const View view(polygon_normal(positions));
-    Loop loop;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        loop.push_back({polygon[i], view(positions[i])});
-    return {std::move(loop), view.rounding(positions)};
-}
 
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
     return exact::orient2d(a.at, b.at, c.at);
@@ -385,4 +376,4 @@ bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
     return clean;
 }
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

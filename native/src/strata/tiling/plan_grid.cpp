@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/overlay/plan_grid.hpp"
+#include "strata/tiling/plan_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,11 @@
 #include <initializer_list>
 #include <vector>
 
-#include "cutting/polygons.hpp"
+#include "arrangement/polygons.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel {
 
-using NodeLoop = std::vector<NodeId>;
+using NodeLoop = std::vector<arrangement::NodeId>;
 
 /// A loop from its least node on, so that those that differ in their beginning only are equal.
 template <class Nodes>
@@ -19,19 +19,19 @@ NodeLoop from_least(const Nodes& nodes) {
     return loop;
 }
 
-inline NodeLoop loop_of(std::initializer_list<int> numbers) {
+inline NodeLoop node_loop(std::initializer_list<int> numbers) {
     NodeLoop loop;
     for (const int number : numbers)
-        loop.push_back(NodeId{number});
+        loop.push_back(arrangement::NodeId{number});
     return from_least(loop);
 }
 
 /// All of some polygons, each from its least node on, in their order.
-inline std::vector<NodeLoop> loops_of(const Polygons& polygons) {
+inline std::vector<NodeLoop> loops_of(const arrangement::Polygons& polygons) {
     std::vector<NodeLoop> loops;
     for (std::size_t p = 0; p < polygons.size(); ++p)
         loops.push_back(from_least(polygons[p]));
     return loops;
 }
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel

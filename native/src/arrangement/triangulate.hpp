@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "cutting/polygons.hpp"
-#include "realmodel/complex.hpp"
+#include "arrangement/polygons.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 
 /// A corner of a loop: its node, and where it lies in the view.
 struct LoopCorner {
@@ -16,10 +15,6 @@ struct LoopCorner {
     PlanePosition at;
 };
 using Loop = std::vector<LoopCorner>;
-
-/// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
-/// its corners.
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon);
 
 /// Which way corners turn: 1 left, -1 right, 0 straight on. By itself it tells that of the places
 /// in the view, exactly; others know better where the corners are than their rounded places say.
@@ -59,4 +54,4 @@ bool divide_convex(std::span<const Loop> loops, const PlanePosition& rounding,
 /// Whether a loop turns left everywhere, up to `rounding`, and passes no node twice.
 bool is_convex(const Loop& loop, const PlanePosition& rounding);
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "cutting/triangulate.hpp"
+#include "arrangement/triangulate.hpp"
 #include "small_polygons.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 namespace {
 
 constexpr PlanePosition kNoRounding{0, 0}, kTenth{0.1, 0.1};
@@ -60,7 +60,7 @@ TEST(ConvexDivision, WhatPassesANodeTwiceIsNotConvex) {
 
 TEST(ConvexDivision, AnArrowFallsInTwoAtItsDent) {
     const auto polygons = divided(numbered({{0, 0}, {4, -2}, {3, 0}, {4, 2}}), kNoRounding);
-    EXPECT_EQ(polygons, (std::vector<NodeLoop>{loop_of({0, 1, 2}), loop_of({0, 2, 3})}));
+    EXPECT_EQ(polygons, (std::vector<NodeLoop>{node_loop({0, 1, 2}), node_loop({0, 2, 3})}));
 }
 
 TEST(ConvexDivision, ADentOfRoundingIsLeftInItsPolygon) {
@@ -73,10 +73,10 @@ TEST(ConvexDivision, TrianglesAreNotMergedAcrossASlit) {
     // beside the dent at 3 the quadrangle 0-1-2-3, whichever of its diagonals divides it first
     const Loop loop = numbered({{0, 0}, {2, -2}, {4, -2}, {3, 0}, {4, 2}});
     EXPECT_EQ(divided(loop, kNoRounding),
-              (std::vector<NodeLoop>{loop_of({0, 1, 2, 3}), loop_of({0, 3, 4})}));
+              (std::vector<NodeLoop>{node_loop({0, 1, 2, 3}), node_loop({0, 3, 4})}));
     EXPECT_EQ(divided(loop, kNoRounding, {{NodeId{0}, NodeId{2}}, {NodeId{1}, NodeId{3}}}).size(),
               3U);
 }
 
 }  // namespace
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement
