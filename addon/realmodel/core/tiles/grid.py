@@ -127,6 +127,10 @@ class Part:
     numbers: np.ndarray
     of_vertices: np.ndarray
 
+    @property
+    def sheet(self) -> Sheet:
+        return Sheet(self.vertices, self.triangles)
+
 
 def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
     """Piece by piece the numbers, ascending, of the triangles whose boxes meet a tile."""

@@ -287,7 +287,7 @@ def _interpolated(
 def _where_known(part: Part) -> Part:
     """The triangles all of whose vertices have a height."""
     known = np.isfinite(part.vertices[:, 2])[part.triangles].all(axis=1)
-    rest = part_of(Sheet(part.vertices, part.triangles), np.flatnonzero(known))
+    rest = part_of(part.sheet, np.flatnonzero(known))
     return replace(rest, numbers=part.numbers[known], of_vertices=part.of_vertices[rest.of_vertices])
 
 
@@ -310,7 +310,7 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
             if (r, k) in frame.sought and path.exists():
                 own[k] = read_mapped(path)
         shapes = [parts[r, k] for k in range(len(rock.surfaces))]
-        shapes = [(part.vertices, part.triangles) if len(part.triangles) else None for part in shapes]
+        shapes = [part.sheet if len(part.triangles) else None for part in shapes]
         points = {k: arrays["points"] for k, arrays in own.items()}
         below = below_older(work, rock, shapes, points, frame.off[r] if own else (), threads)
         for k, (beyond, others) in below.items():
@@ -349,7 +349,7 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
         ]
         entry = RockInput(
             replace(rock, surfaces=given),
-            [Sheet(part.vertices, part.triangles) for part in surfaces],
+            [part.sheet for part in surfaces],
             region,
             [None] * len(surfaces),
             [None] * len(surfaces),
