@@ -15,7 +15,8 @@ from ..heights.draws import Draw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
 from ..structures.setup import make_structures
-from ..surfaces.rock_input import RockInput, interpolate_rock
+from ..surfaces.prepare import interpolate_rock
+from ..surfaces.rock_input import RockInput
 
 _INTERPOLATED = 0.5  # of the time
 

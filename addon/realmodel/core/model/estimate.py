@@ -12,7 +12,8 @@ from ..base.work import Cancel, Progress, Work, native_module, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
-from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
+from ..surfaces.prepare import mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput
 
 # Bytes for each triangle of the surfaces: a little more than the dearest benchmark took, by cells
 # and by whether all surfaces stand on one plan mesh.

@@ -16,7 +16,8 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Body, Fault
-from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
+from ..surfaces.prepare import mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each

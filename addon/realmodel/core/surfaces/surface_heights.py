@@ -19,7 +19,8 @@ from ..heights.on_mesh import within_bounds
 from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..project.project import Rock, surface_item
-from ..settings.methods import SURFACE_OPTIONS, checked_options
+from ..settings.methods import checked_options
+from .rock_input import RockInput, named_surfaces
 from .wrong_sides import heights_at, listed
 
 
@@ -41,14 +42,6 @@ def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     used = np.zeros(len(vertices), bool)
     used[triangles] = True
     return used
-
-
-def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
-    """The surfaces of the rock mass that the options of one of them name: numbers by names."""
-    numbers = {surface.name: n for n, surface in enumerate(rock.surfaces)}
-    options = rock.surfaces[number].options
-    names = [options[option] for option in SURFACE_OPTIONS if isinstance(options.get(option), str)]
-    return {name: numbers[name] for name in names}
 
 
 def needed_surfaces(rock: Rock, number: int) -> list[int]:
@@ -94,11 +87,11 @@ def _vertex_attributes(
     return {"variance": variance[kept], "distance": distance[kept]}
 
 
-def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | None = None) -> None:
+def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend: Trend | None = None) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
     keeps it above the older one where it has a minimum thickness."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
-    nodes, triangles = entry.region
+    nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
@@ -108,10 +101,10 @@ def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | No
             give = heights if entry.draws is None else entry.draws[number].heights
             result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
         shape = where_known(nodes, triangles, result.z)
-        if trend is not None and not len(surface.points):
+        if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
         else:
-            attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
+            attributes = _vertex_attributes(work, surface.point_array(), result, region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
             warnings += _older_points_above(work, rock, number, shape, threads)
@@ -126,18 +119,19 @@ def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | No
     entry.warnings += warnings
 
 
-def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, threads: int) -> Interpolation:
+def _on_trend(
+    work: Work, entry: RockInput, number: int, trend: Trend, others: dict, threads: int
+) -> Interpolation:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
-    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.region
-    points, mis_ties = without_mis_ties(surface.points)
+    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
+    points, mis_ties = without_mis_ties(surface.point_array())
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2], threads)
     away = away[np.isfinite(away[:, 2])]
     result = replace(trend.interpolation, z=trend.z)
     if len(away):
-        give = heights
-        if entry.draws is not None:  # the trend is drawn, too: nothing is the same in the next realization
-            give = replace(entry.draws[number], known={}).heights
+        # of an ensemble the trend is drawn, too: nothing is the same in the next realization
+        give = heights if entry.draws is None else replace(entry.draws[number], known={}).heights
         settings = checked_options(trend.method, trend.options)
         result = give(work, away, nodes, trend.method, settings, threads, triangles, {})
         result = replace(result, z=trend.z + result.z)
@@ -161,7 +155,7 @@ def _older_points_above(
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
 
 
-def settle_method(work: Work, entry, number: int, threads: int) -> None:
+def settle_method(work: Work, entry: RockInput, number: int, threads: int) -> None:
     """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     method, settings = surface.method_options()
@@ -196,27 +190,24 @@ def no_triangle_known() -> InputRefused:
 
 
 def _above_older(
-    work: Work, entry, number: int, shape: Sheet, threads: int
+    work: Work, entry: RockInput, number: int, shape: Sheet, threads: int
 ) -> tuple[Sheet, list[BuildWarning]]:
     """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
-    surface = rock.surfaces[number]
-    vertices, triangles = shape
-    older_vertices, _ = entry.surfaces[number - 1]
-    if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
-        least = older_vertices[:, 2] + surface.minimum_thickness
+    thickness = rock.surfaces[number].minimum_thickness
+    assert thickness is not None
+    (vertices, triangles), older = shape, entry.surface(number - 1)
+    if np.array_equal(older.vertices[:, :2], vertices[:, :2]):
+        least = older.vertices[:, 2] + thickness
     else:
-        least = heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
-        least += surface.minimum_thickness
+        least = heights_at(work, older, vertices[:, :2], threads) + thickness
     raised, lift = raise_to(vertices[:, 2], least)
     if raised is None:
         return shape, []
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())
-    warning = raised_above(
-        rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
-    )
+    warning = raised_above(rock, number, int((lift > 0).sum()), len(vertices), thickness, lift[worst], place)
     return Sheet(np.column_stack([vertices[:, :2], raised]), triangles), [warning]
 
 

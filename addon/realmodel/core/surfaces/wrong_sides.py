@@ -14,6 +14,7 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module, on_threads
 from ..project.project import Rock
 from ..settings.rules import RULES
+from .rock_input import RockInput
 
 
 def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.ndarray:
@@ -24,7 +25,7 @@ def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.n
     )
 
 
-def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
+def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
     where heights of all older ones are known. Each older surface is asked once for the points of all.
 

@@ -13,7 +13,8 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused
 from ...project.project import Rock, surface_item
-from ...surfaces.surface_heights import named_surfaces, needed_surfaces
+from ...surfaces.rock_input import named_surfaces
+from ...surfaces.surface_heights import needed_surfaces
 from .borrowed import between_faults
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
