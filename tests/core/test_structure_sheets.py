@@ -94,7 +94,7 @@ def test_a_branch_that_passes_between_two_sheets_beyond_a_tip_ends_in_nothing(ne
     low, high = np.full(2, -1, np.int8), np.full(2, 1, np.int8)
     seen = {(-1, -1): np.array([True, True]), (-1, 1): np.array([near, near])}
     drawn = _Drawn(plan, [0.0, 0.0], [[], [0]], seen, {(-1, -1): {1: low}, (-1, 1): {1: high}})
-    drawn.let_be_equal(0, np.array([[0, 1]]))
+    drawn.require_equal(0, np.array([[0, 1]]))
     assert drawn.equal[0].tolist() == [True, True]
     assert drawn.equal[1].tolist() == [near, near]
 

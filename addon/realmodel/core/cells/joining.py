@@ -67,7 +67,7 @@ def build_joined(
     if not models:
         return _nothing(inputs, structures, cells)
     native = native_module()
-    divides = acts(inputs, structures)
+    divides = blocks_divided(inputs, structures)
     with work.phase(begin, end, "joining the compartments"):
         try:
             joined = work.native(
@@ -112,7 +112,7 @@ def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: i
 def _with_parts(
     built: BuiltCells, part: np.ndarray, inputs: list, structures: Structures, divides: np.ndarray
 ) -> BuiltCells:
-    """The cells with each body as one block of all rock masses, and their parts. divides: as `acts`
+    """The cells with each body as one block of all rock masses, and their parts. divides: as `blocks_divided`
     has it."""
     first, count = _first_surfaces(inputs), len(structures)
     own, surfaces = built.complex.cell_block, first[-1]
@@ -275,7 +275,7 @@ def beyond_all(sheets, structures: Structures) -> tuple[float, float]:
     return float(low - away), float(high + away)
 
 
-def acts(inputs: list, structures: Structures) -> np.ndarray:
+def blocks_divided(inputs: list, structures: Structures) -> np.ndarray:
     """(S, B) uint8: whether a structure divides a block, those of bodies as body_block numbers them. A fault
     divides what it displaces and the bodies that were there by then; a body what was there before it, and is
     hidden in later ones."""

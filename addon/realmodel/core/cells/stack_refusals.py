@@ -52,8 +52,8 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
             f"{named} {verb} vertical{near}",
             f"{_ONE_HEIGHT}: tilt or remove the vertical triangles",
         )
-    elif error.kind == "double_valued" and number in entry.torn:
-        return entry.torn[number].within(surface_item(rock, surface), file=file, line=line)
+    elif error.kind == "double_valued" and number in entry.overlapping:
+        return entry.overlapping[number].within(surface_item(rock, surface), file=file, line=line)
     elif error.kind == "double_valued":
         what, advice = (
             f"{named} overlap in plan{near}",

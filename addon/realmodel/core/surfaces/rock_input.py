@@ -27,9 +27,9 @@ class RockInput:
     file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
     number (`variance`, `distance`). warnings: of reading and interpolating. whole: for a stage, the entry
     with all surfaces: those of a stage may depend on younger ones. structure: the compartments of a rock mass
-    with faults, and their sheets; a surface is all its sheets. torn: by number, the error of a surface whose
-    triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization of an
-    ensemble; else None.
+    with faults, and their sheets; a surface is all its sheets. overlapping: by number, the error of a surface
+    whose triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization
+    of an ensemble; else None.
     """
 
     rock: Rock
@@ -41,7 +41,7 @@ class RockInput:
     whole: RockInput | None = None
     attributes: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
-    torn: dict[int, InputRefused] = field(default_factory=dict)
+    overlapping: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
 
     def surface(self, number: int) -> Sheet:
@@ -102,7 +102,7 @@ class RockInput:
             self,
             {number: each for number, each in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
-            self.torn,
+            self.overlapping,
         )
 
 

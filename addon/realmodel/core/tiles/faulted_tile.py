@@ -14,7 +14,7 @@ from ..cells.assembly import assemble
 from ..cells.blocks import Block
 from ..cells.built_cells import BuiltCells, CellParts
 from ..cells.cell_complex import CellComplex
-from ..cells.joining import acts, body_block, build_joined
+from ..cells.joining import blocks_divided, body_block, build_joined
 from ..cells.labels import compartments
 from ..cells.model_data import ModelData
 from ..model.model import Model
@@ -136,7 +136,7 @@ def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray):
         window.part[built.parts.part][mine],
         own[built.parts.own_block][mine],
         np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
-        acts(inputs, structures),
+        blocks_divided(inputs, structures),
     )
     return compartments(inputs, as_whole, structures)
 

@@ -308,7 +308,7 @@ class Windows:
             [None] * len(surfaces),
             [None] * len(surfaces),
             structure=found,
-            torn=entry.torn,
+            overlapping=entry.overlapping,
         )
 
     @staticmethod

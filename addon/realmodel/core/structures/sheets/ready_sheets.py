@@ -168,7 +168,7 @@ class ReadyMesh:
         if is_missed.any():
             first = int(is_missed.argmax())
             place = (begin[first] + end[first]) / 2
-            self.entry.torn[self.number] = _two_heights_beyond(faults.names[fault], place)
+            self.entry.overlapping[self.number] = _two_heights_beyond(faults.names[fault], place)
         else:
             found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
         return found

@@ -303,14 +303,14 @@ def _draw_where_passed(
     passes = met == _PASSES
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
-    drawn.let_be_equal(number, node[some[passes]])
+    drawn.require_equal(number, node[some[passes]])
     edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
     lie_in = _lie_in(work, fault, places.points[edges], beyond, within, threads)
-    drawn.let_be_equal(number, node[edges[lie_in]])
+    drawn.require_equal(number, node[edges[lie_in]])
     touched = np.unique(some[met > 0])
     touched = touched[inside[node[touched]]]
     on = _met_points(work, fault, places.points[touched], threads)
-    drawn.let_be_equal(number, node[touched[on], None])
+    drawn.require_equal(number, node[touched[on], None])
 
 
 class _Places(NamedTuple):
@@ -360,7 +360,7 @@ class _Drawn:
         self.weights = [np.ones(len(plan)) for _ in ramps]
         self.equal = [np.zeros(len(plan), bool) for _ in ramps]
 
-    def let_be_equal(self, number: int, nodes: np.ndarray) -> None:
+    def require_equal(self, number: int, nodes: np.ndarray) -> None:
         """For the sides of one fault, at the nodes (K, 1 to 3) of triangles or edges. A branch of it that
         passes a sheet there, or between two of them, ends in nothing: its sides are equal, too."""
         self.equal[number][nodes] = True
@@ -417,7 +417,7 @@ def _draw_between(
             for its in (one, other) if len(torn) else ():
                 is_torn = is_torn or not near[its][torn].all()
                 near[its][torn] = True
-            drawn.let_be_equal(number, torn)
+            drawn.require_equal(number, torn)
     return not drawn.is_settled() or is_torn
 
 
