@@ -26,7 +26,7 @@ foreach(program IN LISTS fuzzing_programs)
 endforeach()
 # A debugger that has stopped in one can then call the functions of src/*/dump.hpp.
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump)
+    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump,--undefined=realmodel_cutting_dump)
     target_link_options(boolean_fuzzer PRIVATE
         -Wl,--undefined=realmodel_dump_pieces,--undefined=realmodel_dump_regions)
 endif()

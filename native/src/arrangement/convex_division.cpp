@@ -29,7 +29,7 @@ bool left_or_straight(const Loop& loop, std::size_t corner, const PlanePosition&
         while (after != corner && !is_apart(after))
             after = (after + 1) % n;
         const PlanePosition &a = loop[before].at, &c = loop[after].at;
-        if (cross(a, at, c) < -slack(a, at, c, rounding)) return false;
+        if (twice_area(a, at, c) < -slack(a, at, c, rounding)) return false;
         near.fill(64 * std::max(near[0], near[1]));
     }
     return true;

@@ -21,7 +21,7 @@ double length(const PlanePosition& a, const PlanePosition& b) {
 double twice_area(const Loop& loop) {
     double sum = 0;
     for (std::size_t i = 1; i + 1 < loop.size(); ++i)
-        sum += cross(loop[0].at, loop[i].at, loop[i + 1].at);
+        sum += realmodel::twice_area(loop[0].at, loop[i].at, loop[i + 1].at);
     return sum;
 }
 
@@ -197,7 +197,7 @@ bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int
     const NodeId own = node(other);
     if (own == node(a) || own == node(tip) || own == node(c)) return false;
     const auto is_beyond = [&](std::int32_t p, std::int32_t q, int turned) {
-        return turned < 0 && (care != Care::kFat || cross(at(p), at(q), at(other)) <
+        return turned < 0 && (care != Care::kFat || realmodel::twice_area(at(p), at(q), at(other)) <
                                                         -slack(at(p), at(q), at(other), rounding_));
     };
     const int ab = turn(a, tip, other);
@@ -222,7 +222,7 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
     if (care == Care::kNone) return true;
     if (turn(a, tip, c) <= 0) return false;
     if (care == Care::kFat &&
-        cross(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
+        realmodel::twice_area(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
         return false;
     if (!grid_) {
         for (std::int32_t other = link(c).next; other != a; other = link(other).next) {

@@ -387,10 +387,8 @@ private:
     /// The cotangent of the angle at a point, between two others.
     double cotangent(SpacePointId at, SpacePointId from, SpacePointId to) const {
         const auto &p = global_.rounded(at), &q = global_.rounded(from), &r = global_.rounded(to);
-        const auto u = arrangement::minus(q, p), v = arrangement::minus(r, p);
-        const std::array<double, 3> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                           u[0] * v[1] - u[1] * v[0]};
-        return arrangement::dot(u, v) / std::sqrt(arrangement::dot(normal, normal));
+        const Vec3 u = minus(q, p), v = minus(r, p);
+        return dot(u, v) / length(cross(u, v));
     }
     /// Whether of a quadrilateral's diagonals that from a to b is against Delaunay's rule: the sum
     /// of the angles at c and d is more than half a turn. The same for the same four points in

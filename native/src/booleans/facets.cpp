@@ -75,7 +75,7 @@ FacetMesh facets_of(const Parts& parts, const Execution& execution) {
         for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             const auto& corners = mesh.facets[index(use.item)].corners;
             std::size_t k = 0;
-            while (arrangement::unordered(corners[k], corners[(k + 1) % 3]) != use.edge)
+            while (unordered(corners[k], corners[(k + 1) % 3]) != use.edge)
                 ++k;
             mesh.edges_of[index(use.item)][k] = static_cast<std::int32_t>(e);
         }

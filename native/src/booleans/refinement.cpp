@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "booleans/exact_division.hpp"
 #include "booleans/pieces.hpp"

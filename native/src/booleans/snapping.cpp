@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "booleans/number_table.hpp"
 
 namespace realmodel::booleans {
@@ -17,8 +18,7 @@ using exact::SpacePointId;
 using exact::SpacePoints;
 
 inline double distance(const exact::SpacePosition& p, const exact::SpacePosition& q) {
-    return std::sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
-                     (p[2] - q[2]) * (p[2] - q[2]));
+    return length(minus(p, q));
 }
 
 /// Finds vertices by their place, in cells twice as wide as what is near.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cutting/plane_edges.hpp"
+#include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {

@@ -19,10 +19,6 @@ namespace {
 /// section 5.1.5).
 Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
                              const Position& c) {
-    const auto along = [](const Position& from, const Position& line, double share) {
-        return Position{from[0] + share * line[0], from[1] + share * line[1],
-                        from[2] + share * line[2]};
-    };
     const Position ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return a;
@@ -30,17 +26,17 @@ Position nearest_in_triangle(const Position& p, const Position& a, const Positio
     const double d3 = dot(ab, bp), d4 = dot(ac, bp);
     if (d3 >= 0 && d4 <= d3) return b;
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return along(a, ab, d1 / (d1 - d3));
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return moved(a, d1 / (d1 - d3), ab);
     const Position cp = minus(p, c);
     const double d5 = dot(ab, cp), d6 = dot(ac, cp);
     if (d6 >= 0 && d5 <= d6) return c;
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return moved(a, d2 / (d2 - d6), ac);
     const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+        return moved(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c, b));
     const double share = 1 / (va + vb + vc);
-    return along(along(a, ab, vb * share), ac, vc * share);
+    return moved(moved(a, vb * share, ab), vc * share, ac);
 }
 
 /// 1 where a triangle turns counter-clockwise seen from p, or p is in its plane; -1 else.

@@ -6,22 +6,16 @@
 namespace realmodel::cutting {
 
 using arrangement::CornerTurns;
-using arrangement::cross;
 using arrangement::divide_convex;
-using arrangement::dot;
 using arrangement::Loop;
 using arrangement::LoopCorner;
-using arrangement::minus;
 using arrangement::NodeId;
 using arrangement::PlanePosition;
-using arrangement::polygon_normal;
 using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
-using arrangement::sixfold_volume;
 using arrangement::triangulate;
 using arrangement::triangulate_beside;
-using arrangement::unordered;
 using arrangement::View;
 
 /// Sides of a cutter: above it or outside of it, on it, below it or inside.

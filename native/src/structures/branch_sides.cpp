@@ -3,6 +3,7 @@
 #include "structures/branch_sides.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
@@ -13,17 +14,11 @@
 namespace realmodel::structures {
 
 using arrangement::TriangleArrangement;
-using cutting::dot;
-using cutting::polygon_normal;
 using cutting::Position;
 using exact::SpacePointId;
 using spatial::Box;
 
 namespace {
-
-double size_of(const Position& normal) {
-    return std::sqrt(dot(normal, normal));
-}
 
 /// The area of a region, twice, and a place well inside of it: the middle of the largest of its
 /// triangles.
@@ -47,7 +42,7 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
     for (const auto& t : triangles) {
         const std::array at{corners[index(t[0].node)], corners[index(t[1].node)],
                             corners[index(t[2].node)]};
-        const double size = size_of(polygon_normal(at));
+        const double size = length(polygon_normal(at));
         area += size;
         if (size <= largest) continue;
         largest = size;
@@ -106,6 +101,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     for (const auto& met : meetings)
         arrangement.insert(met);
     arrangement.divide({1, nullptr});
+    assert(branch != other && own <= triangles.size());
     const cutting::NearestSide nearest(surface.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {

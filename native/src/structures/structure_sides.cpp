@@ -13,7 +13,6 @@ namespace realmodel::structures {
 
 using cutting::kAbove;
 using cutting::kBelow;
-using cutting::minus;
 
 StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
                                const StructureSurface& surface,
