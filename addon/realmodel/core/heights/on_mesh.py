@@ -26,16 +26,14 @@ def dsi(task: Task) -> Result:
         given["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), given["equal"], np.nan)
     for lower, upper in (("above", "below"), ("above", "border"), ("border", "below")):
         _refuse_crossed(task, given, lower, upper)
-    none = np.empty(0)
+    equal, least, most = (given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most"))
     found = task.run(
         native_module().dsi,
         task.points,
         task.nodes,
         task.triangles,
-        equal=given.get("equal", none),
-        least=given.get("least", none),
-        most=given.get("most", none),
-        weight=settings["weight"] or 0.0,
+        (equal, least, most),
+        settings["weight"] or 0.0,
     )
     warnings = []
     if found["outside"]:
