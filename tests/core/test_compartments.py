@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module, run
-from realmodel.core.cells.joining import acts
+from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import Reach
 from realmodel.core.proof.closed_form import winding_numbers
 from realmodel.core.structures.parts.parts import divide, structures_of
@@ -79,7 +80,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
         seen |= own
         space = reach.cells_of(part)
         assert space[tuple(((points[own] - reach.low) // reach.step).astype(int).T)].all()
-        over = reach.over(space.any(axis=2), (sheet, squares))
+        over = reach.over(space.any(axis=2), Sheet(sheet, squares))
         x, y = np.clip((points[own, :2] * 4).astype(int), 0, 39).T
         at = x * 40 + y
         assert over[at].all() and over[at + 1600].all()
@@ -143,7 +144,7 @@ def test_what_acts():
     bodies = [Body("late", *ball([5, 5, 0], 2), after="S2"), Body("early", *ball([5, 5, 0], 2), after="S0")]
     project = Project("p", [Rock("r", surfaces)], faults=faults, bodies=bodies)
     inputs = prepared(project)
-    found = acts(inputs, structures_of(project, faults, bodies))
+    found = blocks_divided(inputs, structures_of(project, faults, bodies))
     #                             S0 S1 S2 S3  F  G  late early
     assert found[0].tolist() == [1, 1, 0, 0, 0, 0, 0, 1]
     assert found[1].tolist() == [1, 1, 1, 1, 0, 0, 1, 1]

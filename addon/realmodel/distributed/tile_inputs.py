@@ -16,8 +16,9 @@ import numpy as np
 
 from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
 from ..core.base.mapped_arrays import MappedArrays
+from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
-from ..core.project.project import surface_item
+from ..core.project.project import Project, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.surfaces.rock_input import RockInput
 from ..core.surfaces.surface_heights import interpolation_order
@@ -60,7 +61,9 @@ class Prepared:
         return replace(self, rocks=[], near={}, own={})
 
 
-def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel) -> Prepared:
+def prepared(
+    project: Project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""
     reader = SurfaceReader(arrays, workers)
 
@@ -255,9 +258,9 @@ def _have_one_mesh(inputs: list[RockInput]) -> bool:
     """Whether all surfaces are interpolated on the whole mesh of one region."""
     if len(inputs) > 1 or inputs[0].region is None:
         return False
-    rock, nodes = inputs[0].rock, len(inputs[0].region[0])
+    rock, nodes = inputs[0].rock, len(inputs[0].region.vertices)
     return all(surface.interpolated for surface in rock.surfaces) and all(
-        len(inputs[0].surface(number)[0]) == nodes for number in range(len(rock.surfaces))
+        len(inputs[0].surface(number).vertices) == nodes for number in range(len(rock.surfaces))
     )
 
 
@@ -313,7 +316,7 @@ def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) 
     folder, grid, folder_of = shared
     rock, surface, places = task
     vertices, triangles = map(MappedArrays(folder).opened, places)
-    return write_parts((vertices, triangles), rock, surface, grid, folder_of)
+    return write_parts(Sheet(vertices, triangles), rock, surface, grid, folder_of)
 
 
 def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> None:
