@@ -273,29 +273,14 @@ void SurfaceInput::orient_upward() {
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
 void SurfaceInput::extend_border() {
-    std::vector<Triangle> border;  // for each border edge, as its triangle runs: ends, third corner
-    const EdgeUses edges = edges_of(surface_.triangles);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        if (edges[e].size() != 1) continue;
-        const Triangle& t = surface_.triangles[index(edges[e][0].item)];
-        std::size_t i = 0;
-        while (unordered(t[i], t[(i + 1) % 3]) != edges.ends(e))
-            ++i;
-        border.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
-    }
+    const std::vector<CutterBorderEdge> border = border_of(surface_);
     const double width = 256 * rounding_of(surface_.vertices);
     std::vector<Position> outward(surface_.vertices.size(), Position{0, 0, 0});
-    for (const auto& [a, b, c] : border) {
-        const Position o = surface_.vertices[index(a)];
-        const Position along = minus(surface_.vertices[index(b)], o),
-                       inward = minus(surface_.vertices[index(c)], o);
-        const double share = dot(inward, along) / dot(along, along);
-        const Position away = minus(times(share, along), inward);
-        const double size = length(away);
-        if (!(size > 0)) continue;
-        for (const NodeId v : {a, b}) {
+    for (const CutterBorderEdge& edge : border) {
+        const Position away = away_from(surface_, edge);
+        for (const NodeId v : {edge.from, edge.to}) {
             for (std::size_t k = 0; k < 3; ++k)
-                outward[index(v)][k] += away[k] / size;
+                outward[index(v)][k] += away[k];
         }
     }
     std::vector<NodeId> beyond(outward.size(), -1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "arrangement/edge_fan.hpp"
 #include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -37,6 +38,31 @@ void triangulate_face(const ComplexView& model, std::size_t face,
     triangulate(std::span(&loop, 1), rounding, found);
     for (const auto& t : found)
         triangles.push_back({t[0].node, t[1].node, t[2].node});
+}
+
+std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
+    const auto edges = arrangement::edges_of(
+        surface.triangles.size(),
+        surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
+        {1, nullptr});
+    std::vector<CutterBorderEdge> border;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() % 2 == 0) continue;
+        const auto& t = surface.triangles[index(edges[e].back().item)];
+        std::size_t i = 0;
+        while (unordered(t[i], t[(i + 1) % 3]) != edges.ends(e))
+            ++i;
+        border.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
+    }
+    return border;
+}
+
+Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge) {
+    const Position o = surface.vertices[index(edge.from)];
+    const Position along = minus(surface.vertices[index(edge.to)], o);
+    const Position inward = minus(surface.vertices[index(edge.corner)], o);
+    const double share = dot(inward, along) / dot(along, along);
+    return unit(minus(times(share, along), inward));
 }
 
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {

@@ -12,6 +12,7 @@ using cutting::kBelow;
 using cutting::NodeId;
 using cutting::Position;
 using cutting::RoundedParts;
+using realmodel::node_loop;
 
 class JoinedHalves : public cutting::AHalvedBox {
 protected:
