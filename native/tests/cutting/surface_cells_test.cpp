@@ -13,11 +13,11 @@ namespace {
 /// a surface.
 struct Parted {
     explicit Parted(CutterSurface of) : surface(std::move(of)) {}
-    SurfaceCells parts(bool leave_out = false) {
+    SurfaceCells parts(bool in_model_alone = true, bool leave_out = false) {
         return {overlay,
                 winding,
                 cells_near_surface(overlay, winding),
-                {[](std::span<const EdgeUse>) { return false; },
+                {[in_model_alone](std::span<const EdgeUse>) { return in_model_alone; },
                  [leave_out](std::size_t) { return leave_out; }},
                 nullptr};
     }
@@ -45,6 +45,11 @@ TEST(SurfaceCells, ALevelSurfaceLeavesTwoParts) {
     }
 }
 
+TEST(SurfaceCells, AroundABorderBesideTheModelItLeavesOne) {
+    Parted cut(level_cutter(0.5));
+    EXPECT_EQ(cut.parts(false).size(), 1U);
+}
+
 TEST(SurfaceCells, APartKnowsOneOfItsSides) {
     Parted cut(level_cutter(0.5));
     const SurfaceCells parts = cut.parts();
@@ -57,7 +62,7 @@ TEST(SurfaceCells, APartKnowsOneOfItsSides) {
 
 TEST(SurfaceCells, RegionsThatAreLeftOutAreJoinedWithNothing) {
     Parted cut(level_cutter(0.5));
-    const SurfaceCells parts = cut.parts(true);
+    const SurfaceCells parts = cut.parts(true, true);
     EXPECT_GT(parts.size(), 2U);
     for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
         if (!cut.overlay.of_cutter(r) || parts.of(r) < 0) continue;
