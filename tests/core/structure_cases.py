@@ -2,10 +2,11 @@
 """Small faults, surfaces and rock masses for the tests of structures."""
 
 import numpy as np
-from realmodel.core.base.work import run
+from realmodel.core.base.work import native_module, run
 from realmodel.core.proof.closed_form import ClosedForm
 from realmodel.core.structures.setup import make_structures
 from realmodel.core.structures.shapes.reading import read_structures
+from realmodel.core.surfaces import wrong_sides
 from realmodel.core.surfaces.rock_input import mesh_rock, read_rocks
 
 
@@ -37,6 +38,26 @@ def prepared(project, threads=1):
         return inputs
 
     return run(task)
+
+
+def heights_at(plan, vertices, triangles):
+    """(N,) heights of a surface at plan points (N, 2)."""
+    return run(lambda work: wrong_sides.heights_at(work, (vertices, triangles), plan, 1))
+
+
+def cells_at(model, points):
+    """(N,) the cell of a model that each point lies in, -1 for none."""
+    return native_module().cells_at(model.complex.native(len(model.blocks)), points)
+
+
+def blocks_at(closed, points):
+    """ClosedForm.blocks_at."""
+    return run(lambda work: closed.blocks_at(work, points))
+
+
+def compartments_of(entry, points):
+    """ClosedForm.compartments_of, of a RockInput that `prepared` returned."""
+    return run(lambda work: closed_form_of(entry).compartments_of(work, np.asarray(points, float)))
 
 
 def closed_form_of(entry):

@@ -205,7 +205,7 @@ def validate(
         if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
                 if model.structures is not None:
-                    found += check_points(work, model, int(places), int(seed))
+                    found += check_points(work, model, arrays, int(places), int(seed), threads)
                 else:
                     found += work.native(
                         native.check_samples,

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.algebra import dot, norm
-from ...base.triangles import nearest_triangles, unit_normals
-from ...base.work import Work, run
+from ...base.triangles import unit_normals
+from ...base.work import Work, native_module, run
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, fault_sides
 from .cutoffs import Cutoff, cutoff_of
@@ -90,7 +90,7 @@ class _Places:
         length = (shares[:, 1] - shares[:, 0]) * norm(along)
         corners = shape.vertices[shape.triangles]
         reach = norm(along) + 2 * precision_of(shape)  # the ends of each segment are on the fault
-        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)[0]]
+        normals = unit_normals(corners)[native_module().nearest_triangles(corners, points, reach)[0]]
         level = norm(normals[:, :2])
         steep = level > _LEVEL
         self.points, self.length = points[steep], length[steep]
