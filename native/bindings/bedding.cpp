@@ -29,8 +29,7 @@ py::tuple bedding_arrays(const Array<double>& vertices, const Array<std::int64_t
                          const Indices& face_vertices, const Indices& face_cells,
                          const std::vector<HistoryArrays>& given, const Indices& faces,
                          const Array<bool>& reversed, const Indices& history, const Indices& layer,
-                         const Indices& histories_of_corners, int threads,
-                         const Progress* control) {
+                         const Indices& histories_of_corners, int threads, Progress* control) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -57,7 +56,7 @@ py::tuple bedding_arrays(const Array<double>& vertices, const Array<std::int64_t
     {
         const py::gil_scoped_release unlocked;
         made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
-                                   threads, control);
+                                   {threads, control});
     }
     return py::make_tuple(to_array(std::move(made.height)), to_array(std::move(made.thickness)),
                           to_array(std::move(made.depth)));

@@ -98,7 +98,7 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     const booleans::TriangleMesh first{view(first_vertices), view(first_triangles)};
     const booleans::TriangleMesh second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;
-    return std::make_unique<Refinement>(booleans::intersect(first, second, threads, control));
+    return std::make_unique<Refinement>(booleans::intersect(first, second, {threads, control}));
 }
 
 }  // namespace

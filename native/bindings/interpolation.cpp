@@ -137,7 +137,7 @@ Array<double> nearest_distance(const Array<double>& points, const Array<double>&
     std::vector<double> distances;
     {
         const py::gil_scoped_release unlocked;
-        distances = interpolation::nearest_distances(from, to, threads, control);
+        distances = interpolation::nearest_distances(from, to, {threads, control});
     }
     return to_array(std::move(distances));
 }
@@ -153,7 +153,7 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
     std::vector<double> sums;
     {
         const py::gil_scoped_release unlocked;
-        sums = interpolation::line_sums(to, lines, threads, control);
+        sums = interpolation::line_sums(to, lines, {threads, control});
     }
     return to_array(std::move(sums));
 }

@@ -53,7 +53,7 @@ py::list shell_arrays(std::vector<shells::Shell>&& shells) {
 py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                         const Indices& face_vertices, const Indices& face_cells,
                         const Indices& cell_block, std::size_t blocks, const Position& origin,
-                        std::optional<double> shrink, int threads, const Progress* control) {
+                        std::optional<double> shrink, int threads, Progress* control) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -66,8 +66,8 @@ py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>
     std::vector<shells::Shell> found;
     {
         const py::gil_scoped_release unlocked;
-        found = shrink ? shells::cell_shells(complex, *shrink, origin, threads, control)
-                       : shells::block_shells(complex, origin, threads, control);
+        found = shrink ? shells::cell_shells(complex, *shrink, origin, {threads, control})
+                       : shells::block_shells(complex, origin, {threads, control});
     }
     return shell_arrays(std::move(found));
 }

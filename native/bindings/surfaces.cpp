@@ -48,7 +48,7 @@ py::array outside_hull(const Array<double>& points, const Array<double>& nodes, 
     std::vector<std::uint8_t> outside;
     {
         const py::gil_scoped_release unlocked;
-        outside = interpolation::outside_hull(from, to, threads, control);
+        outside = interpolation::outside_hull(from, to, {threads, control});
     }
     return to_array(std::move(outside)).attr("view")("bool");
 }
@@ -61,7 +61,7 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = method(from, to, threads, control);
+        z = method(from, to, {threads, control});
     }
     return to_array(std::move(z));
 }
@@ -77,7 +77,7 @@ py::tuple on_part(const Array<double>& points, const Array<double>& nodes,
     interpolation::PartValues found;
     {
         const py::gil_scoped_release unlocked;
-        found = method(from, to, around, threads, control);
+        found = method(from, to, around, {threads, control});
     }
     return py::make_tuple(to_array(std::move(found.z)),
                           to_array(std::move(found.certain)).attr("view")("bool"));
@@ -91,7 +91,7 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::heights_on_surface(corners, faces, to, threads, control);
+        z = interpolation::heights_on_surface(corners, faces, to, {threads, control});
     }
     return to_array(std::move(z));
 }
