@@ -23,7 +23,7 @@ py::tuple nearest_points(const Array<double>& points, const Array<double>& posit
     spatial::Nearest found;
     {
         const py::gil_scoped_release unlocked;
-        found = spatial::nearest_points(from, to, count, threads, control);
+        found = spatial::nearest_points(from, to, count, {threads, control});
     }
     return py::make_tuple(to_array(std::move(found.number), count),
                           to_array(std::move(found.distance), count));
@@ -41,8 +41,9 @@ py::tuple nearest_triangles(const Array<double>& triangles, const Array<double>&
     spatial::Nearest found;
     {
         const py::gil_scoped_release unlocked;
-        found = spatial::nearest_triangles(
-            corners, to, {reach.data(), static_cast<std::size_t>(reach.size())}, threads, control);
+        found = spatial::nearest_triangles(corners, to,
+                                           {reach.data(), static_cast<std::size_t>(reach.size())},
+                                           {threads, control});
     }
     return py::make_tuple(to_array(std::move(found.number)), to_array(std::move(found.distance)));
 }

@@ -96,13 +96,13 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
 }
 
 Array<std::int32_t> cells_at(const py::dict& model, const Array<double>& positions, int threads,
-                             const Progress* control) {
+                             Progress* control) {
     const ComplexArrays arrays(model);
     const auto at = rows<3>(positions, "positions");
     std::vector<std::int32_t> cells;
     {
         const py::gil_scoped_release release;
-        cells = validation::cells_at(arrays.complex, at, threads, control);
+        cells = validation::cells_at(arrays.complex, at, {threads, control});
     }
     return to_array(std::move(cells));
 }

@@ -68,8 +68,8 @@ constexpr std::size_t kPositionsOfChunk = 1024;
 }  // namespace
 
 Nearest nearest_points(std::span<const PlanPosition> points,
-                       std::span<const PlanPosition> positions, std::size_t count, int threads,
-                       Progress* progress) {
+                       std::span<const PlanPosition> positions, std::size_t count,
+                       const Execution& execution) {
     if (points.empty()) throw InputError("no_points", "there are no points to be near to");
     checked_number(points.size(), "points");
     require_finite(points, "point");
@@ -77,7 +77,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
     const NearestPoints tree(points);
     Nearest found{std::vector<std::int32_t>(count * positions.size(), -1),
                   std::vector<double>(count * positions.size(), HUGE_VAL)};
-    parallel_ranges(positions.size(), kPositionsOfChunk, threads, progress,
+    parallel_ranges(positions.size(), kPositionsOfChunk, execution,
                     [&](std::size_t begin, std::size_t end) {
                         std::vector<Neighbor> near;
                         for (std::size_t i = begin; i < end; ++i) {
@@ -93,7 +93,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
 
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
                           std::span<const Vector> positions, std::span<const double> reach,
-                          int threads, Progress* progress) {
+                          const Execution& execution) {
     constexpr double kSlack = 1 + 1e-9;  // distances to boxes are rounded
     checked_number(triangles.size(), "triangles");
     std::vector<Box> boxes(triangles.size());
@@ -101,12 +101,11 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
         for (const Vector& corner : triangles[t])
             boxes[t].include(corner);
     }
-    const BoxTree tree(std::move(boxes), progress);
+    const BoxTree tree(std::move(boxes), execution.progress);
     Nearest found{std::vector<std::int32_t>(positions.size(), -1),
                   std::vector<double>(positions.size(), HUGE_VAL)};
     parallel_ranges(
-        positions.size(), kPositionsOfChunk, threads, progress,
-        [&](std::size_t begin, std::size_t end) {
+        positions.size(), kPositionsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 std::int32_t& number = found.number[i];
                 double& least = found.distance[i];

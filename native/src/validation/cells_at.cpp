@@ -22,8 +22,8 @@ struct Passage {
 }  // namespace
 
 std::vector<std::int32_t> cells_at(const ComplexView& model,
-                                   std::span<const std::array<double, 3>> positions, int threads,
-                                   const Progress* progress) {
+                                   std::span<const std::array<double, 3>> positions,
+                                   const Execution& execution) {
     std::vector<spatial::PlanPosition> plan;
     for (const auto& p : positions)
         plan.push_back({p[0], p[1]});
@@ -54,7 +54,7 @@ std::vector<std::int32_t> cells_at(const ComplexView& model,
             }
         });
     };
-    parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
         for (std::size_t face = chunk * kItemsOfChunk;
              face < std::min(faces, (chunk + 1) * kItemsOfChunk); ++face)
             look(face, found[chunk]);

@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::spatial {
 
@@ -24,7 +22,7 @@ struct Nearest {
 /// @throws Cancelled
 Nearest nearest_points(std::span<const std::array<double, 2>> points,
                        std::span<const std::array<double, 2>> positions, std::size_t count = 1,
-                       int threads = 0, Progress* progress = nullptr);
+                       const Execution& execution = {});
 
 using SpaceTriangle = std::array<std::array<double, 3>, 3>;
 
@@ -34,8 +32,7 @@ using SpaceTriangle = std::array<std::array<double, 3>, 3>;
 /// @throws Cancelled
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
                           std::span<const std::array<double, 3>> positions,
-                          std::span<const double> reach, int threads = 0,
-                          Progress* progress = nullptr);
+                          std::span<const double> reach, const Execution& execution = {});
 
 /// Two opposite corners, the lower one first.
 using CornersOfBox = std::array<std::array<double, 3>, 2>;

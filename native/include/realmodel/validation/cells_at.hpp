@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::validation {
@@ -16,7 +16,7 @@ namespace realmodel::validation {
 /// face is above it. The arrays must have passed check_topology.
 /// @throws Cancelled
 std::vector<std::int32_t> cells_at(const ComplexView& model,
-                                   std::span<const std::array<double, 3>> positions, int threads,
-                                   const Progress* progress);
+                                   std::span<const std::array<double, 3>> positions,
+                                   const Execution& execution = {});
 
 }  // namespace realmodel::validation
