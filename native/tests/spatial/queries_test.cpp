@@ -65,7 +65,7 @@ TEST(NearestTriangles, AreThoseOfAllThatAreWithinReach) {
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             const std::vector one{triangles[t]};
             const double away =
-                nearest_triangles(one, {&positions[i], 1}, {\& everywhere[0], 1}).distance[0];
+                nearest_triangles(one, {&positions[i], 1}, {&everywhere[0], 1}).distance[0];
             if (away < least) number = static_cast<std::int32_t>(t);
             least = std::min(least, away);
         }
