@@ -14,7 +14,6 @@ from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
-from realmodel.core.structures.setup import structured_inputs
 from realmodel.core.tiles import faulted_windows as windows_module
 from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
@@ -238,7 +237,7 @@ def test_plan_coordinates_are_made_equal_once():
     project = faulted()
     x = project.rocks[0].surfaces[1].vertices[:, 0]
     x[x == 1000] = np.nextafter(1000, 2000)
-    inputs, structures, _ = run(lambda work: structured_inputs(work, project, 2))
+    inputs, structures = structure_cases.with_structures(project, 2)
     windows = run(lambda work: Windows(work, inputs, structures, 2))
     assert windows.snapped.startswith("plan coordinates merged that differ only by rounding")
     east = [
@@ -253,7 +252,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
 
     def kept(n):
         with MappedArrays(tmp_path / str(n)) as arrays:
-            inputs, structures, _ = run(lambda work: structured_inputs(work, faulted(n), 2, keep=arrays.keep))
+            inputs, structures = structure_cases.with_structures(faulted(n), 2, arrays.keep)
             tracemalloc.start()
             windows = run(lambda work: Windows(work, inputs, structures, 2, arrays.keep))
             windows.divide((251, 262))

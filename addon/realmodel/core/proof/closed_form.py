@@ -101,25 +101,22 @@ def closed_forms(model) -> list[ClosedForm]:
     for rock, entry in enumerate(model.rock_inputs):
         own = range(first, first + len(entry.surfaces))
         first += len(entry.surfaces)
-        faults, compartments, sheets = RockFaults([], [], []), np.zeros((1, 0), np.int8), [entry.surfaces]
-        if entry.structure is not None:
-            faults, sheets = entry.structure.faults, entry.structure.sheets
-            compartments = entry.structure.compartments
+        structure = entry.divided()
         bodies = [
             BodyOfRock(
                 (body.vertices, body.triangles),
                 structures.times[n][rock],
                 number.get(count + len(structures.faults) + n, AIR),
             )
-            for n, body in enumerate(structures.bodies if structures is not None else [])
+            for n, body in enumerate(structures.bodies)
             if rock in structures.times[n]
         ]
         found.append(
             ClosedForm(
                 [surface.rule for surface in entry.rock.surfaces],
-                faults,
-                compartments,
-                sheets,
+                structure.faults,
+                structure.compartments,
+                structure.sheets,
                 [number.get(surface, AIR) for surface in own],
                 entry.rock.base_elevation,
                 bodies,

@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the sheets in compartments, from rock masses that are read and meshed, and faults and bodies with
-arrays."""
+"""From a project to surfaces: reads it, meshes and interpolates; with faults and bodies the sheets in
+compartments."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed
 from ..base.mapped_arrays import Keep, as_it_is
 from ..base.work import Work, native_module
-from ..project.project import Project
+from ..project.project import Project, Rock
 from ..project.structure_entries import Body, Fault
-from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each
@@ -25,9 +26,69 @@ from .parts.refusals import refused_structure
 from .shapes.reading import read_structures
 from .sheets.sheets import make_sheets, warn_of_doubts
 
-_READ, _MESHED = 0.2, 0.3  # of the time
 _DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
+_CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
+
+
+def read_inputs(
+    work: Work, project: Project, threads: int, reader: Reader = read_each
+) -> tuple[list[RockInput], list[Fault], list[Body]]:
+    """Reads a project: its rock masses, faults and bodies, with arrays. reader: how surfaces are read. Raises
+    InputRefused."""
+    inputs = read_rocks(work, project, reader)
+    faults, bodies, warnings = read_structures(work, project, threads, inputs)
+    if warnings:
+        inputs[0].warnings += warnings
+    return inputs, faults, bodies
+
+
+def mesh_inputs(work: Work, inputs: list[RockInput], start: float, end: float, keep: Keep = as_it_is) -> None:
+    """Meshes the regions of rock masses. Progress goes from `start` to `end`. keep: where the meshes are
+    kept. Raises InputRefused."""
+    for entry, (begin, finish) in _in_parts(inputs, start, end):
+        with work.phase(begin, finish, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+        if entry.region is not None:
+            nodes, triangles = entry.region
+            entry.region = keep(nodes), keep(triangles)
+
+
+def make_surfaces(
+    work: Work,
+    project: Project,
+    faults: list[Fault],
+    bodies: list[Body],
+    inputs: list[RockInput],
+    threads: int,
+    stage: int | None,
+    start: float,
+    end: float,
+    keep: Keep = as_it_is,
+    flat: Callable[[Rock], Collection[int]] | None = None,
+    joins: bool = True,
+) -> Structures:
+    """Interpolates the surfaces of rock masses that are read and meshed, and divides these by faults and
+    bodies, with arrays. Progress goes from `start` to `end`.
+
+    keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
+    joins: as of make_structures. Raises InputRefused, BuildFailed.
+    """
+    if faults or bodies:
+        return make_structures(work, project, faults, bodies, inputs, threads, stage, start, end, joins, keep)
+    for entry, (begin, finish) in _in_parts(inputs, start, end):
+        numbers: Collection[int] = ()
+        if flat is not None:
+            settle_methods(work, entry, begin, begin + _CHOSEN * (finish - begin), threads)
+            numbers = flat(entry.rock)
+        interpolate_rock(work, entry, begin, finish, threads, stage, keep, numbers)
+    return structures_of(project, [], [])
+
+
+def _in_parts(inputs: list, start: float, end: float) -> Iterator[tuple]:
+    """Each with its equal part of the progress from `start` to `end`."""
+    steps = np.linspace(start, end, len(inputs) + 1).tolist()
+    return zip(inputs, itertools.pairwise(steps), strict=True)
 
 
 def make_structures(
@@ -98,8 +159,7 @@ def make_structures(
 
 def _make_all(work: Work, inputs: list, numbers: list[set[int]] | None, start, end, threads, stage, keep):
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
-    steps = np.linspace(start, end, len(inputs) + 1).tolist()
-    for number, (entry, begin, finish) in enumerate(zip(inputs, steps[:-1], steps[1:], strict=True)):
+    for number, (entry, (begin, finish)) in enumerate(_in_parts(inputs, start, end)):
         some = numbers[number] if numbers else None
         make_sheets(work, entry, begin, finish, threads, stage, keep, some)
 
@@ -114,28 +174,6 @@ def _without_gaps(
         return structures
     inputs[0].warnings += warnings
     return replace(structures, faults=faults)
-
-
-def structured_inputs(
-    work: Work, project: Project, threads: int, reader: Reader = read_each, keep: Keep = as_it_is
-) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
-    """Reads, meshes and interpolates a project with faults or bodies: its rock masses with sheets in the
-    place of surfaces, its structures, and warnings. reader: how surfaces are read. keep: where the arrays of
-    sheets and regions are kept. Raises InputRefused."""
-    with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project, reader)
-        faults, bodies, warnings = read_structures(work, project, threads, inputs)
-    steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
-    for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
-        with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
-            mesh_rock(work, entry)
-        if entry.region is not None:
-            nodes, triangles = entry.region
-            entry.region = keep(nodes), keep(triangles)
-    structures = make_structures(
-        work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False, keep=keep
-    )
-    return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:

@@ -25,6 +25,7 @@ from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
 from .planar_mesh import mesh_rings, triangulate_rings
 from .rock_structure import RockStructure
+from .sides import RockFaults
 from .surface_heights import (
     Triangulation,
     give_heights,
@@ -90,8 +91,9 @@ class RockInput:
         return result
 
     def divided(self) -> RockStructure:
-        """The structure of a rock mass with faults, once its compartments are found."""
-        assert self.structure is not None
+        """The compartments and their sheets; a rock mass without faults is one, with its surfaces."""
+        if self.structure is None:
+            return RockStructure(RockFaults([], [], []), np.zeros((1, 0), np.int8), [""], [self.surfaces])
         return self.structure
 
     def native(self) -> tuple:
@@ -294,9 +296,6 @@ def interpolate_rock(
     `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
     attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
     these, and looks for points on wrong sides, too."""
-    if keep is not as_it_is and entry.region is not None:
-        nodes, triangles = entry.region
-        entry.region = keep(nodes), keep(triangles)
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()

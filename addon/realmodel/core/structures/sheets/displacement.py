@@ -55,8 +55,6 @@ def _mean(values: np.ndarray, length: np.ndarray) -> float:
 
 def displacements(model) -> list[Displacement]:
     """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
-    if model.structures is None:
-        return []
     return run(lambda work: _displacements(work, model))
 
 
