@@ -32,8 +32,9 @@ class BodyOfRock:
 
     def holds(self, work: Work, points: np.ndarray, threads: int) -> np.ndarray:
         """(N,) bool: the points inside."""
-        structure = [(*self.shape, True, [], False)]
-        return work.native(native_module().structure_sides, structure, points, threads=threads) < 0
+        vertices, triangles = self.shape
+        given = [(vertices, triangles, True, [], False)]
+        return work.native(native_module().structure_sides, given, points, threads=threads) < 0
 
 
 @dataclass(frozen=True)
