@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/booleans/intersect.hpp"
 
 namespace py = pybind11;
@@ -20,19 +20,19 @@ using booleans::Refinement;
 
 /// An array that looks at memory of a Refinement, which it keeps alive.
 template <class T>
-py::array seen(const py::object& owner, const T* values, std::vector<py::ssize_t> shape) {
+py::array_t<T> seen(const py::object& owner, const T* values, std::vector<py::ssize_t> shape) {
     py::array_t<T> array(std::move(shape), values, owner);
     array.attr("flags").attr("writeable") = false;
     return array;
 }
 
 template <class T>
-py::array seen(const py::object& owner, const std::vector<T>& values) {
+py::array_t<T> seen(const py::object& owner, const std::vector<T>& values) {
     return seen(owner, values.data(), {static_cast<py::ssize_t>(values.size())});
 }
 
-py::array rows_seen(const py::object& owner,
-                    const std::vector<std::array<std::int32_t, 3>>& triangles) {
+py::array_t<std::int32_t> rows_seen(const py::object& owner,
+                                    const std::vector<std::array<std::int32_t, 3>>& triangles) {
     static_assert(sizeof(std::array<std::int32_t, 3>) == 3 * sizeof(std::int32_t));
     return seen(owner, reinterpret_cast<const std::int32_t*>(triangles.data()),
                 {static_cast<py::ssize_t>(triangles.size()), 3});
@@ -76,7 +76,7 @@ py::list sub_blocks(const py::object& self) {
     return found;
 }
 
-py::array is_in(const py::object& self) {
+py::array_t<bool> is_in(const py::object& self) {
     const auto& values = in(self).is_in;
     static_assert(sizeof(values[0]) == 4 * sizeof(bool));
     return seen(self, reinterpret_cast<const bool*>(values.data()),
@@ -86,8 +86,8 @@ py::array is_in(const py::object& self) {
 std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
                                       const Indices& first_triangles,
                                       const Array<double>& second_vertices,
-                                      const Indices& second_triangles, int threads,
-                                      Progress* control) {
+                                      const Indices& second_triangles,
+                                      WatchedExecution* execution) {
     require_columns(first_vertices, 3, "vertices of the first surface");
     require_columns(first_triangles, 3, "triangles of the first surface");
     require_columns(second_vertices, 3, "vertices of the second surface");
@@ -98,7 +98,7 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     const booleans::TriangleMesh first{view(first_vertices), view(first_triangles)};
     const booleans::TriangleMesh second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;
-    return std::make_unique<Refinement>(booleans::intersect(first, second, {threads, control}));
+    return std::make_unique<Refinement>(booleans::intersect(first, second, run(execution)));
 }
 
 }  // namespace
@@ -140,8 +140,8 @@ void bind_booleans(py::module_& module) {
                       "[bool, bool]: whether each surface is the boundary of a solid.");
 
     module.def("intersect", &intersect, py::arg("first_vertices"), py::arg("first_triangles"),
-               py::arg("second_vertices"), py::arg("second_triangles"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+               py::arg("second_vertices"), py::arg("second_triangles"),
+               py::arg("execution") = py::none(),
                R"(Intersects two triangulated surfaces and returns a Refinement.
 
 vertices (N, 3) float64, triangles (T, 3) int32 of each. Raises InputError kinds not_finite, bad_index,

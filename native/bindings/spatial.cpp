@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/spatial/queries.hpp"
 #include "rows.hpp"
 
@@ -16,34 +16,30 @@ namespace realmodel::bindings {
 namespace {
 
 py::tuple nearest_points(const Array<double>& points, const Array<double>& positions,
-                         std::size_t count, int threads, Progress* control) {
+                         std::size_t count, WatchedExecution* execution) {
     const auto from = rows<2>(points, "points");
     const auto to = rows<2>(positions, "positions");
     if (count == 0) throw py::value_error("count: at least 1");
     spatial::Nearest found;
     {
         const py::gil_scoped_release unlocked;
-        found = spatial::nearest_points(from, to, count, {threads, control});
+        found = spatial::nearest_points(from, to, count, run(execution));
     }
     return py::make_tuple(to_array(std::move(found.number), count),
                           to_array(std::move(found.distance), count));
 }
 
 py::tuple nearest_triangles(const Array<double>& triangles, const Array<double>& positions,
-                            const Array<double>& reach, int threads, Progress* control) {
+                            double reach, WatchedExecution* execution) {
     const auto to = rows<3>(positions, "positions");
     if (triangles.ndim() != 3 || triangles.shape(1) != 3 || triangles.shape(2) != 3)
         throw py::value_error("triangles: an array of shape (any, 3, 3) is needed");
-    if (static_cast<std::size_t>(reach.size()) != to.size())
-        throw py::value_error("reach: one for each position");
     const std::span corners(reinterpret_cast<const spatial::SpaceTriangle*>(triangles.data()),
                             static_cast<std::size_t>(triangles.shape(0)));
     spatial::Nearest found;
     {
         const py::gil_scoped_release unlocked;
-        found = spatial::nearest_triangles(corners, to,
-                                           {reach.data(), static_cast<std::size_t>(reach.size())},
-                                           {threads, control});
+        found = spatial::nearest_triangles(corners, to, reach, run(execution));
     }
     return py::make_tuple(to_array(std::move(found.number)), to_array(std::move(found.distance)));
 }
@@ -88,15 +84,14 @@ Array<std::int8_t> orient2d(const Array<double>& a, const Array<double>& b,
 void bind_spatial(py::module_& module) {
     using py::arg;
     module.def("nearest_points", &nearest_points, arg("points"), arg("positions"), arg("count") = 1,
-               arg("threads") = 0, arg("control") = py::none(),
+               arg("execution") = py::none(),
                R"(The count nearest of points (P, 2) to each position (N, 2), nearest first.
 
 Returns number (N, count) int32, of points at one distance the lowest first, -1 for none, and distance
 (N, count) float64, infinite for none. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
-    module.def(
-        "nearest_triangles", &nearest_triangles, arg("triangles"), arg("positions"), arg("reach"),
-        arg("threads") = 0, arg("control") = py::none(),
-        R"(The nearest of triangles (T, 3, 3) that are nearer than reach (N,) to positions (N, 3).
+    module.def("nearest_triangles", &nearest_triangles, arg("triangles"), arg("positions"),
+               arg("reach") = HUGE_VAL, arg("execution") = py::none(),
+               R"(The nearest of triangles (T, 3, 3) that are nearer than reach to positions (N, 3).
 
 Returns number (N,) int32, of triangles at one distance the lowest, -1 for none, and distance (N,)
 float64, infinite for none. Raises Cancelled.)");

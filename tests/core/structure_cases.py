@@ -51,7 +51,7 @@ def heights_at(plan, vertices, triangles):
 
 def cells_at(model, points):
     """(N,) the cell of a model that each point lies in, -1 for none."""
-    return native_module().cells_at(model.complex.native(len(model.blocks)), points)
+    return native_module().cells_at(model.native(), points)
 
 
 def blocks_at(closed, points):

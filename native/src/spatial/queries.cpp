@@ -92,7 +92,7 @@ Nearest nearest_points(std::span<const PlanPosition> points,
 }
 
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
-                          std::span<const Vector> positions, std::span<const double> reach,
+                          std::span<const Vector> positions, double reach,
                           const Execution& execution) {
     constexpr double kSlack = 1 + 1e-9;  // distances to boxes are rounded
     checked_number(triangles.size(), "triangles");
@@ -112,12 +112,12 @@ Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
                 tree.approach(
                     positions[i],
                     [&] {
-                        const double bound = std::min(least, reach[i]) * kSlack;
+                        const double bound = std::min(least, reach) * kSlack;
                         return bound * bound;
                     },
                     [&](std::int32_t t) {
                         const double away = distance(positions[i], triangles[index(t)]);
-                        if (!(away < reach[i]) || away > least || (away == least && t > number))
+                        if (!(away < reach) || away > least || (away == least && t > number))
                             return;
                         least = away;
                         number = t;

@@ -54,18 +54,15 @@ TEST(NearestTriangles, AreThoseOfAllThatAreWithinReach) {
     std::vector<Position> positions;
     for (int i = 0; i < 300; ++i)
         positions.push_back(random.position(12));
-    const std::vector<double> everywhere(positions.size(), HUGE_VAL), near(positions.size(), 0.5);
-    const Nearest all = nearest_triangles(triangles, positions, everywhere, {.threads = 1});
-    EXPECT_EQ(all.number,
-              nearest_triangles(triangles, positions, everywhere, {.threads = 3}).number);
-    const Nearest some = nearest_triangles(triangles, positions, near, {.threads = 1});
+    const Nearest all = nearest_triangles(triangles, positions, HUGE_VAL, {.threads = 1});
+    EXPECT_EQ(all.number, nearest_triangles(triangles, positions, HUGE_VAL, {.threads = 3}).number);
+    const Nearest some = nearest_triangles(triangles, positions, 0.5, {.threads = 1});
     for (std::size_t i = 0; i < positions.size(); ++i) {
         double least = HUGE_VAL;
         std::int32_t number = -1;
         for (std::size_t t = 0; t < triangles.size(); ++t) {
             const std::vector one{triangles[t]};
-            const double away =
-                nearest_triangles(one, {&positions[i], 1}, {&everywhere[0], 1}).distance[0];
+            const double away = nearest_triangles(one, {&positions[i], 1}, HUGE_VAL).distance[0];
             if (away < least) number = static_cast<std::int32_t>(t);
             least = std::min(least, away);
         }
@@ -85,8 +82,7 @@ TEST(NearestTriangles, APlaceOnALongTriangleIsOnIt) {
         Position place;
         for (std::size_t k = 0; k < 3; ++k)
             place[k] = a * needle[0][0][k] + b * needle[0][1][k] + (1 - a - b) * needle[0][2][k];
-        const std::vector reach{HUGE_VAL};
-        EXPECT_LE(nearest_triangles(needle, {&place, 1}, reach).distance[0],
+        EXPECT_LE(nearest_triangles(needle, {&place, 1}, HUGE_VAL).distance[0],
                   8 * 10 * std::numeric_limits<double>::epsilon());
     }
 }

@@ -14,14 +14,18 @@ import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from . import missing_native
 from .errors import BuildFailed, Cancelled
 
+if TYPE_CHECKING:
+    from ..._native import Native
+
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
+Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
@@ -29,12 +33,17 @@ _PACKAGE = __package__.removesuffix(".core.base")  # "realmodel", or the name of
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
+def on_threads(threads: int) -> Native.Execution:
+    """How a native call is run. threads: 0 for as many as there are."""
+    return native_module().Execution(threads)
+
+
 class Work:
     """The progress of a working thread, and the request to cancel it."""
 
     def __init__(self):
         self._lock = threading.Lock()
-        self._control = None
+        self._execution: Native.Execution | None = None
         self._works: list[Work] = []  # of the items of `each`, while it runs
         self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
         self._part = 0.0, 1.0
@@ -83,15 +92,17 @@ class Work:
         if self._cancelled:
             raise Cancelled("cancelled")
 
-    def native(self, function: Callable[..., Result], *arguments, **options) -> Result:
-        """Calls a native function that takes a `control`, as the present phase."""
-        native = native_module()
-        control = native.Control()
+    def native(
+        self, function: Callable[Arguments, Result], *arguments: Arguments.args, **options: Arguments.kwargs
+    ) -> Result:
+        """Calls a native function that takes an `execution`, as the present phase."""
+        native, call = native_module(), cast(Callable[..., Result], function)
+        execution = options.setdefault("execution", native.Execution())
         with self._lock:
-            self._control = control
+            self._execution = cast("Native.Execution", execution)
         try:
             self.check()
-            return function(*arguments, control=control, **options)
+            return call(*arguments, **options)
         except native.Cancelled as error:
             raise Cancelled("cancelled") from error
         except MemoryError as error:
@@ -104,7 +115,7 @@ class Work:
             ) from error
         finally:
             with self._lock:
-                self._control = None
+                self._execution = None
 
     def each(
         self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
@@ -151,8 +162,8 @@ class Work:
         """(fraction of the whole, never falling; what is being done)."""
         with self._lock:
             share = self._share
-            if self._control is not None:
-                share = max(share, self._control.fraction)
+            if self._execution is not None:
+                share = max(share, self._execution.fraction)
             text = self._text
             if self._works:
                 states = [work.state() for work in self._works]
@@ -166,8 +177,8 @@ class Work:
     def cancel(self) -> None:
         with self._lock:
             self._cancelled = True
-            if self._control is not None:
-                self._control.cancel()
+            if self._execution is not None:
+                self._execution.cancel()
             for work in self._works:
                 work.cancel()
 
@@ -308,11 +319,11 @@ def _waiting_threads_sleep():
         os.environ.pop(name, None)
 
 
-def native_module():
+def native_module() -> Native:
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
     try:
         with _waiting_threads_sleep():
-            from ... import _native  # type: ignore[attr-defined]  # compiled: it has no stub
+            from ... import _native
     except ImportError as error:
         raise BuildFailed(missing_native.explanation(error)) from error
-    return _native
+    return cast("Native", _native)

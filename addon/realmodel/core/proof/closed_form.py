@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..settings.rules import RULES
 from ..surfaces.sides import RockFaults, sides_of
 from ..surfaces.wrong_sides import Triangulation, heights_at
@@ -33,8 +33,8 @@ class BodyOfRock:
     def holds(self, work: Work, points: np.ndarray, threads: int) -> np.ndarray:
         """(N,) bool: the points inside."""
         vertices, triangles = self.shape
-        given = [(vertices, triangles, True, [], False)]
-        return work.native(native_module().structure_sides, given, points, threads=threads) < 0
+        given: list[tuple] = [(vertices, triangles, True, [], False)]
+        return work.native(native_module().structure_sides, given, points, execution=on_threads(threads)) < 0
 
 
 @dataclass(frozen=True)

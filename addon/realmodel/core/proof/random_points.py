@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 from ..base.errors import place_text
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..surfaces.wrong_sides import heights_at
 from .closed_form import AIR, blocks_of_all, closed_forms
 
@@ -27,7 +27,7 @@ def check_points(work: Work, model, arrays: dict, places: int, seed: int, thread
     forms = closed_forms(model)
 
     def looked_up(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        cells = work.native(native_module().cells_at, arrays, points, threads=threads)
+        cells = work.native(native_module().cells_at, arrays, points, execution=on_threads(threads))
         return cells, blocks_of_all(work, forms, points, threads)
 
     cells, said = looked_up(points)
@@ -106,9 +106,8 @@ def _check_faces(work: Work, model, places: int, random, threads: int) -> dict:
                 off = np.abs(z - points[own, 2])
                 away[own] = np.fmin(away[own], off)
         else:
-            reach = np.full(len(own), np.inf)
-            nearest = native_module().nearest_triangles
-            away[own] = work.native(nearest, vertices[triangles], points[own], reach, threads=threads)[1]
+            nearest, run = native_module().nearest_triangles, on_threads(threads)
+            _, away[own] = work.native(nearest, vertices[triangles], points[own], execution=run)
     wrong = np.flatnonzero(away > allowed)
     slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
     wrong = wrong[~slivers]

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.algebra import dot
 from ..base.errors import number_list
-from ..base.work import native_module
+from ..base.work import native_module, on_threads
 from .shared_places import places_of
 
 _MOST_SHARED = 5000  # places at which two surfaces are compared
@@ -131,7 +131,7 @@ def _at_nearest(first: np.ndarray, second: np.ndarray) -> tuple[int, int]:
     lower = higher = total = 0
     for own, other, sign in ((first, second, 1), (second, first, -1)):
         asked = own[:: -(-len(own) // _ASKED)]
-        nearest = native_module().nearest_points(other[:, :2], asked[:, :2], threads=1)[0][:, 0]
+        nearest = native_module().nearest_points(other[:, :2], asked[:, :2], execution=on_threads(1))[0][:, 0]
         difference = sign * (asked[:, 2] - other[nearest, 2])
         lower += int((difference < 0).sum())
         higher += int((difference > 0).sum())

@@ -26,13 +26,13 @@ Nearest nearest_points(std::span<const std::array<double, 2>> points,
 
 using SpaceTriangle = std::array<std::array<double, 3>, 3>;
 
-/// The nearest of triangles among those that are nearer than `reach` to a position, one for each.
+/// The nearest of triangles among those that are nearer than `reach` to a position.
 /// Distances are true up to rounding of what is near the position: long triangles have their plane
 /// from their shorter edges, taken from their nearest corner.
 /// @throws Cancelled
 Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
-                          std::span<const std::array<double, 3>> positions,
-                          std::span<const double> reach, const Execution& execution = {});
+                          std::span<const std::array<double, 3>> positions, double reach,
+                          const Execution& execution = {});
 
 /// Two opposite corners, the lower one first.
 using CornersOfBox = std::array<std::array<double, 3>, 2>;

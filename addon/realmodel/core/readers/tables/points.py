@@ -15,7 +15,7 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
-from ...base.work import native_module
+from ...base.work import native_module, on_threads
 from ...settings.point_file import list_of
 from .table_layout import (
     TableLayout,
@@ -216,7 +216,9 @@ def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> 
 
     def read(piece: bytes):
         separator = table.layout.separator
-        return native.read_numbers(piece, 0, len(piece), separator, decimal, columns, filters, missing, 1)
+        return native.read_numbers(
+            piece, 0, len(piece), separator, decimal, columns, filters, missing, on_threads(1)
+        )
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts

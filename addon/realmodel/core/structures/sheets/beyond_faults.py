@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.work import native_module
+from ...base.work import native_module, on_threads
 from ...heights.mis_ties import LARGEST_SHARE, heights_apart
 
 _LOOKED_AT = 16  # nearest points, whose sides are considered
@@ -32,11 +32,11 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
         known = np.flatnonzero(~several & ~found)
         if not len(known):
             break
-        plan = points[:, :2]
-        nearest, _ = native_module().nearest_points(plan[known], plan[tried], _LOOKED_AT + 1)
+        nearest, run = native_module().nearest_points, on_threads(1)
+        found_near, _ = nearest(points[known, :2], points[tried, :2], _LOOKED_AT + 1, execution=run)
         wrong, beside = [], set()
-        for number, row_of_near in zip(tried, nearest, strict=True):
-            near = known[row_of_near[row_of_near >= 0]]
+        for number, numbers in zip(tried, found_near, strict=True):
+            near = known[numbers[numbers >= 0]]
             near = np.append(near[near != number], near[near == number])[:_LOOKED_AT]  # itself comes last
             own, other = _off(points, row, near, number)
             if own > (other if several[number] else max(tolerated, _BETTER * other)):

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...base.algebra import dot, principal_axes
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.sides import FaultShape, fault_sides
 from ...surfaces.wrong_sides import Triangulation, heights_at
 from .tips import trace_of
@@ -86,8 +86,8 @@ def between_faults(
     plan = np.ascontiguousarray(vertices[:, :2])
     own = [vertices[:, 2], *(heights_at(work, sheet, plan, threads) for sheet in sheets[1:])]
     heights = np.where(np.isfinite(own), own, np.nan)
-    nearest = native_module().nearest_points
-    away = np.array([nearest(places, plan)[1][:, 0] for places, _, _ in faults])
+    nearest, run = native_module().nearest_points, on_threads(threads)
+    away = np.array([nearest(places, plan, execution=run)[1][:, 0] for places, _, _ in faults])
     from_there = np.array(
         [
             fault_sides(work, np.column_stack([plan, np.nan_to_num(z)]), fault, threads) == side

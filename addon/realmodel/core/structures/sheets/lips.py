@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.algebra import norm
 from ...base.triangles import unit_normals, welded
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
 from ...settings.methods import METHODS
 from ...surfaces.sides import FaultShape
@@ -43,9 +43,9 @@ def beyond_lips(
     if not lips or not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
         return np.empty((0, 3))
     corners = [lip.shape.vertices[lip.shape.triangles] for lip in lips]
-    within, nearest = np.full(len(points), reach), native_module().nearest_triangles
+    nearest, run = native_module().nearest_triangles, on_threads(1)
     near = [
-        np.where(lip.points, nearest(own, points, within)[0], -1)
+        np.where(lip.points, nearest(own, points, reach, execution=run)[0], -1)
         for lip, own in zip(lips, corners, strict=True)
     ]
     ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])

@@ -21,7 +21,7 @@ from ...base.triangles import (
     segments_hit,
     shares_hit,
 )
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import places_between
@@ -49,7 +49,8 @@ class Trace:
         """(P,) bool: the plan points that are nearer to the trace than to its ends."""
         if not len(self.points):
             return np.zeros(len(plan), bool)
-        return ~self.is_end[native_module().nearest_points(self.points, plan)[0][:, 0]]
+        nearest, _ = native_module().nearest_points(self.points, plan, execution=on_threads(1))
+        return ~self.is_end[nearest[:, 0]]
 
 
 def trace_of(
@@ -127,9 +128,8 @@ def precision_of(fault: FaultShape) -> float:
 
 def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
-    reach = np.full(len(points), np.nextafter(precision_of(fault), np.inf))  # so far away counts, too
-    corners = fault.vertices[fault.triangles]
-    return native_module().nearest_triangles(corners, points, reach, threads=1)[0] >= 0
+    corners, reach = fault.vertices[fault.triangles], float(np.nextafter(precision_of(fault), np.inf))
+    return native_module().nearest_triangles(corners, points, reach, execution=on_threads(1))[0] >= 0
 
 
 def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
@@ -560,5 +560,6 @@ def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
         return np.ones(len(plan))
     if ramp <= 0:
         return np.where(beyond, 0.0, 1.0)
-    share = np.minimum(1.0, native_module().nearest_points(plan[beyond], plan)[1][:, 0] / ramp)
+    _, away = native_module().nearest_points(plan[beyond], plan, execution=on_threads(1))
+    share = np.minimum(1.0, away[:, 0] / ramp)
     return share * share * (3 - 2 * share)
