@@ -7,6 +7,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "spatial/box_tree.hpp"
 #include "spatial/nearest_points.hpp"
@@ -15,19 +16,7 @@ namespace realmodel::spatial {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
-Vector minus(const Vector& a, const Vector& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double distance(const Vector& p, const SpaceTriangle& triangle) {
+double distance(const Vec3& p, const SpaceTriangle& triangle) {
     SpaceTriangle edges, apart;
     std::size_t longest = 0, nearest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -36,21 +25,19 @@ double distance(const Vector& p, const SpaceTriangle& triangle) {
         if (dot(edges[i], edges[i]) > dot(edges[longest], edges[longest])) longest = i;
         if (dot(apart[i], apart[i]) < dot(apart[nearest], apart[nearest])) nearest = i;
     }
-    Vector normal = cross(edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
-    const double size = std::sqrt(dot(normal, normal));
+    Vec3 normal = cross(edges[(longest + 1) % 3], edges[(longest + 2) % 3]);
+    const double size = length(normal);
     for (double& each : normal)
         each /= size;
     bool inside = true;
     double to_border = HUGE_VAL;
     for (std::size_t i = 0; i < 3; ++i) {
         inside &= dot(cross(edges[i], apart[i]), normal) >= 0;
-        const double length = dot(edges[i], edges[i]);
+        const double square = dot(edges[i], edges[i]);
         const double share =
-            length > 0 ? std::clamp(dot(apart[i], edges[i]) / length, 0.0, 1.0) : 0.0;
-        Vector off;
-        for (std::size_t k = 0; k < 3; ++k)
-            off[k] = p[k] - (triangle[i][k] + share * edges[i][k]);
-        to_border = std::min(to_border, std::sqrt(dot(off, off)));
+            square > 0 ? std::clamp(dot(apart[i], edges[i]) / square, 0.0, 1.0) : 0.0;
+        const Vec3 off = minus(p, moved(triangle[i], share, edges[i]));
+        to_border = std::min(to_border, length(off));
     }
     return inside ? std::abs(dot(apart[nearest], normal)) : to_border;
 }
@@ -91,14 +78,13 @@ Nearest nearest_points(std::span<const PlanPosition> points,
     return found;
 }
 
-Nearest nearest_triangles(std::span<const SpaceTriangle> triangles,
-                          std::span<const Vector> positions, double reach,
-                          const Execution& execution) {
+Nearest nearest_triangles(std::span<const SpaceTriangle> triangles, std::span<const Vec3> positions,
+                          double reach, const Execution& execution) {
     constexpr double kSlack = 1 + 1e-9;  // distances to boxes are rounded
     checked_number(triangles.size(), "triangles");
     std::vector<Box> boxes(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (const Vector& corner : triangles[t])
+        for (const Vec3& corner : triangles[t])
             boxes[t].include(corner);
     }
     const BoxTree tree(std::move(boxes), execution.progress);
