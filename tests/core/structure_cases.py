@@ -34,11 +34,9 @@ def with_structures(project, threads=1, keep=as_it_is, joins=False):
     """The rock masses (RockInput) of a project with their sheets, and its structures."""
 
     def task(work):
-        inputs, faults, bodies = read_inputs(work, project, threads)
+        inputs, with_arrays = read_inputs(work, project, threads)
         mesh_inputs(work, inputs, 0.0, 0.1, keep)
-        structures = make_structures(
-            work, project, faults, bodies, inputs, threads, None, 0.1, 1.0, joins, keep
-        )
+        structures = make_structures(work, with_arrays, inputs, threads, None, 0.1, 1.0, joins, keep)
         return inputs, structures
 
     return run(task)

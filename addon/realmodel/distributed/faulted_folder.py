@@ -64,11 +64,9 @@ def _built(
 
     def prepared(work: Work):
         with work.phase(0.0, _READ, "reading"):
-            inputs, faults, bodies = read_inputs(work, project, 0, reader)
+            inputs, with_arrays = read_inputs(work, project, 0, reader)
         mesh_inputs(work, inputs, _READ, _MESHED, arrays.keep)
-        structures = make_surfaces(
-            work, project, faults, bodies, inputs, 0, None, _MESHED, 1.0, arrays.keep, joins=False
-        )
+        structures = make_surfaces(work, with_arrays, inputs, 0, None, _MESHED, 1.0, arrays.keep, joins=False)
         warnings = [warning for entry in inputs for warning in entry.warnings]
         return Windows(work, inputs, structures, 0, arrays.keep), structures, warnings
 

@@ -77,9 +77,7 @@ class Realizer:
         """The rock masses with heights drawn, and the structures."""
         inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
         project = self.model.project
-        structures = make_surfaces(
-            work, project, project.faults, project.bodies, inputs, threads, None, 0.0, _INTERPOLATED
-        )
+        structures = make_surfaces(work, project, inputs, threads, None, 0.0, _INTERPOLATED)
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:

@@ -70,22 +70,22 @@ def _build(
         timings[name] += time.perf_counter() - began
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
-        inputs, faults, bodies = read_inputs(work, project, threads)
+        inputs, project = read_inputs(work, project, threads)
     with timed("mesh"):
         mesh_inputs(work, inputs, ends["read"], ends["mesh"])
 
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
-    require_memory(taken(), cells, memory, len(faults) + len(bodies))
+    require_memory(taken(), cells, memory, len(project.faults) + len(project.bodies))
     start, end = ends["mesh"], ends["interpolate"]
     with timed("interpolate"):
-        structures = make_surfaces(work, project, faults, bodies, inputs, threads, stage, start, end)
+        structures = make_surfaces(work, project, inputs, threads, stage, start, end)
     inputs = taken()
     structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
         built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
-    given = replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+    given = replace(project, rocks=[entry.rock for entry in inputs])
     return Model.of(assemble(work, given, inputs, built, threads, timings, ends["intersect"], structures))
 
 

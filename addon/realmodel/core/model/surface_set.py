@@ -104,11 +104,9 @@ def _build(
     work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader, flat
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs, faults, bodies = read_inputs(work, project, threads, reader)
+        inputs, with_arrays = read_inputs(work, project, threads, reader)
     mesh_inputs(work, inputs, _READ, _MESHED, keep)
-    structures = make_surfaces(
-        work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0, keep, flat
-    )
+    structures = make_surfaces(work, with_arrays, inputs, threads, stage, _MESHED, 1.0, keep, flat)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

@@ -15,7 +15,7 @@ from ..base.errors import BuildFailed
 from ..base.mapped_arrays import Keep, as_it_is
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
-from ..project.structure_entries import Body, Fault
+from ..project.structure_entries import Fault
 from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
@@ -33,14 +33,14 @@ _CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
 
 def read_inputs(
     work: Work, project: Project, threads: int, reader: Reader = read_each
-) -> tuple[list[RockInput], list[Fault], list[Body]]:
-    """Reads a project: its rock masses, faults and bodies, with arrays. reader: how surfaces are read. Raises
-    InputRefused."""
+) -> tuple[list[RockInput], Project]:
+    """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
+    surfaces are read. Raises InputRefused."""
     inputs = read_rocks(work, project, reader)
     faults, bodies, warnings = read_structures(work, project, threads, inputs)
     if warnings:
         inputs[0].warnings += warnings
-    return inputs, faults, bodies
+    return inputs, replace(project, faults=faults, bodies=bodies)
 
 
 def mesh_inputs(work: Work, inputs: list[RockInput], start: float, end: float, keep: Keep = as_it_is) -> None:
@@ -57,8 +57,6 @@ def mesh_inputs(work: Work, inputs: list[RockInput], start: float, end: float, k
 def make_surfaces(
     work: Work,
     project: Project,
-    faults: list[Fault],
-    bodies: list[Body],
     inputs: list[RockInput],
     threads: int,
     stage: int | None,
@@ -68,14 +66,14 @@ def make_surfaces(
     flat: Callable[[Rock], Collection[int]] | None = None,
     joins: bool = True,
 ) -> Structures:
-    """Interpolates the surfaces of rock masses that are read and meshed, and divides these by faults and
-    bodies, with arrays. Progress goes from `start` to `end`.
+    """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
+    bodies of the project, as read_inputs gives it. Progress goes from `start` to `end`.
 
     keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
-    if faults or bodies:
-        return make_structures(work, project, faults, bodies, inputs, threads, stage, start, end, joins, keep)
+    if project.faults or project.bodies:
+        return make_structures(work, project, inputs, threads, stage, start, end, joins, keep)
     for entry, (begin, finish) in _in_parts(inputs, start, end):
         numbers: Collection[int] = ()
         if flat is not None:
@@ -93,9 +91,7 @@ def _in_parts(inputs: list, start: float, end: float) -> Iterator[tuple]:
 
 def make_structures(
     work: Work,
-    project,
-    faults: list[Fault],
-    bodies: list[Body],
+    project: Project,
     inputs: list,
     threads: int,
     stage: int | None,
@@ -107,14 +103,14 @@ def make_structures(
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space. Progress goes from `start` to `end`.
 
-    faults, bodies: those of the project, with arrays. joins: whether `entry.surfaces` gets the sheets of each
+    project: as of read_inputs. joins: whether `entry.surfaces` gets the sheets of each
     surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused, and
     BuildFailed where the parts never settle.
     """
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
-        faults = [_facing_up(work, fault) for fault in faults]
-        structures = structures_of(project, faults, bodies)
+        faults = [_facing_up(work, fault) for fault in project.faults]
+        structures = structures_of(project, faults, project.bodies)
         box = box_around(inputs, structures)
         structures = _without_gaps(work, structures, inputs, box, threads)
         structures = divide(work, structures, box, threads)
