@@ -5,9 +5,9 @@
 
 #include <set>
 
+#include "../arrangement/small_polygons.hpp"
 #include "cutting/halves.hpp"
 #include "cutting/rounding/part_rounding.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -114,7 +114,7 @@ TEST(SurfacePieces, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
     const ComplexView model = u.view();
     const CutterSurface surface = level_cutter(9);
     SurfaceOverlay overlay(model, surface, {1, nullptr});
-    const std::vector<NodeLoop> front{loop_of({0, 1, 2, 3, 4, 5, 6, 7})};
+    const std::vector<NodeLoop> front{node_loop({0, 1, 2, 3, 4, 5, 6, 7})};
     arrangement::LoopTable<NodeId> loops;
     loops.add_loop(front[0]);
     loops.end_region();

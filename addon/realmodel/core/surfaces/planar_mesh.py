@@ -24,6 +24,9 @@ class MeshEstimate:
     memory: int
 
 
+_Asked = tuple[list[np.ndarray], dict]  # rings and request
+
+
 def mesh_region(
     outline,
     holes=(),
@@ -147,7 +150,7 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
         raise refused_region(error) from error
 
 
-def _checked(outline, holes, *others) -> dict:
+def _checked(outline, holes, *others) -> _Asked:
     return _asked(region_rings(outline, holes), *others)
 
 
@@ -160,13 +163,12 @@ def _asked(
     constraints,
     constraint_points,
     points,
-) -> dict:
+) -> _Asked:
     """The arguments of the native mesher. Raises InputRefused and UsageError."""
     lines = [places_of(line, f"constraint {number}") for number, line in enumerate(constraints)]
     given = None if constraint_points is None else places_of(constraint_points, "constraint_points")
     length, wanted, density = size_of_edges(edge_length, triangles, points)
-    return {
-        "rings": list(rings),
+    request = {
         "edge_length": length,
         "mesher": mesher,
         "triangles": wanted,
@@ -175,12 +177,14 @@ def _asked(
         "constraint_points": given,
         "density": density,
     }
+    return list(rings), request
 
 
-def _native_call(work: Work, function, asked: dict):
+def _native_call(work: Work, function, asked: _Asked):
     native = native_module()
     try:
-        return work.native(function, **asked)
+        rings, request = asked
+        return work.native(function, rings, request)
     except native.InputError as error:
         raise refused_region(error) from error
 

@@ -61,7 +61,7 @@ TEST_F(AHalvedBox, AppliedContractionsTakePolygonsAway) {
     contraction.becomes[9] = 1;
     contraction.apply();
     EXPECT_EQ(pieces_.size(), 10U);  // the lower piece of the side of 0 and 1 vanished
-    EXPECT_EQ(nodes(kCap - 1), loop_of({0, 1, 11, 10}));
+    EXPECT_EQ(nodes(kCap - 1), node_loop({0, 1, 11, 10}));
 }
 
 }  // namespace

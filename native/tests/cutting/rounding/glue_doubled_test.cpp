@@ -16,7 +16,7 @@ TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     const auto doubled = glue_doubled(parts);
     ASSERT_EQ(pieces_.size(), 11U);
     EXPECT_EQ(pieces_[0].parts, (std::array{0, 1}));  // glued ones come first
-    EXPECT_EQ(nodes(0), loop_of({8, 9, 11, 10}));
+    EXPECT_EQ(nodes(0), node_loop({8, 9, 11, 10}));
     EXPECT_EQ(std::ranges::count(doubled, 0), 11);
 }
 

@@ -216,9 +216,7 @@ def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> 
 
     def read(piece: bytes):
         separator = table.layout.separator
-        return native.read_numbers(
-            piece, 0, len(piece), separator, decimal, columns, filters, missing, on_threads(1)
-        )
+        return native.read_numbers(piece, separator, decimal, columns, filters, missing, on_threads(1))
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts
