@@ -205,9 +205,7 @@ py::dict fit_variogram(const Array<double>& points,
     return out;
 }
 
-}  // namespace
-
-void bind_interpolation(py::module_& module) {
+void bind_estimators(py::module_& module) {
     using py::arg;
     module.def("krige", &krige, arg("points"), arg("nodes"), arg("variogram"),
                arg("neighborhood") = kNearest, arg("drift") = "constant",
@@ -262,6 +260,13 @@ neighborhood  as krige
 spacing       the unit of distances, mean_spacing of all points where these are a part; 0: of these
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
+}
+
+}  // namespace
+
+void bind_interpolation(py::module_& module) {
+    using py::arg;
+    bind_estimators(module);
     module.def(
         "mean_spacing", &mean_spacing, arg("points"), arg("are_apart") = false,
         R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.

@@ -30,7 +30,7 @@ TEST_F(AHalvedBox, APartIsNoMoreWhereItsNodesBecomeThoseOfOnePolygon) {
 
 TEST_F(AHalvedBox, EqualPolygonsOfAPartThatFaceEachOtherCancelWhereTheyMay) {
     cut_at(0.5);
-    const Piece in_two{-1, {0, 0}, {kBelow, kBelow}, false, {0, 0}};
+    const CutPiece in_two{-1, {0, 0}, {kBelow, kBelow}, false, {0, 0}};
     pieces_.add(std::array<NodeId, 3>{8, 0, 9}, in_two);
     RoundedParts parts = rounded_parts();
     pieces_[kCap + 1].parts = {0, -1};

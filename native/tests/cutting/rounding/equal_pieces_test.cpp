@@ -25,7 +25,7 @@ TEST(PutFirst, IsTheSameForLoopsOfTheSameEdges) {
 
 TEST_F(AHalvedBox, EqualPiecesAreFoundWhicheverWayTheyTurn) {
     cut_at(0.5);
-    const Piece origin{-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
+    const CutPiece origin{-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
     pieces_.add_reversed(pieces_.polygons[kCap], origin);
     pieces_.add(std::array<NodeId, 4>{8, 11, 9, 10}, origin);  // the same nodes, but other edges
     pieces_.add(std::array<NodeId, 4>{11, 10, 8, 9}, origin);

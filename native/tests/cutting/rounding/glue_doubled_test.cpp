@@ -7,7 +7,7 @@ namespace {
 TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     cut_at(0.5);
     parts_[1].side = kBelow;  // both parts in one half, and a cap of each
-    for (Piece& piece : pieces_.origins) {
+    for (CutPiece& piece : pieces_.origins) {
         if (piece.sides[0] == kAbove) piece.sides[0] = kBelow;
     }
     pieces_[kCap] = {-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
