@@ -70,7 +70,7 @@ def model_report(
         "peak_memory": _peak_memory(),
         "versions": versions(),
     }
-    if model.structures is not None:
+    if model.structures.is_divided:
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
         report["bodies"] = [body_entry(body) for body in model.structures.bodies]

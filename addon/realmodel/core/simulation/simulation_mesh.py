@@ -179,8 +179,6 @@ def _without_columns(model) -> str | None:
     """The reason why the model has no columns, or None."""
     if model.is_cut:
         return "a cut model"
-    if model.structures is None:
-        return None
     if model.structures.bodies:
         return "a model with bodies"
     for fault in model.structures.faults:

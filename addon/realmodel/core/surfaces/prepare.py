@@ -202,8 +202,6 @@ def interpolate_rock(
     `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
     attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
     these, and looks for points on wrong sides, too."""
-    if keep is not as_it_is and entry.region is not None:
-        entry.region = Sheet(*map(keep, entry.region))
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()
