@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from realmodel.core.ensembles.draws import Draw
-from realmodel.core.ensembles.turning_bands import Frame, Noise
-from realmodel.core.methods import checked_options
-from realmodel.core.work import Work
+from realmodel.core.base.work import Work
+from realmodel.core.heights.draws import Draw
+from realmodel.core.heights.turning_bands import Frame, Noise
+from realmodel.core.settings.methods import checked_options
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "core"))

@@ -93,7 +93,7 @@ def faults(folder):
     """Fault blocks moved apart, the cover lifted."""
     import bpy
     import numpy as np
-    from realmodel.core import polygon_mesh
+    from realmodel.core.display import polygon_mesh
 
     model, picture = sample("fault_blocks", folder)
     count = len(model.compartment_names)
@@ -128,7 +128,7 @@ def faults(folder):
 def basin(folder):
     """A section through a rift basin: half of the model, its faults named."""
     import numpy as np
-    from realmodel.core import polygon_mesh
+    from realmodel.core.display import polygon_mesh
 
     model, picture = sample("rift_basin", folder)
     section = 1500.0
@@ -159,7 +159,7 @@ def basin(folder):
 def intrusion(folder):
     """A granite with a dike, a quarter of the model taken away."""
     import numpy as np
-    from realmodel.core import polygon_mesh
+    from realmodel.core.display import polygon_mesh
 
     model, picture = sample("intrusion", folder)
     low, high = np.array([1560.0, -100.0, -2000.0]), np.array([3100.0, 1180.0, 2000.0])
@@ -181,7 +181,8 @@ def tunnel(folder):
     from dataclasses import replace
 
     import numpy as np
-    from realmodel.core import build, load_project, polygon_mesh
+    from realmodel.core import build, load_project
+    from realmodel.core.display import polygon_mesh
     from realmodel.core.exporters.report import model_report
 
     model, picture = sample("tunnel", folder)
@@ -342,7 +343,7 @@ def stages(folder):
     """A film strip: Haut-Barr after each of its surfaces."""
     import bpy
     import numpy as np
-    from realmodel.core import polygon_mesh
+    from realmodel.core.display import polygon_mesh
     from realmodel.core.drawing.drawing import Drawing
     from realmodel.core.drawing.png import write_pixels
 

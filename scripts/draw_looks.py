@@ -57,7 +57,7 @@ def pictures_of(names):
 def put_together():
     """Makes the sheet of looks, the previews, and the pair of pictures of weathering."""
     from PIL import Image
-    from realmodel.core.looks import LOOKS
+    from realmodel.core.project.looks import LOOKS
 
     if (pictures := pictures_of(LOOKS)) is not None:
         make_sheet(pictures, [look.label for look in LOOKS.values()])
@@ -174,8 +174,8 @@ def draw_looks(folder, keys):
     import gallery_picture
     import numpy as np
     from realmodel.bl import looks, materials, meshes
-    from realmodel.core import polygon_mesh
-    from realmodel.core.looks import LOOKS
+    from realmodel.core.display import polygon_mesh
+    from realmodel.core.project.looks import LOOKS
 
     material = materials.new_material("look", 1, "#808080")
     points = []
@@ -219,7 +219,7 @@ def in_blender(folder, *names):
 
     sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "scripts")]
     import realmodel
-    from realmodel.core.looks import LOOKS
+    from realmodel.core.project.looks import LOOKS
 
     realmodel.register_for_batch()
     for draw, chosen in (

@@ -34,7 +34,7 @@ class Picture:
         import bpy
         import numpy as np
         from realmodel.bl import materials, meshes
-        from realmodel.core import polygon_mesh
+        from realmodel.core.display import polygon_mesh
 
         for block, shape in zip(model.blocks, shapes, strict=True):
             if shape is None:
@@ -266,7 +266,7 @@ def apply_looks(model, scale):
     import bpy
     import numpy as np
     from realmodel.bl import looks, materials
-    from realmodel.core.looks import look_of
+    from realmodel.core.project.looks import look_of
 
     diagonal = float(np.linalg.norm(np.ptp(model.vertices, axis=0)))
     for material in list(bpy.data.materials):
@@ -280,7 +280,7 @@ def part(shape, keep):
     from dataclasses import replace
 
     import numpy as np
-    from realmodel.core.bedding import Bedding
+    from realmodel.core.display.bedding import Bedding
 
     counts = np.diff(shape.offsets)
     corners = np.repeat(keep, counts)
@@ -306,7 +306,7 @@ def part(shape, keep):
 
 
 def blocks_of(model, picture):
-    from realmodel.core import polygon_mesh
+    from realmodel.core.display import polygon_mesh
 
     return polygon_mesh.of_blocks(model, picture.origin)
 

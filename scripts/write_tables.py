@@ -36,7 +36,7 @@ def _is_default(name, default):
 
 
 def _rules():
-    from realmodel.core.rules import DEFAULT_RULE, RULES
+    from realmodel.core.settings.rules import DEFAULT_RULE, RULES
 
     yes_no = {True: "yes", False: "no"}
     return _table(
@@ -49,7 +49,7 @@ def _rules():
 
 
 def _methods():
-    from realmodel.core.methods import DEFAULT_METHOD, METHODS
+    from realmodel.core.settings.methods import DEFAULT_METHOD, METHODS
 
     rows = []
     for name, method in METHODS.items():
@@ -64,7 +64,7 @@ def _methods():
 
 
 def _options():
-    from realmodel.core.methods import OPTIONS
+    from realmodel.core.settings.methods import OPTIONS
 
     rows = []
     for name, option in OPTIONS.items():
@@ -77,7 +77,7 @@ def _options():
 
 
 def _rule_labels():
-    from realmodel.core.rules import RULES
+    from realmodel.core.settings.rules import RULES
 
     return _table(["rule", ""], [[f"**{rule.label}**", rule.tip] for rule in RULES.values()])
 
@@ -124,7 +124,7 @@ def _operators():
 
 def _keys(settings, text):
     """The rows of keys: those of settings that say more are written, the others stay as they are."""
-    from realmodel.core.methods import OPTIONS
+    from realmodel.core.settings.methods import OPTIONS
 
     rows = text.strip().splitlines()
     for key, setting in settings.items():
@@ -146,7 +146,7 @@ def _keys(settings, text):
 
 def written(text):
     """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
-    from realmodel.core.schema import BODY, FAULT, PROJECT, READING, ROCK, SURFACE
+    from realmodel.core.settings.schema import BODY, FAULT, PROJECT, READING, ROCK, SURFACE
 
     tables = {
         "rules": _rules,

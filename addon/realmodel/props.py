@@ -19,7 +19,7 @@ from bpy.props import (
 
 from . import preferences, props_ensemble, props_rock, props_stage, props_structure, props_surface, props_view
 from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
-from .core.units import MODEL_UNIT
+from .core.base.units import MODEL_UNIT
 
 
 class RealModelProperty(bpy.types.PropertyGroup):

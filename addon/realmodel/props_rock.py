@@ -13,7 +13,7 @@ from bpy.props import (
 
 from . import props_surface
 from .bl import changes, plan_mesh, settings
-from .core.schema import ROCK, SIZE
+from .core.settings.schema import ROCK, SIZE
 from .props_schema import settings_of
 
 _AT = (

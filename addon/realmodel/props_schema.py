@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The properties of settings, made from their declarations (core/setting.py)."""
+"""The properties of settings, made from their declarations (core/settings/setting.py)."""
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .bl import changes, choices
-from .core.setting import property_name, switch_name
+from .core.settings.setting import property_name, switch_name
 
 _SEARCH = {
     "surface": choices.surfaces,

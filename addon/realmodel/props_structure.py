@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of one fault and of one body; most come from their declarations in core/schema.py."""
+"""The settings of one fault and of one body; most come from their declarations in core/settings/schema.py."""
 
 import bpy
 from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringProperty
 
 from .bl import changes, choices, settings
-from .core.readers.mesh_file import MESH_FORMATS
-from .core.schema import BODY, FAULT, READING
+from .core.readers.meshes.mesh_file import MESH_FORMATS
+from .core.settings.schema import BODY, FAULT, READING
 from .props_schema import settings_of
 from .props_surface import RealModelFilter, interface_properties
 

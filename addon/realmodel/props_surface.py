@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of one surface; most come from their declarations in core/schema.py and core/methods.py."""
+"""The settings of one surface; most come from their declarations in core/settings (schema.py, methods.py)."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, PointerProperty, StringProperty
 
 from .bl import changes, choices, settings
-from .core.methods import STRUCTURE
-from .core.readers.mesh_file import MESH_FORMATS
-from .core.schema import READING, SURFACE
+from .core.readers.meshes.mesh_file import MESH_FORMATS
+from .core.settings.methods import STRUCTURE
+from .core.settings.schema import READING, SURFACE
 from .props_schema import settings_of
 
 SOURCES = (

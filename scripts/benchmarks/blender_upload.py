@@ -32,8 +32,8 @@ def ours(coordinates, offsets, corners, surfaces):
     """As the blocks come in: flat shaded, with edges, and each face knows its surface. The edges, which are
     found in the thread that builds, count here too."""
     from realmodel.bl import meshes
-    from realmodel.core.polygon_mesh import PolygonMesh
-    from realmodel.core.work import native_module
+    from realmodel.core.base.work import native_module
+    from realmodel.core.display.polygon_mesh import PolygonMesh
 
     edges, corner_edges = native_module().polygon_edges(offsets, corners, len(coordinates))
     shape = PolygonMesh(coordinates, offsets, corners, surfaces, edges, corner_edges)

@@ -20,7 +20,7 @@ def write_in_turns(spec: dict, endings: list[str], rounds: int, threads: int) ->
     """Of each ending the bytes, the processors' seconds of a file, and medians of seconds: of a file and of
     the same bytes at once, both first without fsync and then with it."""
     from realmodel.core import Project, Rock, Surface, build
-    from realmodel.core.atomic import os as os_of_outputs
+    from realmodel.core.base.atomic import os as os_of_outputs
 
     surfaces = [Surface(f"S{k}", *surface) for k, surface in enumerate(StackSpec(**spec).make())]
     model = build(Project("stack", [Rock("rock", surfaces)]), threads=threads)

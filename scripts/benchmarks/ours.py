@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 
-from realmodel.core.work import native_module
+from realmodel.core.base.work import native_module
 
 from .made_stacks import StackSpec
 

@@ -40,7 +40,7 @@ def make_faults(count: int) -> list:
 def build_faulted(spec: dict, cells: str, threads: int, count: int) -> dict:
     """A whole build, from arrays in memory, of a stack with so many faults."""
     from realmodel.core import Fault, Project, Rock, Surface, build
-    from realmodel.core.work import native_module
+    from realmodel.core.base.work import native_module
 
     native_module()
     faults = make_faults(count)
@@ -67,7 +67,7 @@ def _sphere(rings: int) -> tuple[np.ndarray, np.ndarray]:
 def ours_cut(spec: dict, rings: int, threads: int) -> dict:
     """The columns of a stack cut by a sphere of 4 rings (rings - 1) triangles: both halves."""
     from realmodel.core import Project, Rock, Surface, build
-    from realmodel.core.cutting import cut_by_surface
+    from realmodel.core.model.cutting import cut_by_surface
 
     surfaces = [
         Surface(f"S{number}", vertices, triangles)

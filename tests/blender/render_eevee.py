@@ -4,7 +4,7 @@
     blender -b --factory-startup --python-exit-code 1 -P tests/blender/render_eevee.py -- FILE.png [LOOK ...]
     python tests/blender/render_eevee.py -- FILE.png [LOOK ...]
 
-or xvfb-run where there is no EGL. LOOK: keys of realmodel.core.looks.LOOKS (default: all). Each is a tile of
+or xvfb-run where there is no EGL. LOOK: keys of core.project.looks.LOOKS (default: all). Each is a tile of
 an upright wall, COLUMNS in a row from the lower left, with laminae that are level.
 """
 
@@ -22,7 +22,7 @@ COLOR = "#8090b0"
 def main(file, *keys):
     sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
     import realmodel
-    from realmodel.core.looks import LOOKS
+    from realmodel.core.project.looks import LOOKS
 
     realmodel.register_for_batch()
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)

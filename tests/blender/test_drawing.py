@@ -10,7 +10,7 @@ from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
 from realmodel.bl import quality, samples, settings
 from realmodel.bl.display import ensembles
-from realmodel.core.methods import METHODS
+from realmodel.core.settings.methods import METHODS
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab
 
 _opened = None  # files that are opened while a panel is drawn; None: none is

@@ -7,7 +7,7 @@ from blender_state import coordinates
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, library_rows, materials, project_settings
 from realmodel.core import build, load_project
-from realmodel.core.automatic_library import PALETTE
+from realmodel.core.results.automatic_library import PALETTE
 
 PROJECT = """
 format = 1

@@ -11,7 +11,7 @@ from panel_case import PanelCase, ops, raise_by, select, stack
 from realmodel.bl import meshes
 from realmodel.bl.build_job import BuildJob
 from realmodel.core import Cancelled
-from realmodel.core.polygon_mesh import of_triangles
+from realmodel.core.display.polygon_mesh import of_triangles
 
 
 class HandOver(PanelCase):

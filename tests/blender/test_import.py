@@ -9,8 +9,8 @@ import numpy as np
 from panel_case import PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl import data_objects, library_rows, notices, origin, project_settings
 from realmodel.bl.display import shown_models
-from realmodel.core.automatic_library import PALETTE, palette
-from realmodel.core.build_warning import BuildWarning
+from realmodel.core.base.build_warning import BuildWarning
+from realmodel.core.results.automatic_library import PALETTE, palette
 
 EAST, NORTH = 3_430_000.0, 5_390_000.0
 

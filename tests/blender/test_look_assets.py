@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from panel_case import PanelCase, ops
 from realmodel.bl import look_assets, looks
-from realmodel.core.looks import LOOKS
+from realmodel.core.project.looks import LOOKS
 
 
 class LookAssets(PanelCase):

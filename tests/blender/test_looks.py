@@ -12,7 +12,7 @@ import render_eevee
 from blender_state import empty_file
 from panel_case import PanelCase, ops, stack
 from realmodel.bl import looks, materials
-from realmodel.core.looks import LOOKS
+from realmodel.core.project.looks import LOOKS
 
 PIXELS = 64
 FOR_EEVEE = ("FLAT", "SHALE", "SANDSTONE", "GRAVEL")  # each with a texture takes seconds on a processor

@@ -8,8 +8,8 @@ from realmodel.bl.display import shown_models
 from realmodel.bl.export_job import ExportJob
 from realmodel.bl.mesh_job import MeshJob
 from realmodel.core import Cancelled, OutputFailed, UsageError, build, load_project
+from realmodel.core.exporters.mesh_request import MeshRequest
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
-from realmodel.core.simulation.mesh_request import MeshRequest
 
 PROJECT = SAMPLES / "two_layers" / "project.toml"
 OPTIONS = {"edge_length": 8.0, "minimum_thickness": 1.0, "layer_thickness": 4.0}

@@ -8,7 +8,7 @@ from panel_case import PanelCase, sheet, stack
 from realmodel import preferences
 from realmodel.bl import live
 from realmodel.bl.threads import threads
-from realmodel.core import work
+from realmodel.core.base import work
 
 ops = bpy.ops.realmodel
 

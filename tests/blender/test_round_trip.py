@@ -10,10 +10,10 @@ import bpy
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
 from realmodel.bl import choices, plan_mesh, project_settings, reading_text
 from realmodel.core import InputRefused, load_project
-from realmodel.core.rock_input import read_rocks
-from realmodel.core.schema import BODY, FAULT, READING, ROCK, SURFACE
-from realmodel.core.structures.reading import read_structures
-from realmodel.core.work import run
+from realmodel.core.base.work import run
+from realmodel.core.settings.schema import BODY, FAULT, READING, ROCK, SURFACE
+from realmodel.core.structures.shapes.reading import read_structures
+from realmodel.core.surfaces.rock_input import read_rocks
 
 EVERY_KEY = """
 format = 1

@@ -7,7 +7,7 @@ import realmodel
 from blender_state import coordinates
 from panel_case import ops
 from realmodel.bl import surface_figures
-from realmodel.core import polygon_mesh
+from realmodel.core.display import polygon_mesh
 from view_case import Case
 
 

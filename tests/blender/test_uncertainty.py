@@ -6,7 +6,8 @@ import numpy as np
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import batch, scene, surface_figures
-from realmodel.core import build, layer_values
+from realmodel.core import build
+from realmodel.core.results import layer_values
 
 
 def values(mesh, name):

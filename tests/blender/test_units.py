@@ -8,7 +8,7 @@ import bpy
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, units
 from realmodel.core import build, load_project
-from realmodel.core.units import METERS
+from realmodel.core.base.units import METERS
 
 PROJECT = """format = 1
 name = "quarry"

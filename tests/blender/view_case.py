@@ -11,7 +11,7 @@ import numpy as np
 from made_projects import LIBRARY, surface
 from realmodel.bl import versions
 from realmodel.core import Project, Rock, build
-from realmodel.core.project_writer import save_project
+from realmodel.core.project.project_writer import save_project
 
 # The block "Gone" is there after S2 only: S3 erodes all of it, and "Cap" comes to lie on "Sand".
 GRID = {"east": 0.0, "north": 0.0, "x0": 0.0, "y0": 0.0, "width": 100.0, "depth": 80.0}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core.age_order import _against, _improved, age_order
+from realmodel.core.surfaces.age_order import _against, _improved, age_order
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 

@@ -13,7 +13,7 @@ from contextlib import suppress
 
 import pytest
 from realmodel.core import OutputFailed
-from realmodel.core.atomic import Outputs
+from realmodel.core.base.atomic import Outputs
 
 FORK = multiprocessing.get_context("fork")
 SIZE = 300_000

@@ -3,7 +3,7 @@
 
 import numpy as np
 from realmodel.core import Body, Library, Project, Property, Rock, Surface, build
-from realmodel.core.automatic_library import PALETTE, model_with_library, with_library
+from realmodel.core.results.automatic_library import PALETTE, model_with_library, with_library
 
 REGION = np.array([[0, 0], [10, 0], [10, 10], [0, 10]], float)
 

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import Body, Fault, Project, Rock, Surface, build, load_project, polygon_mesh
+from realmodel.core import Body, Fault, Project, Rock, Surface, build, load_project
+from realmodel.core.display import polygon_mesh
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 ORIGIN = np.zeros(3)

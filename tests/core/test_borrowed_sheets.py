@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, PointFile, Project, Rock, Surface, build
 from realmodel.core.ensembles import ensemble
-from realmodel.core.structures.closed_form import heights_at
-from realmodel.core.structures.displacement import displacements
+from realmodel.core.proof.closed_form import heights_at
+from realmodel.core.structures.sheets.displacement import displacements
 from structure_cases import closed_form_of, plane_fault, prepared
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])

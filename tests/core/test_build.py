@@ -19,7 +19,7 @@ from realmodel.core import (
     build,
     load_project,
 )
-from realmodel.core.work import run
+from realmodel.core.base.work import run
 
 
 def level(name, z, n=2, shift=0.0, **more):

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build
-from realmodel.core.coarse_meshes import coarsened, joined
-from realmodel.core.polygon_mesh import of_blocks
+from realmodel.core.display.coarse_meshes import coarsened, joined
+from realmodel.core.display.polygon_mesh import of_blocks
 
 
 def layers(n=40):

@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.structures.branches import require_meeting
-from realmodel.core.structures.closed_form import winding_numbers
-from realmodel.core.structures.joining import acts
-from realmodel.core.structures.parts import divide, structures_of
-from realmodel.core.structures.reach import Reach
-from realmodel.core.structures.sides import fault_sides
-from realmodel.core.work import native_module, run
+from realmodel.core.base.work import native_module, run
+from realmodel.core.cells.joining import acts
+from realmodel.core.cells.reach import Reach
+from realmodel.core.proof.closed_form import winding_numbers
+from realmodel.core.structures.parts.parts import divide, structures_of
+from realmodel.core.structures.shapes.branches import require_meeting
+from realmodel.core.surfaces.sides import fault_sides
 from structure_cases import ball, plane_fault, prepared
 
 BOX = np.array([[0.0, 0.0, -4.0], [10.0, 10.0, 4.0]])

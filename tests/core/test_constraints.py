@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, MapLayer, Project, Rock, Surface, build, load_project
-from realmodel.core.plan_input import read_constraints
-from realmodel.core.project_writer import save_project
+from realmodel.core.project.plan_input import read_constraints
+from realmodel.core.project.project_writer import save_project
 
 RIVER = '{"type":"LineString","coordinates":[[-1,1],[2,2],[9,1.5]]}'
 PROJECT = """format = 1

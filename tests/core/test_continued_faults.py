@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface, build
-from realmodel.core.structures import interpolated_sheets
-from realmodel.core.structures.continued import border_of, continued, extended
-from realmodel.core.structures.reading import read_structures
+from realmodel.core.base.triangles import border_loops, meet, open_edges
+from realmodel.core.base.work import run
 from realmodel.core.structures.setup import structured_inputs
-from realmodel.core.structures.triangles import border_loops, meet, open_edges
-from realmodel.core.work import run
+from realmodel.core.structures.shapes.continued import border_of, continued, extended
+from realmodel.core.structures.shapes.reading import read_structures
+from realmodel.core.structures.sheets import interpolated_sheets
 from structure_cases import SQUARE, plane_fault
 
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, build, load_project
-from realmodel.core.hole_path import HolePath, bend_between, direction
 from realmodel.core.readers import read_boreholes
+from realmodel.core.readers.tables.hole_path import HolePath, bend_between, direction
 
 NEAR = {"rtol": 0, "atol": 1e-9}
 

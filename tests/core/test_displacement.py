@@ -19,11 +19,11 @@ from displaced_surfaces import (
     tilted,
 )
 from realmodel.core import Fault, Project, Rock, Surface, build
+from realmodel.core.base.work import run
 from realmodel.core.exporters.report import model_report
-from realmodel.core.structures.displacement import displacements
-from realmodel.core.structures.lips import Lip, beyond_lips
-from realmodel.core.structures.sides import FaultShape
-from realmodel.core.work import run
+from realmodel.core.structures.sheets.displacement import displacements
+from realmodel.core.structures.sheets.lips import Lip, beyond_lips
+from realmodel.core.surfaces.sides import FaultShape
 from structure_cases import SQUARE, plane_fault
 
 

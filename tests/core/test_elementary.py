@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import elementary
+from realmodel.core.base import elementary
 
 ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = r"(expm1|exp2?|log(2|10|1p)?|pow|cbrt|hypot|a?(sin|cos|tan)h?|atan2)"

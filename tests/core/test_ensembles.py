@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from dense_kriging import semivariance
 from realmodel.core import InputRefused, Project, Rock, Surface, UsageError, build
+from realmodel.core.base.work import Work
 from realmodel.core.ensembles import Ensemble, Realizer, blocks_at, ensemble
 from realmodel.core.ensembles.ensemble import Sums, added
-from realmodel.core.ensembles.turning_bands import Frame, Noise, gaussian_field
-from realmodel.core.project import Fault
-from realmodel.core.variogram import VARIOGRAMS, Structure, Variogram
-from realmodel.core.work import Work
+from realmodel.core.heights.turning_bands import Frame, Noise, gaussian_field
+from realmodel.core.project.project import Fault
+from realmodel.core.settings.variogram import VARIOGRAMS, Structure, Variogram
 from structure_cases import plane_fault
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])

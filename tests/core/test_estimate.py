@@ -16,7 +16,7 @@ from realmodel.core import (
     build,
     estimate,
 )
-from realmodel.core.estimate import memory_text
+from realmodel.core.model.estimate import memory_text
 
 
 def jittered(random, n):

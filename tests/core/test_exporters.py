@@ -145,9 +145,9 @@ def test_vtk_reads_the_compartments(tmp_path):
 
 @pytest.mark.parametrize(("cells", "kind"), [("columns", "Int32"), ("blocks", "Int32"), ("columns", "Int64")])
 def test_vtk_reads_the_same_model(tmp_path, cells, kind, monkeypatch):
-    monkeypatch.setattr("realmodel.core.exporters.vtu._CELLS_AT_ONCE", 37)  # several pieces
+    monkeypatch.setattr("realmodel.core.exporters.solvers.vtu._CELLS_AT_ONCE", 37)  # several pieces
     if kind == "Int64":
-        monkeypatch.setattr("realmodel.core.exporters.vtu._LARGEST_INT32", 1000)
+        monkeypatch.setattr("realmodel.core.exporters.solvers.vtu._LARGEST_INT32", 1000)
     model = build(Project("x", [Rock("rock", crossing_surfaces(), base_elevation=-2.0)]), cells=cells)
     model.save(tmp_path / "m.vtu")
     assert f'<DataArray type="{kind}" Name="faces"'.encode() in (tmp_path / "m.vtu").read_bytes()

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, PointFile, Project, Rock, Surface, build, load_project
-from realmodel.core.structures.displacement import displacements
-from realmodel.core.structures.reading import read_structures
-from realmodel.core.work import run
+from realmodel.core.base.work import run
+from realmodel.core.structures.shapes.reading import read_structures
+from realmodel.core.structures.sheets.displacement import displacements
 from stacks import places, real_faults
 
 ROOT = Path(__file__).resolve().parents[2]

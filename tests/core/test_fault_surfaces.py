@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, PointFile
+from realmodel.core.base.work import run
 from realmodel.core.readers.fault_sticks import read_fault_points
-from realmodel.core.structures.fitted import convex_hull, fit_points, fit_sticks
-from realmodel.core.work import run
+from realmodel.core.structures.shapes.fitted import convex_hull, fit_points, fit_sticks
 
 
 def listric_sticks(count=6, points=9):

@@ -21,13 +21,13 @@ from realmodel.core import (
     build_surfaces,
     load_project,
 )
-from realmodel.core.project_writer import save_project
+from realmodel.core.base.vendored import vendored
+from realmodel.core.base.work import run
+from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_point_file
-from realmodel.core.readers.vendored import vendored
-from realmodel.core.rock_input import read_rocks
-from realmodel.core.structures.displacement import displacements
-from realmodel.core.structures.reading import read_structures
-from realmodel.core.work import run
+from realmodel.core.structures.shapes.reading import read_structures
+from realmodel.core.structures.sheets.displacement import displacements
+from realmodel.core.surfaces.rock_input import read_rocks
 from structure_cases import SQUARE, plane_fault
 
 try:

@@ -12,13 +12,13 @@ import pytest
 import structure_cases
 from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
-from realmodel.core.mapped_arrays import MappedArrays
-from realmodel.core.structures import windows as windows_module
+from realmodel.core.base.mapped_arrays import MappedArrays
+from realmodel.core.base.work import run
 from realmodel.core.structures.setup import structured_inputs
-from realmodel.core.structures.windows import Windows
+from realmodel.core.tiles import faulted_windows as windows_module
+from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
 from realmodel.core.tiles.owned_cells import Seam, face_keys, owners
-from realmodel.core.work import run
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import faulted_folder, tile_folder
 from realmodel.distributed.workers import Workers

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who imports whom in the add-on, at the top of a file or inside a function: nobody in a circle."""
+"""Who imports whom in the add-on, at the top of a file, inside a function or for types alone: nobody in a
+circle. The folders of core are steps (docs/dev/architecture.md), and each imports from earlier ones only."""
 
 import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "addon" / "realmodel"
+CORE = PACKAGE / "core"
 
 
 def _modules(package):
@@ -21,16 +24,12 @@ def _modules(package):
 
 
 class _Imports(ast.NodeVisitor):
-    """The modules that a module imports, but for the checker of types alone."""
+    """The modules that a module imports."""
 
     def __init__(self, name, file, modules):
         self.package = name if file.name == "__init__.py" else name.rpartition(".")[0]
         self.modules, self.found = modules, set()
         self.visit(ast.parse(file.read_text()))
-
-    def visit_If(self, node):
-        if not (isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
-            self.generic_visit(node)
 
     def visit_ImportFrom(self, node):
         if not node.level:
@@ -50,7 +49,11 @@ class _Imports(ast.NodeVisitor):
 def _cycle(package):
     """The modules of one circle, or None."""
     modules = _modules(package)
-    imports = {name: _Imports(name, file, modules).found for name, file in modules.items()}
+    return _circle({name: _Imports(name, file, modules).found for name, file in modules.items()})
+
+
+def _circle(imports):
+    """The first circle in {name: names}, or None."""
     try:
         TopologicalSorter(imports).prepare()
     except CycleError as error:
@@ -58,11 +61,59 @@ def _cycle(package):
     return None
 
 
+def _imports_of_steps(depth):
+    """{step: steps that it imports from} of core."""
+    modules = _modules(PACKAGE)
+    imports = {}
+    for name, file in modules.items():
+        if CORE in file.parents:
+            steps = {_step(modules[found], depth) for found in _Imports(name, file, modules).found}
+            imports.setdefault(_step(file, depth), set()).update(steps - {_step(file, depth)})
+    return imports
+
+
+def test_each_step_imports_from_steps_above_it_in_the_document():
+    text = (PACKAGE.parents[1] / "docs" / "dev" / "architecture.md").read_text()
+    steps = re.findall(r"^\| `(\w+)`", text.split("| step |")[1].split("\n\n")[0], re.MULTILINE)
+    imports = _imports_of_steps(1)
+    assert {step for step in imports if not step.endswith(".py")} == set(steps)
+    for n, step in enumerate(steps):
+        assert imports[step] <= set(steps[:n]) | {"plots.py"}, step
+    assert imports["plots.py"] <= set(steps)
+
+
+def test_folders_within_steps_are_in_no_circle():
+    assert _circle(_imports_of_steps(2)) is None
+
+
+def _step(file, depth):
+    """The folder of a file in core; a file that is in none is a step by itself."""
+    parts = file.relative_to(CORE).parts if CORE in file.parents else ("..",)
+    return "/".join(parts[:-1][:depth] or parts)
+
+
+def test_a_folder_of_the_core_says_what_comes_in_and_goes_out():
+    folders = {file.parent for file in CORE.rglob("*.py")}
+    for folder in folders - {CORE}:
+        text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
+        assert "Comes in: " in text, folder
+        assert "Goes out: " in text, folder
+    assert max(len(list(folder.glob("*.py"))) for folder in folders) <= 20
+
+
 def test_no_module_imports_itself_through_others():
     assert _cycle(PACKAGE) is None
 
 
-@pytest.mark.parametrize("text", ["from . import a", "def f():\n    from . import a", "from .a import x"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from . import a",
+        "def f():\n    from . import a",
+        "from .a import x",
+        "if TYPE_CHECKING:\n    from . import a",
+    ],
+)
 def test_a_circle_would_be_found(tmp_path, text):
     package = tmp_path / "sample"
     package.mkdir()

@@ -2,7 +2,7 @@
 """Which look suits a rock by its name."""
 
 import pytest
-from realmodel.core.looks import DEFAULT, LOOKS, look_of
+from realmodel.core.project.looks import DEFAULT, LOOKS, look_of
 
 
 @pytest.mark.parametrize(

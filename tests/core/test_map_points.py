@@ -18,8 +18,8 @@ from realmodel.core import (
     build,
     load_project,
 )
+from realmodel.core.base.vendored import vendored
 from realmodel.core.readers import read_point_file
-from realmodel.core.readers.vendored import vendored
 
 try:
     shapefile = vendored("shapefile", "pyshp", "this test")

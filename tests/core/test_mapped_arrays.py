@@ -6,7 +6,7 @@ import io
 import numpy as np
 import pytest
 from realmodel.core import BuildFailed, OutputFailed
-from realmodel.core.mapped_arrays import MappedArrays, read_mapped, write_mapped
+from realmodel.core.base.mapped_arrays import MappedArrays, read_mapped, write_mapped
 
 
 def test_what_is_kept_is_in_a_file_until_the_end(tmp_path):

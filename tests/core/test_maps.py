@@ -10,14 +10,14 @@ from random import Random
 import numpy as np
 import pytest
 from realmodel.core import Model, Project, Rock, Surface, UsageError, build, load_project
-from realmodel.core.cell_complex import CellComplex
-from realmodel.core.contours import checked_interval, contours
-from realmodel.core.geological_map import geological_map
-from realmodel.core.map_layer import MapLayer
+from realmodel.core.base.work import native_module
+from realmodel.core.cells.cell_complex import CellComplex
 from realmodel.core.readers import read_shapes
-from realmodel.core.readers.geojson import read_geojson
-from realmodel.core.surface_arrays import SurfaceArrays
-from realmodel.core.work import native_module
+from realmodel.core.readers.maps.geojson import read_geojson
+from realmodel.core.results.contours import checked_interval, contours
+from realmodel.core.results.geological_map import geological_map
+from realmodel.core.settings.map_layer import MapLayer
+from realmodel.core.surfaces.surface_arrays import SurfaceArrays
 from stacks.generate import random_stack
 from stacks.model_view import built
 from stacks.rock_masses import random_rock_masses

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plan_meshes import check_mesh, ring_area
 from realmodel.core import Cancelled, InputRefused, mesh_region, triangulate_polygon
-from realmodel.core.meshers import MESHERS
+from realmodel.core.settings.meshers import MESHERS
 
 SQUARE = np.array([[0, 0], [100, 0], [100, 100], [0, 100]], float)
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from realmodel.core import mis_ties
-from realmodel.core.mapped_arrays import MappedArrays, in_memory
-from realmodel.core.mis_ties import each_place_once, without_mis_ties
+from realmodel.core.base.mapped_arrays import MappedArrays, in_memory
+from realmodel.core.heights import mis_ties
+from realmodel.core.heights.mis_ties import each_place_once, without_mis_ties
 
 
 def as_they_are(points, is_once):

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from realmodel.core import missing_native
+from realmodel.core.base import missing_native
 
 MINOR = sys.version_info.minor
 VERSION = f"3.{MINOR}"
@@ -84,7 +84,7 @@ def test_core_can_be_imported_without_it(tmp_path):
         "import sys\n"
         "sys.modules['realmodel._native'] = None\n"  # importing it now raises ImportError
         "from realmodel.core import BuildFailed\n"
-        "from realmodel.core.work import native_module\n"
+        "from realmodel.core.base.work import native_module\n"
         "try:\n"
         "    native_module()\n"
         "except BuildFailed as failure:\n"

@@ -148,7 +148,7 @@ def test_a_model_that_cannot_be_written_leaves_the_old_case(model, tmp_path, mon
     case = tmp_path / "m.foam"
     model.save(case)
     before = (case / "constant/polyMesh/points").read_bytes()
-    monkeypatch.setattr("realmodel.core.exporters.openfoam._write_zones", lambda *_: 1 / 0)
+    monkeypatch.setattr("realmodel.core.exporters.solvers.openfoam._write_zones", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build(project(-3.0)).save(case)
     assert (case / "constant/polyMesh/points").read_bytes() == before

@@ -3,10 +3,10 @@
 
 import numpy as np
 import pytest
-from realmodel.core import layer_values
 from realmodel.core.drawing.drawing import Polygon, Text
 from realmodel.core.drawing.overlay import ColorKey, Eye, Shown, draw_overlay
 from realmodel.core.drawing.raster import rasterize
+from realmodel.core.results import layer_values
 
 SIZE = (900.0, 600.0)
 ORIGIN = np.array([3_431_000.0, 5_390_800.0, 100.0])

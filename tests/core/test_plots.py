@@ -7,8 +7,8 @@ from conftest import grid_surface
 from realmodel.core import Project, Rock, Surface, Variogram, build, cross_validate, interpolate, plots
 from realmodel.core.drawing.drawing import Dots, Line, Polygon, Text
 from realmodel.core.exporters.report import model_report
-from realmodel.core.surface_quality import surface_quality
-from realmodel.core.volume_uncertainty import volume_deviations
+from realmodel.core.results.surface_quality import surface_quality
+from realmodel.core.results.volume_uncertainty import volume_deviations
 
 RNG = np.random.default_rng(3)
 PLAN = RNG.random((90, 2)) * 100

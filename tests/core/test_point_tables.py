@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, PointFile, Project, Rock, Surface, build, load_project
-from realmodel.core.project import check_project
+from realmodel.core.project.project import check_project
 from realmodel.core.readers import read_point_file, read_points
-from realmodel.core.readers.points import read_point_rows
+from realmodel.core.readers.tables.points import read_point_rows
 
 POINTS = [[1.5, 2.25, 3.125], [4.0, 5.0, -6.0]]
 

@@ -7,10 +7,10 @@ import pytest
 from displaced_surfaces import Displacing, dome, height, leaning, level, points_and_sides
 from displaced_surfaces import built as built_with
 from realmodel.core import Fault, Project, Rock, Surface, build
-from realmodel.core.residuals import residuals
-from realmodel.core.structures.displacement import displacements
-from realmodel.core.structures.points_at_faults import point_sides
-from realmodel.core.work import run
+from realmodel.core.base.work import run
+from realmodel.core.results.residuals import residuals
+from realmodel.core.structures.sheets.displacement import displacements
+from realmodel.core.structures.sheets.points_at_faults import point_sides
 from structure_cases import plane_fault
 
 METHODS = ("kriging", "natural_neighbour", "dsi", "universal_kriging", "idw", "spline", "tin", "auto")

@@ -3,8 +3,9 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Project, Rock, Surface, build, polygon_mesh
-from realmodel.core.work import native_module
+from realmodel.core import Project, Rock, Surface, build
+from realmodel.core.base.work import native_module
+from realmodel.core.display import polygon_mesh
 
 ORIGIN = np.array([0.5, 0.25, -1.0])
 

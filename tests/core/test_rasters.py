@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from damages import damaged_bytes
 from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
+from realmodel.core.base.vendored import vendored
 from realmodel.core.readers import read_point_file
-from realmodel.core.readers.geotiff import read_geotiff
-from realmodel.core.readers.vendored import vendored
+from realmodel.core.readers.rasters.geotiff import read_geotiff
 from stacks import places
 
 HEAD = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\n"

@@ -16,9 +16,8 @@ import pytest
 from conftest import ROOT
 from large_files import BY_PLACE, FORMATS, MESHES, write_mesh, write_points
 from realmodel.core import InputRefused, MeshFile, OutputFailed, PointFile
-from realmodel.core.mapped_arrays import MappedArrays
-from realmodel.core.readers import read_mesh, read_point_file
-from realmodel.core.readers.text import (
+from realmodel.core.base.mapped_arrays import MappedArrays
+from realmodel.core.base.text import (
     FileBytes,
     content_of,
     encoding_of,
@@ -27,6 +26,7 @@ from realmodel.core.readers.text import (
     text_content,
     text_lines,
 )
+from realmodel.core.readers import read_mesh, read_point_file
 
 COMMON = f"""
 import json, resource, sys, tracemalloc
@@ -34,10 +34,10 @@ from pathlib import Path
 sys.path[:0] = {[str(ROOT / "addon"), str(Path(__file__).parent)]}
 from large_files import *
 from realmodel.core import PointFile, Surface
-from realmodel.core.mapped_arrays import MappedArrays, read_mapped
+from realmodel.core.base.mapped_arrays import MappedArrays, read_mapped
 from realmodel.core.readers import points as tables, read_point_file
 from realmodel.distributed.tile_inputs import _read
-from realmodel.core.surface_input import SurfaceInput
+from realmodel.core.surfaces.surface_input import SurfaceInput
 tables._MOST_THREADS = 1  # each has a piece of its own
 folder = Path(sys.argv[1])
 """
@@ -223,11 +223,11 @@ def test_memory_does_not_grow_with_the_file(tmp_path, name):
 
 
 DIVIDED = """
-from realmodel.core.local_heights import local_heights
-from realmodel.core.project import Surface
+from realmodel.core.surfaces.local_heights import local_heights
+from realmodel.core.project.project import Surface
 from realmodel.core.tiles.tile_model import write_windows, write_parts
 from realmodel.core.tiles.grid import tile_grid
-from realmodel.core.work import run
+from realmodel.core.base.work import run
 import numpy as np
 
 def peak(scale):
@@ -296,11 +296,11 @@ def test_a_raster_is_read_in_less_memory_than_its_points_take(tmp_path):
 
 SCATTERED = """
 from realmodel.core import BuildFailed
-from realmodel.core.local_heights import local_heights
-from realmodel.core.project import Surface
+from realmodel.core.surfaces.local_heights import local_heights
+from realmodel.core.project.project import Surface
 from realmodel.core.tiles.grid import tile_grid
 from realmodel.core.tiles.tile_model import PLAN, write_certain_heights, write_parts, write_windows
-from realmodel.core.work import run
+from realmodel.core.base.work import run
 from realmodel.core.heights import heights
 import numpy as np
 

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.project import check_project
-from realmodel.core.structures.closed_form import heights_at, nearest_side
-from realmodel.core.structures.triangles import crossing_pairs, pairs_at_planes
+from realmodel.core.base.triangles import crossing_pairs, pairs_at_planes
+from realmodel.core.project.project import check_project
+from realmodel.core.proof.closed_form import heights_at, nearest_side
 from structure_cases import closed_form_of, plane_fault, prepared
 
 

@@ -18,12 +18,12 @@ from realmodel.core import (
     load_project,
     mesh_region,
 )
-from realmodel.core.plan_input import read_rings
-from realmodel.core.planar_mesh import triangulate_rings
+from realmodel.core.base.vendored import vendored
+from realmodel.core.project.plan_input import read_rings
+from realmodel.core.project.region_rings import region_rings
 from realmodel.core.readers import read_region, read_shapes
-from realmodel.core.readers.vendored import vendored
-from realmodel.core.readers.wkt import parse_wkt
-from realmodel.core.region_rings import region_rings
+from realmodel.core.readers.maps.wkt import parse_wkt
+from realmodel.core.surfaces.planar_mesh import triangulate_rings
 from stacks import places
 
 try:

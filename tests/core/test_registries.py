@@ -11,10 +11,10 @@ from realmodel.core import InputRefused, Project, Rock, Surface, build, mesh_reg
 from realmodel.core.exporters import FORMATS
 from realmodel.core.exporters.meshes import MESH_FORMATS
 from realmodel.core.exporters.sections import SECTION_WRITERS
-from realmodel.core.meshers import MESHERS
-from realmodel.core.methods import METHODS, OPTIONS
-from realmodel.core.readers.mesh_file import read_mesh
-from realmodel.core.rules import RULES
+from realmodel.core.readers.meshes.mesh_file import read_mesh
+from realmodel.core.settings.meshers import MESHERS
+from realmodel.core.settings.methods import METHODS, OPTIONS
+from realmodel.core.settings.rules import RULES
 
 PLAN = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])

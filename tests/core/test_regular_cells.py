@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Body, Cancelled, PointFile, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core.base.vendored import vendored
 from realmodel.core.exporters import save_model
 from realmodel.core.readers import read_point_file
-from realmodel.core.readers.vendored import vendored
-from realmodel.core.regular_cells import plan_grids, regular_cells
+from realmodel.core.results.regular_cells import plan_grids, regular_cells
 
 WHY = "is not installed: scripts/test.sh installs it"
 
@@ -135,7 +135,7 @@ def test_ascii_grids_are_files_side_by_side(model, tmp_path):
     assert np.array_equal(top, grids.top)
     number = len(model.surface_names) - 1  # the youngest surface is the ground here
     vertices, triangles = model.surface(number)
-    from realmodel.core.work import native_module
+    from realmodel.core.base.work import native_module
 
     z = native_module().surface_heights(vertices, triangles, points[:, :2])
     assert points[:, 2] == pytest.approx(z, abs=1e-9)

@@ -141,7 +141,7 @@ def test_tsurf_has_an_object_for_each_block(model, folder):
 
 
 def test_every_triangle_of_a_block_has_an_area(model):
-    from realmodel.core.exporters.parts import model_parts
+    from realmodel.core.exporters.shapes.parts import model_parts
 
     for part in model_parts(model):
         a, b, c = part.vertices[part.triangles].transpose(1, 0, 2)

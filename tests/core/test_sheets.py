@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.structures.closed_form import heights_at, nearest_side
-from realmodel.core.structures.rock_structure import joined
+from realmodel.core.proof.closed_form import heights_at, nearest_side
+from realmodel.core.surfaces.rock_structure import joined
 from structure_cases import SQUARE, closed_form_of, plane_fault, prepared
 
 

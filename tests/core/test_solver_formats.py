@@ -11,7 +11,7 @@ import pytest
 from mixed_meshes import SETS, VOLUMES, layered_mesh, mixed_mesh
 from realmodel.core import BuildFailed, UsageError, build, load_project
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
-from realmodel.core.exporters.modflow import element_volumes
+from realmodel.core.exporters.solvers.modflow import element_volumes
 from realmodel.core.simulation import PolyhedralMesh, VolumeMesh
 from realmodel.core.simulation.element_faces import ElementFaces
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import BuildFailed, Fault, InputRefused
-from realmodel.core.mapped_arrays import write_mapped
-from realmodel.core.structures.sides import FaultShape
+from realmodel.core.base.mapped_arrays import write_mapped
+from realmodel.core.surfaces.sides import FaultShape
 from realmodel.distributed.stored_objects import read_object, write_object
 
 
@@ -68,7 +68,7 @@ def test_a_pickle_is_refused_and_not_run(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     "kind",
-    ["os:system", "Path", "Project", "PolyData", ".core.model:Model", "realmodel.core.Surface"],
+    ["os:system", "Path", "Project", "PolyData", ".core.model.model:Model", "realmodel.core.Surface"],
 )
 def test_only_classes_of_windows_are_made(kind, tmp_path):
     file = tmp_path / "object"

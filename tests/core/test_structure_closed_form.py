@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from realmodel.core.rules import RULES
-from realmodel.core.structures import closed_form as form
-from realmodel.core.structures.exact import orient2d, orient3d
-from realmodel.core.structures.sides import FaultShape, RockFaults
-from realmodel.core.structures.triangles import distances_of_pairs
+from realmodel.core.base.exact import orient2d, orient3d
+from realmodel.core.base.triangles import distances_of_pairs
+from realmodel.core.proof import closed_form as form
+from realmodel.core.settings.rules import RULES
+from realmodel.core.surfaces.sides import FaultShape, RockFaults
 
 BOX_TRIANGLES = np.array(
     [

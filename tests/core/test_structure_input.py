@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, load_project
-from realmodel.core.project import check_project
-from realmodel.core.project_writer import save_project
+from realmodel.core.base.work import run
+from realmodel.core.project.project import check_project
+from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_mesh
-from realmodel.core.structures.reading import read_structures
-from realmodel.core.work import run
+from realmodel.core.structures.shapes.reading import read_structures
 from structure_cases import plane_fault
 
 HEAD = """\

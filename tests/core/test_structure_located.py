@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build
-from realmodel.core.structures.located import OUTSIDE, Locator
+from realmodel.core.proof.located import OUTSIDE, Locator
 
 UP = np.nextafter(1.0, 2.0)
 

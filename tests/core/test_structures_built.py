@@ -23,13 +23,13 @@ from realmodel.core import (
     estimate,
 )
 from realmodel.core.exporters.report import model_report
-from realmodel.core.residuals import residuals
-from realmodel.core.rules import RULES
+from realmodel.core.proof.located import OUTSIDE, Locator
+from realmodel.core.proof.random_points import closed_forms
+from realmodel.core.results.residuals import residuals
+from realmodel.core.results.volume_uncertainty import volume_deviations
+from realmodel.core.settings.rules import RULES
 from realmodel.core.structures import setup
-from realmodel.core.structures.displacement import displacements
-from realmodel.core.structures.located import OUTSIDE, Locator
-from realmodel.core.structures.proof import closed_forms
-from realmodel.core.volume_uncertainty import volume_deviations
+from realmodel.core.structures.sheets.displacement import displacements
 from structure_cases import SQUARE, ball, box_body, plane_fault
 
 CHECK = Path(__file__).resolve().parents[3] / "shared" / "check"

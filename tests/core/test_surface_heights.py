@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, interpolate, load_project
-from realmodel.core import wrong_sides as wrong_side_module
 from realmodel.core.exporters.report import model_report
-from realmodel.core.rules import RULES
+from realmodel.core.settings.rules import RULES
+from realmodel.core.surfaces import wrong_sides as wrong_side_module
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
 CORNERS = np.array([[0, 0], [10, 0], [10, 10], [0, 10.0]])

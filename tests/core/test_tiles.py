@@ -25,11 +25,11 @@ from realmodel.core import (
     load_project,
     open_tiles,
 )
-from realmodel.core.local_heights import LocalHeights, local_surfaces
+from realmodel.core.base.work import native_module
+from realmodel.core.surfaces.local_heights import LocalHeights, local_surfaces
 from realmodel.core.tiles import grid as tile_grids
 from realmodel.core.tiles.grid import checked_size, clipped_region, part_of, tile_grid, triangles_by_tile
 from realmodel.core.tiles.windows import PointWindows
-from realmodel.core.work import native_module
 from realmodel.distributed import build as build_tiles
 from realmodel.distributed import run_folder, tile_folder
 from realmodel.distributed.workers import Workers

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
 from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
-from realmodel.core.cell_complex import ARRAYS
+from realmodel.core.cells.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
-from realmodel.core.validation import ValidationReport
+from realmodel.core.proof.validation import ValidationReport
 from stacks import places
 from stacks.generate import FAMILIES, random_stack
 from stacks.rock_masses import random_rock_masses

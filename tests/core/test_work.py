@@ -7,7 +7,7 @@ import time
 
 import pytest
 from realmodel.core import BuildFailed, Cancelled, InputRefused
-from realmodel.core.work import POLL_SECONDS, run, start
+from realmodel.core.base.work import POLL_SECONDS, run, start
 
 ENDLESS = 6000  # steps of 10 ms: a test that takes all of them has failed
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build, load_project
-from realmodel.core.rules import RULES
+from realmodel.core.settings.rules import RULES
 
 SAMPLES = Path(__file__).resolve().parents[2] / "blend_samples"
 SQUARE = [[0, 0], [100, 0], [100, 100], [0, 100]]

@@ -19,7 +19,7 @@ from made_projects import surface
 from realmodel.bl import viewports
 from realmodel.bl.display import preparing
 from realmodel.core import Library, Project, Property, Rock
-from realmodel.core.project_writer import save_project
+from realmodel.core.project.project_writer import save_project
 
 COLORS = {1: "#8a2be2", 2: "#e02020", 3: "#20a040"}
 GRID = {"east": 0.0, "north": 0.0, "x0": 0.0, "y0": 0.0, "width": 100.0, "depth": 80.0}

@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core.build import build
-from ..core.errors import InputRefused, UsageError
+from ..core.base.errors import InputRefused, UsageError
+from ..core.base.text import read_text
 from ..core.exporters import format_for, write_model
 from ..core.exporters.boreholes import borehole_writer
+from ..core.exporters.mesh_request import cleaned_line
 from ..core.exporters.sections import section_writer
-from ..core.point_file import MeshFile
-from ..core.project_file import load_project
+from ..core.model.build import build
+from ..core.model.section import Section
+from ..core.project.project_file import load_project
 from ..core.readers import MESH_ENDINGS, read_mesh
-from ..core.readers.text import read_text
-from ..core.section import Section
-from ..core.simulation.mesh_request import cleaned_line
+from ..core.settings.point_file import MeshFile
 
 Writer = Callable[[Path | str], Callable]
 

@@ -18,13 +18,13 @@ from ..core import (
     estimate,
     load_project,
 )
-from ..core.atomic import Outputs, make_folder
+from ..core.base.atomic import Outputs, make_folder
 from ..core.exporters import FORMATS, format_for, output_target, write_model
+from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
-from ..core.rock_input import with_arrays
-from ..core.simulation.mesh_request import MeshRequest, cleaned_line
-from ..core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
+from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
+from ..core.surfaces.rock_input import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
 from .probabilities import ProbabilityRequests

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.ensembles import PERCENTILES
-from ..core.erosion import Erosion
+from ..core.results.erosion import Erosion
 
 _HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
 _HEADINGS_OF_EROSION = ("eroded", "surface eroded")

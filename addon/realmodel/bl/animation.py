@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..core.schema import ROCK
+from ..core.settings.schema import ROCK
 from . import method_settings, picture, settings, versions
 from .viewports import view_rotation
 

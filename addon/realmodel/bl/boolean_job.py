@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..core import BuildFailed, InputRefused, work
-from ..core.booleans import SURFACES, intersect_within
-from ..core.mesh_parts import MeshParts, Operand, mesh_of_parts
+from ..core import BuildFailed, InputRefused
+from ..core.base import work
+from ..core.display.mesh_parts import MeshParts, Operand, mesh_of_parts
+from ..core.results.booleans import SURFACES, intersect_within
 from . import mesh_data, meshes, scene, shapes, versions
 from .thread_job import ThreadJob
 

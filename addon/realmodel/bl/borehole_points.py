@@ -5,8 +5,8 @@
 import numpy as np
 
 from ..core import PointFile
-from ..core.age_order import age_order
 from ..core.readers import read_point_file
+from ..core.surfaces.age_order import age_order
 from . import library_rows, project_settings, reading_text, settings, stored_arrays
 
 

@@ -7,7 +7,7 @@ import bpy
 
 from .. import preferences
 from ..core import BuildFailed, InputRefused, RealModelError, build
-from ..core.project import surface_item
+from ..core.project.project import surface_item
 from . import built_scene, meshes, project_settings, settings
 from .thread_job import ThreadJob
 from .threads import threads

@@ -12,12 +12,13 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..core import BuildFailed, polygon_mesh
-from ..core.assembly import build_stage
-from ..core.automatic_library import model_with_library
-from ..core.build_warning import BuildWarning
-from ..core.errors import place_text
-from ..core.units import length_text
+from ..core import BuildFailed
+from ..core.base.build_warning import BuildWarning
+from ..core.base.errors import place_text
+from ..core.base.units import length_text
+from ..core.cells.assembly import build_stage
+from ..core.display import polygon_mesh
+from ..core.results.automatic_library import model_with_library
 from . import (
     block_shapes,
     built_models,

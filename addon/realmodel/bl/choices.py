@@ -3,8 +3,8 @@
 file. Blender asks for them when such a field is edited, never while a panel is drawn."""
 
 from ..core import RealModelError
-from ..core.directions import COMPASS
 from ..core.readers import contents
+from ..core.settings.directions import COMPASS
 from . import caches, project_settings, reading_text, settings, stored_arrays
 
 _MOST_VALUES = 50

@@ -4,7 +4,7 @@
 import bpy
 
 from ..core import Library, Property
-from ..core.automatic_library import palette
+from ..core.results.automatic_library import palette
 from . import materials, settings
 
 _TEXTS = ("rock", "age", "structure", "description")

@@ -8,8 +8,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..core.atomic import Outputs
-from ..core.looks import LOOKS
+from ..core.base.atomic import Outputs
+from ..core.project.looks import LOOKS
 from . import looks, materials, versions
 
 LIBRARY = "RealModel Rock Looks"

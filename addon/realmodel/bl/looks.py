@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Procedural materials of rock, for Cycles and Eevee: nodes made from the recipes of realmodel.core.looks.
+"""Procedural materials of rock, for Cycles and Eevee: nodes made from the recipes of core.project.looks.
 
-Laminae follow the attributes of the blocks (realmodel.core.bedding); all other texture is of coordinates of
+Laminae follow the attributes of the blocks (core.display.bedding); all other texture is of coordinates of
 the model, so that it is continuous from block to block.
 
 Other programs should find the color of a material. Blender's exporters take the value of the shader's Base
@@ -13,8 +13,8 @@ Textures themselves have to be baked (scene_export.py).
 import bpy
 import numpy as np
 
-from ..core.library import AUTO_LOOK
-from ..core.looks import LOOKS, look_of
+from ..core.project.library import AUTO_LOOK
+from ..core.project.looks import LOOKS, look_of
 from . import library_rows, materials, meshes, versions
 from .display import explosion
 from .nodes import Nodes

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..core.mesh_parts import interpolated
+from ..core.display.mesh_parts import interpolated
 from . import versions
 
 # Of each type of attribute: the name of the value, its number of components, and their type.
@@ -72,7 +72,7 @@ def read(mesh, item):
 
 
 def write(mesh, parts, given):
-    """Writes to a new mesh the data that its parts (realmodel.core.mesh_parts.MeshParts) have from two meshes
+    """Writes to a new mesh the data that its parts (core.display.mesh_parts.MeshParts) have from two meshes
     with given layers. On common edges and vertices the first mesh counts. Returns the names of layers of the
     second that are left out because the first has another kind of that name, or Blender's limit is
     reached."""

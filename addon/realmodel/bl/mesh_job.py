@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh for simulation of the built model, made and written in a thread; the scene stays as it is."""
 
-from ..core.atomic import Outputs
+from ..core.base.atomic import Outputs
 from .thread_job import ThreadJob
 
 _SHARE = 0.9  # of the progress that making it takes

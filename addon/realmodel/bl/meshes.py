@@ -4,14 +4,14 @@
 import bpy
 import numpy as np
 
-from ..core.polygon_mesh import PolygonMesh
+from ..core.display.polygon_mesh import PolygonMesh
 from . import meshes_ahead, versions
 
 # Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
 FACE_SURFACE = "realmodel_surface"
 # Face attribute of blocks that faults divide: the number of the compartment that a face bounds
 FACE_COMPARTMENT = "realmodel_compartment"
-# Attributes of blocks (realmodel.core.bedding): kind, domain
+# Attributes of blocks (realmodel.core.display.bedding): kind, domain
 BEDDING = {
     "height": ("FLOAT", "CORNER"),
     "thickness": ("FLOAT", "CORNER"),
@@ -23,7 +23,7 @@ PREFIX = "realmodel_"
 
 
 def new_mesh(name, shape):
-    """A new mesh datablock, bpy.types.Mesh, of a realmodel.core.polygon_mesh.PolygonMesh, whose coordinates
+    """A new mesh datablock, bpy.types.Mesh, of a core.display.polygon_mesh.PolygonMesh, whose coordinates
     are offsets from the model origin. The surface that each polygon lies on becomes the face attribute
     `realmodel_surface`, the compartment that it bounds `realmodel_compartment`, and where corners lie in
     their layers those of BEDDING, with `realmodel_` before their names.

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts settings, by their declarations (core/setting.py), between the properties of a row and
+"""Converts settings, by their declarations (core/settings/setting.py), between the properties of a row and
 realmodel.core; also those of methods with their variograms."""
 
 import json
 
 import numpy as np
 
-from ..core.methods import METHODS, OPTIONS, STRUCTURE
-from ..core.setting import property_name, switch_name
+from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
+from ..core.settings.setting import property_name, switch_name
 from .settings import number, set_number
 
 _NAME_OR_NUMBER = ("surface", "direction")  # kinds of settings that are a text in the panel

@@ -2,8 +2,8 @@
 """References by name from settings and picks to surfaces, faults and rock masses: renaming a row updates
 them."""
 
-from ..core.methods import OPTIONS
-from ..core.setting import property_name
+from ..core.settings.methods import OPTIONS
+from ..core.settings.setting import property_name
 from . import borehole_picks, settings
 
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]

@@ -4,7 +4,7 @@
 from functools import lru_cache
 
 from ..core import BuildFailed
-from ..core.work import native_module
+from ..core.base.work import native_module
 
 
 @lru_cache(maxsize=1)

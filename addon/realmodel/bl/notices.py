@@ -4,8 +4,8 @@
 import re
 from pathlib import Path
 
-from ..core.errors import number_list
-from ..core.schema import BODY, FAULT, ROCK, SURFACE
+from ..core.base.errors import number_list
+from ..core.settings.schema import BODY, FAULT, ROCK, SURFACE
 
 # By the keys of project files: settings that the panel shows, and the labels of those of several parts.
 _SETTINGS = {key: setting for each in (BODY, FAULT, ROCK, SURFACE) for key, setting in each.items()}

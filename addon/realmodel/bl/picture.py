@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..core import polygon_mesh
+from ..core.display import polygon_mesh
 from . import block_shapes, exaggeration, materials, meshes, project_settings, settings, versions
 from .display import shown_models
 from .overlay import drawing_for, legend_share, rendered

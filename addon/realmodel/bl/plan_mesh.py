@@ -9,9 +9,9 @@ import math
 import numpy as np
 
 from ..core import InputRefused
-from ..core.mesh_sizes import AUTO
-from ..core.project import rock_item
-from ..core.schema import ROCK, SIZE
+from ..core.project.project import rock_item
+from ..core.settings.mesh_sizes import AUTO
+from ..core.settings.schema import ROCK, SIZE
 from . import method_settings, settings, shapes, stored_arrays
 
 KINDS = (  # each with the number by which Blender stores it

@@ -11,13 +11,13 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
-from ..core.automatic_library import with_library
-from ..core.methods import CONTINUATION
-from ..core.project import rock_item, surface_item
-from ..core.rock_input import read_rocks
-from ..core.schema import MESH_READING, READING, ROCK, SURFACE
-from ..core.structures.reading import read_structures
-from ..core.work import run
+from ..core.base.work import run
+from ..core.project.project import rock_item, surface_item
+from ..core.results.automatic_library import with_library
+from ..core.settings.methods import CONTINUATION
+from ..core.settings.schema import MESH_READING, READING, ROCK, SURFACE
+from ..core.structures.shapes.reading import read_structures
+from ..core.surfaces.rock_input import read_rocks
 from . import (
     borehole_picks,
     built_models,

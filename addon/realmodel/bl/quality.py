@@ -7,11 +7,11 @@ import bpy.utils.previews
 import numpy as np
 
 from ..core import Cancelled, InputRefused, RealModelError, plots
+from ..core.base.work import Job
 from ..core.drawing.glyphs import text_width
 from ..core.drawing.raster import rasterize
-from ..core.surface_quality import surface_quality
-from ..core.volume_uncertainty import volume_deviations
-from ..core.work import Job
+from ..core.results.surface_quality import surface_quality
+from ..core.results.volume_uncertainty import volume_deviations
 from . import caches, notices, settings, viewports
 from .display import shown_models
 from .threads import threads

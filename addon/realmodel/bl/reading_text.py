@@ -4,7 +4,7 @@
 import re
 
 from ..core import InputRefused
-from ..core.schema import MESH_READING, READING
+from ..core.settings.schema import MESH_READING, READING
 from . import method_settings
 
 _SEPARATORS = {"tab": "\t", "blank": " "}

@@ -6,9 +6,9 @@ import math
 import bpy
 
 from ..core import RealModelError
-from ..core.planar_mesh import triangulate_rings
+from ..core.project.region_rings import region_rings
 from ..core.readers import read_region
-from ..core.region_rings import region_rings
+from ..core.surfaces.planar_mesh import triangulate_rings
 from . import project_settings, settings, stored_arrays
 from .surface_figures import plan_area
 

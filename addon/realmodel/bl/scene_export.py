@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused
-from ..core.atomic import Outputs, writable_target
+from ..core.base.atomic import Outputs, writable_target
 from . import library_rows, looks, scene, settings, versions
 from .display import bodies
 

@@ -3,10 +3,11 @@
 
 import numpy as np
 
-from ..core import Body, Fault, Project, work
-from ..core.schema import BODY, FAULT
-from ..core.structures.entries import body_item, fault_item
-from ..core.structures.reading import read_structures
+from ..core import Body, Fault, Project
+from ..core.base import work
+from ..core.project.structure_entries import body_item, fault_item
+from ..core.settings.schema import BODY, FAULT
+from ..core.structures.shapes.reading import read_structures
 from . import method_settings, reading_text, settings, stored_arrays
 
 _FAULT_KEYS = ("youngest", "dies_out", "extend")

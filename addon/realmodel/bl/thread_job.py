@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Work in a thread while the main thread shows its progress."""
 
-from ..core import work
+from ..core.base import work
 from .threads import threads
 
 

@@ -12,8 +12,9 @@ scene's own model.
 import bpy
 import numpy as np
 
-from ..core import InputRefused, coarse_meshes, polygon_mesh
-from ..core.units import length_text
+from ..core import InputRefused
+from ..core.base.units import length_text
+from ..core.display import coarse_meshes, polygon_mesh
 from . import materials, meshes, scene
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, far_from

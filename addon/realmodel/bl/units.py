@@ -3,7 +3,7 @@
 
 import math
 
-from ..core.units import METERS, UNIT_NAMES
+from ..core.base.units import METERS, UNIT_NAMES
 from . import results
 
 ITEMS = tuple((unit, unit, UNIT_NAMES[unit]) for unit in METERS)  # of a menu

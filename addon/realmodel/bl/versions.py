@@ -14,7 +14,7 @@ from . import mesh_memory
 def fill_mesh(mesh, shape):
     """Give an empty mesh its vertices and polygons.
 
-    mesh: bpy.types.Mesh. shape: realmodel.core.polygon_mesh.PolygonMesh; edges that it does not have are
+    mesh: bpy.types.Mesh. shape: core.display.polygon_mesh.PolygonMesh; edges that it does not have are
     found by Blender, which takes ten times as long as all the rest.
 
     Polygons are flat shaded unless the shape is smooth: strata break along their edges, and smooth shading,

@@ -3,7 +3,7 @@
 
 Exposed faces (ground and walls) are worn: edges are rounded, soft rock recedes behind hard rock, layer by
 layer, and grass and scree lie on level ground. The nodes use the attributes of blocks
-(realmodel.core.bedding). Noise is of coordinates of the model, so neighbors of the same hardness still meet.
+(core.display.bedding). Noise is of coordinates of the model, so neighbors of the same hardness still meet.
 """
 
 import math
@@ -11,7 +11,7 @@ import math
 import bpy
 import numpy as np
 
-from ..core.looks import LOOKS
+from ..core.project.looks import LOOKS
 from . import library_rows, looks, materials, meshes, versions
 from .nodes import Nodes
 

@@ -1,15 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RealModel without Blender: builds a model of polyhedral cells from a project, and writes it to files."""
 
-from .blocks import Block, BlockBoundary
-from .booleans import Intersection, intersect
-from .boreholes import Boreholes
-from .build import build
-from .build_warning import BuildWarning
-from .cross_validation import CrossValidation, cross_validate
-from .cutting import Cut
-from .erosion import Erosion
-from .errors import (
+from .base.build_warning import BuildWarning
+from .base.errors import (
     BuildFailed,
     Cancelled,
     InputRefused,
@@ -18,23 +11,30 @@ from .errors import (
     RealModelError,
     UsageError,
 )
-from .estimate import Estimate, estimate
+from .cells.blocks import Block, BlockBoundary
 from .heights import Interpolation
-from .interpolation import interpolate
-from .library import Library, Property, load_library
-from .map_layer import MapLayer
-from .model import Model
-from .planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
-from .point_file import MeshFile, PointFile
-from .project import Project, Rock, Surface
-from .project_file import load_project
-from .section import Fence, Section
+from .heights.cross_validation import CrossValidation, cross_validate
+from .heights.interpolate import interpolate
+from .model.build import build
+from .model.cutting import Cut
+from .model.estimate import Estimate, estimate
+from .model.model import Model
+from .model.section import Fence, Section
+from .model.surface_set import SurfaceSet, build_surfaces
+from .project.library import Library, Property, load_library
+from .project.project import Project, Rock, Surface
+from .project.project_file import load_project
+from .project.structure_entries import Body, Fault
+from .proof.validation import ValidationReport
+from .results.booleans import Intersection, intersect
+from .results.erosion import Erosion
+from .settings.boreholes import Boreholes
+from .settings.map_layer import MapLayer
+from .settings.point_file import MeshFile, PointFile
+from .settings.variogram import Structure, Variogram
 from .simulation import SimulationMesh
-from .structures.entries import Body, Fault
-from .surface_set import SurfaceSet, build_surfaces
+from .surfaces.planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
 from .tiles import Tile, TiledModel, open_tiles
-from .validation import ValidationReport
-from .variogram import Structure, Variogram
 
 __all__ = [
     "Block",

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cross_validation import CrossValidation
+from .base.units import METERS, length_text, number_text
 from .drawing import Drawing
 from .drawing.charts import LINE, Axes, left_margin
 from .drawing.drawing import BLACK, GRAY
-from .units import METERS, length_text, number_text
-from .variogram import VARIOGRAMS, Variogram
+from .heights.cross_validation import CrossValidation
+from .settings.variogram import VARIOGRAMS, Variogram
 
 __all__ = ["cross_validation", "mesh_quality", "smallest_angles", "variogram"]
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..core import OutputFailed, UsageError, build
-from ..core.atomic import Outputs
+from ..core.base.atomic import Outputs
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble

@@ -11,19 +11,19 @@ from pathlib import Path
 import numpy as np
 
 from ..core import BuildFailed, BuildWarning
-from ..core.assembly import list_blocks
-from ..core.atomic import Outputs
-from ..core.cell_complex import CellComplex
-from ..core.errors import place_text
-from ..core.mapped_arrays import MappedArrays
+from ..core.base.atomic import Outputs
+from ..core.base.errors import place_text
+from ..core.base.mapped_arrays import MappedArrays
+from ..core.base.work import Work, native_module, run
+from ..core.cells.assembly import list_blocks
+from ..core.cells.cell_complex import CellComplex
 from ..core.structures.setup import structured_inputs
-from ..core.structures.windows import Window, Windows
 from ..core.tiles import TiledModel
 from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.faulted_tile import Whole, build_faulted_tile
+from ..core.tiles.faulted_windows import Window, Windows
 from ..core.tiles.owned_cells import Seam
 from ..core.tiles.tile_model import Frame, Name, read_arrays, without_shapes
-from ..core.work import Work, native_module, run
 from .run_folder import (
     Parts,
     Store,

@@ -16,20 +16,20 @@ from pathlib import Path
 import numpy as np
 
 from ..core import BuildFailed, OutputFailed, UsageError
-from ..core.atomic import Outputs
-from ..core.blocks import Block
+from ..core.base.atomic import Outputs
+from ..core.base.mapped_arrays import MappedArrays
+from ..core.base.work import wait_for_stopped
+from ..core.cells.blocks import Block
+from ..core.exporters.encodings.vtk_xml import write_pieces
 from ..core.exporters.npz import write_arrays
-from ..core.exporters.vtk_xml import write_pieces
-from ..core.exporters.vtu import write_vtu
-from ..core.mapped_arrays import MappedArrays
-from ..core.model import Model
+from ..core.exporters.solvers.vtu import write_vtu
+from ..core.model.model import Model
+from ..core.proof.validation import PLACES_OF_REPORT
 from ..core.simulation import PolyhedralMesh
 from ..core.tiles.catalog import CATALOG, INDEX, TILES, Catalog, TileEntry, read_catalog, write_catalog
 from ..core.tiles.settling import Box
 from ..core.tiles.tile_model import Frame, Name, write_model
 from ..core.tiles.tiled_model import TiledModel, file_digest, tiled_model
-from ..core.validation import PLACES_OF_REPORT
-from ..core.work import wait_for_stopped
 
 RUN = "run"  # what only a run needs, in the folder
 _DIGEST = "digest"  # in there: of all that the result depends on

@@ -12,13 +12,13 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ..core import Body, BuildFailed, BuildWarning, Fault, InputRefused, Rock, Surface
-from ..core.mapped_arrays import read_mapped, write_mapped
-from ..core.rock_input import RockInput
-from ..core.structures.parts import Structures
-from ..core.structures.reach import Reach
-from ..core.structures.rock_structure import RockStructure
-from ..core.structures.sides import FaultShape, RockFaults
-from ..core.structures.windows import Window
+from ..core.base.mapped_arrays import read_mapped, write_mapped
+from ..core.cells.reach import Reach
+from ..core.structures.parts.parts import Structures
+from ..core.surfaces.rock_input import RockInput
+from ..core.surfaces.rock_structure import RockStructure
+from ..core.surfaces.sides import FaultShape, RockFaults
+from ..core.tiles.faulted_windows import Window
 
 _STORED: tuple[type, ...] = (
     *(Window, RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body),

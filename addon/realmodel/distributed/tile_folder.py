@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from ..core import BuildFailed, BuildWarning
-from ..core.atomic import Outputs
-from ..core.build_options import check_cells
-from ..core.errors import place_text
-from ..core.local_heights import PartHeights
-from ..core.mapped_arrays import read_mapped, write_mapped
+from ..core.base.atomic import Outputs
+from ..core.base.errors import place_text
+from ..core.base.mapped_arrays import read_mapped, write_mapped
+from ..core.base.work import run
+from ..core.project.build_options import check_cells
+from ..core.surfaces.local_heights import PartHeights
+from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
 from ..core.tiles.borders import (
     OPPOSITE,
@@ -40,8 +42,6 @@ from ..core.tiles.tile_model import (
     read_arrays,
     tile_arrays,
 )
-from ..core.work import run
-from ..core.wrong_sides import WrongPoints
 from .faulted_folder import build_faulted
 from .run_folder import (
     Parts,

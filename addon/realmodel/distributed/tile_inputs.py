@@ -15,12 +15,14 @@ from pathlib import Path
 import numpy as np
 
 from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
-from ..core.local_heights import LocalHeights, linked, local_heights, local_surfaces
-from ..core.mapped_arrays import MappedArrays
-from ..core.project import surface_item
-from ..core.rock_input import RockInput
-from ..core.surface_heights import interpolation_order
-from ..core.surface_input import ReadSurface, SurfaceInput
+from ..core.base.mapped_arrays import MappedArrays
+from ..core.base.work import Work, native_module, run
+from ..core.project.project import surface_item
+from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
+from ..core.surfaces.rock_input import RockInput
+from ..core.surfaces.surface_heights import interpolation_order
+from ..core.surfaces.surface_input import ReadSurface, SurfaceInput
+from ..core.surfaces.wrong_sides import kept_off
 from ..core.tiles.grid import TileGrid, tile_grid
 from ..core.tiles.settling import Box
 from ..core.tiles.tile_model import (
@@ -34,8 +36,6 @@ from ..core.tiles.tile_model import (
     write_parts,
     write_windows,
 )
-from ..core.work import Work, native_module, run
-from ..core.wrong_sides import kept_off
 from .workers import Workers
 
 _TILES_AT_ONCE = 16  # of which a worker makes the heights of a surface

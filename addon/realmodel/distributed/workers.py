@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ..core import Cancelled, UsageError
-from ..core.work import native_module
+from ..core.base.work import native_module
 
 _POLL_SECONDS = 0.2
 _FETCH_SECONDS = 120.0  # for a result, before it counts as lost: its task is done again

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty
 
 from ..bl.boolean_job import DIVIDE, OPERATIONS, BooleanJob
 from ..core import InputRefused
-from ..core.errors import number_list
+from ..core.base.errors import number_list
 from .background import InBackground
 from .reporting import not_building
 

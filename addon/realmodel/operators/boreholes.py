@@ -7,10 +7,10 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
 from ..core import InputRefused
-from ..core.boreholes import COLUMNS, Boreholes
-from ..core.point_file import ReadingRefused
 from ..core.readers import TABLE_ENDINGS, read_boreholes
-from ..core.schema import READING
+from ..core.settings.boreholes import COLUMNS, Boreholes
+from ..core.settings.point_file import ReadingRefused
+from ..core.settings.schema import READING
 from ..props_schema import items
 from .imports import arrived
 from .reporting import Reporting, chosen_path, require_file

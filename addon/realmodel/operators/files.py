@@ -19,11 +19,11 @@ from ..bl.display import shown_models
 from ..bl.export_job import ExportJob
 from ..bl.mesh_job import MeshJob
 from ..core import InputRefused, UsageError
-from ..core.atomic import Outputs
+from ..core.base.atomic import Outputs
 from ..core.exporters import FORMATS
+from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import write_report
-from ..core.simulation.mesh_request import MeshRequest
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, not_building, object_mode
 

@@ -23,9 +23,7 @@ from ..bl import (
     viewports,
 )
 from ..core import InputRefused, MeshFile, PointFile
-from ..core.age_order import age_order
-from ..core.errors import HeightsMissing
-from ..core.point_file import ReadingRefused
+from ..core.base.errors import HeightsMissing
 from ..core.readers import (
     MAP_ENDINGS,
     MESH_ENDINGS,
@@ -37,6 +35,8 @@ from ..core.readers import (
     read_point_file,
 )
 from ..core.readers.contents import column_values
+from ..core.settings.point_file import ReadingRefused
+from ..core.surfaces.age_order import age_order
 from .reporting import Reporting, require_file
 from .rocks import add_rock
 from .start import invoke

@@ -7,7 +7,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..bl import display, library_rows, live, looks, properties_of_blocks, settings
 from ..core import Property, load_library
-from ..core.project_writer import save_library
+from ..core.project.project_writer import save_library
 from .reporting import Reporting, a_library, chosen_path, selected_blocks
 
 

@@ -6,7 +6,7 @@ from bpy.props import IntProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import live, plan_mesh, settings
-from ..core.plan_input import read_constraints
+from ..core.project.plan_input import read_constraints
 from ..core.readers import MAP_ENDINGS
 from .reporting import (
     Reporting,

@@ -8,7 +8,7 @@ from mathutils import Quaternion, Vector
 from ..bl import display, exaggeration, project_settings, settings
 from ..bl.display import cuts, sections, visible
 from ..core import InputRefused, UsageError
-from ..core.section_drawing import MOST_EXAGGERATION
+from ..core.results.section_drawing import MOST_EXAGGERATION
 from .files import SECTIONS, Exporting, format_filter, format_menu
 from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
 

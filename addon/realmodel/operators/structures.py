@@ -10,12 +10,12 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
 from ..core import InputRefused, MapLayer, MeshFile
-from ..core.errors import HeightsMissing
-from ..core.point_file import PointFile
+from ..core.base.errors import HeightsMissing
+from ..core.base.triangles import open_edges
 from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh, read_shapes
 from ..core.readers.fault_sticks import read_fault_points
-from ..core.structures.traces import VERTICAL
-from ..core.structures.triangles import open_edges
+from ..core.settings.point_file import PointFile
+from ..core.structures.shapes.traces import VERTICAL
 from .imports import arrived
 from .reporting import (
     Reporting,

@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..bl import borehole_picks, built_scene, data_objects, library_rows, live, settings
-from ..core.age_order import age_order
+from ..core.surfaces.age_order import age_order
 from .reporting import Reporting, a_surface
 
 

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import method_settings, plan_mesh, region_size, settings
-from ..core.schema import ROCK, SIZE
+from ..core.settings.schema import ROCK, SIZE
 from . import setting_rows
 from .panel import OfAModel, TabPanel, file_field, hint
 

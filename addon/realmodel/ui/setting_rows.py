@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of settings, from their declarations (core/setting.py)."""
+"""The rows of settings, from their declarations (core/settings/setting.py)."""
 
-from ..core.setting import property_name, switch_name
+from ..core.settings.setting import property_name, switch_name
 
 
 def draw(layout, row, key, settings):

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import project_settings, settings
-from ..core.schema import BODY, FAULT, MESH_READING, READING
+from ..core.settings.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
 from .lists import draw_swatch
 from .panel import OfAModel, TabPanel, file_field, hint

@@ -4,9 +4,9 @@
 import bpy
 
 from ..bl import library_rows, method_settings, project_settings, settings, surface_figures, units
-from ..core.methods import METHODS, OPTIONS, STRUCTURE
-from ..core.schema import MESH_READING, READING, SURFACE
-from ..core.variogram import VARIOGRAMS
+from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
+from ..core.settings.schema import MESH_READING, READING, SURFACE
+from ..core.settings.variogram import VARIOGRAMS
 from . import setting_rows
 from .panel import OfAModel, TabPanel, file_field, hint, wrapped
 

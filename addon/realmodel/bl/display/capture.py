@@ -7,7 +7,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...core import InputRefused, OutputFailed
-from ...core.atomic import Outputs
+from ...core.base.atomic import Outputs
 from .. import batch, picture, viewports
 from ..overlay import WIDTH
 from ..overlay import viewport as overlay

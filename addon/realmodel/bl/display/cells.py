@@ -4,7 +4,7 @@ parts of the blocks in each compartment, which can move apart."""
 
 import json
 
-from ...core import polygon_mesh
+from ...core.display import polygon_mesh
 from .. import block_shapes, caches, compartments, project_settings
 from ..threads import threads
 from . import cuts, shown_models

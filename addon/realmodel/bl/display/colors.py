@@ -10,8 +10,8 @@ import colorsys
 import bpy
 import numpy as np
 
-from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
+from ...core.results import layer_values
 from .. import compartments, library_rows, materials, settings, viewports
 from . import bodies, modes, shades, stages
 

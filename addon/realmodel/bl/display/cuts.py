@@ -10,8 +10,10 @@ import json
 import bpy
 import numpy as np
 
-from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh, work
-from ...core.polygon_mesh import PolygonMesh
+from ...core import Cancelled, InputRefused, RealModelError
+from ...core.base import work
+from ...core.display import polygon_mesh
+from ...core.display.polygon_mesh import PolygonMesh
 from .. import (
     block_shapes,
     caches,

@@ -7,10 +7,10 @@ import json
 import bpy
 import numpy as np
 
-from ...core import layer_values
+from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
-from ...core.polygon_mesh import PolygonMesh
+from ...core.results import layer_values
 from .. import library_rows, meshes, project_settings, scene, stored_arrays
 from ..origin import offsets_from
 from . import bodies, colors, sections

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ...core.polygon_mesh import PolygonMesh
+from ...core.display.polygon_mesh import PolygonMesh
 
 _OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])

@@ -12,7 +12,8 @@ BLOCKS      the blocks, or their cut halves                Blender
 
 import json
 
-from ...core import RealModelError, polygon_mesh
+from ...core import RealModelError
+from ...core.display import polygon_mesh
 from .. import compartments, project_settings, settings
 from . import bodies, cells, cuts, shown_models, stages
 from .visible import WANTED, want

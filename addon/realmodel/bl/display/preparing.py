@@ -4,7 +4,8 @@ the cells of a large model. Then the view is updated again and finds them in the
 
 import bpy
 
-from ...core import Cancelled, RealModelError, work
+from ...core import Cancelled, RealModelError
+from ...core.base import work
 from .. import meshes, viewports
 from ..debounce import DebouncedJob
 from . import cells, modes, replacing, shown_models

@@ -6,9 +6,9 @@ import json
 import numpy as np
 from mathutils.kdtree import KDTree
 
-from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
-from ...core.residuals import residuals
+from ...core.results import layer_values
+from ...core.results.residuals import residuals
 from .. import exaggeration, library_rows, meshes, project_settings
 from . import bodies, colors, explosion, marks, shown_models
 

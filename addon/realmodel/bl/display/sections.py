@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 
 from ...core import InputRefused
-from ...core.polygon_mesh import PolygonMesh
-from ...core.section_drawing import flattened, is_vertical
+from ...core.display.polygon_mesh import PolygonMesh
+from ...core.results.section_drawing import flattened, is_vertical
 from .. import library_rows, meshes, project_settings, scene, shapes
 from ..origin import offsets_from
 from . import bodies, explosion, shown_models

@@ -10,7 +10,7 @@ import colorsys
 import bpy
 import numpy as np
 
-from ...core import layer_values
+from ...core.results import layer_values
 from .. import materials, meshes, project_settings, settings, shapes, uncertainty, versions
 from . import bodies
 

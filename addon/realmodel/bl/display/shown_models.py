@@ -5,8 +5,9 @@ A stage costs about as much as building the surfaces up to it with whole blocks 
 blocks that differ are transferred to Blender.
 """
 
-from ...core import build, polygon_mesh
-from ...core.assembly import build_stage
+from ...core import build
+from ...core.cells.assembly import build_stage
+from ...core.display import polygon_mesh
 from .. import block_shapes, built_models, caches, compartments, project_settings, settings, viewports
 from ..threads import threads
 

@@ -8,7 +8,7 @@ mesh; one that is eroded later gets an object while it is shown.
 import bpy
 import numpy as np
 
-from ...core.polygon_mesh import PolygonMesh
+from ...core.display.polygon_mesh import PolygonMesh
 from .. import library_rows, meshes, scene
 from . import replacing, shown_models
 

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings for charts, sections, and legends, and the files that they are written to."""
+"""Drawings for charts, sections, and legends, and the files that they are written to.
+
+Comes in: polygons, lines, dots and texts in points. Goes out: pixels, or files in SVG, DXF and PNG.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from ..atomic import Outputs
-from ..errors import UsageError
+from ..base.atomic import Outputs
+from ..base.errors import UsageError
 from .drawing import Drawing
 from .dxf import write_dxf
 from .png import write_png

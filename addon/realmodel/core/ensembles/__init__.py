@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ensembles: many models of one project, and the probabilities of blocks when heights are uncertain."""
+"""Ensembles: many models of one project, and the probabilities of blocks when heights are uncertain.
+
+Comes in: a `Model`, a number of realizations and a seed. Goes out: volumes of each realization, statistics of
+heights, probabilities of blocks at samples, and their files.
+"""
 
 from .ensemble import PERCENTILES, Ensemble, ensemble
 from .places import Probabilities, blocks_at

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..build import build
-from ..errors import UsageError
-from ..model import Model
-from ..project import Project
-from ..work import Cancel, Progress, Work, run
+from ..base.errors import UsageError
+from ..base.work import Cancel, Progress, Work, run
+from ..model.build import build
+from ..model.model import Model
+from ..project.project import Project
 from .places import Probabilities, blocks_at
 from .realization import Realizer
 from .surface_heights import differences, heights

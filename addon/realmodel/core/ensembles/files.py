@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atomic import Outputs
+from ..base.atomic import Outputs
 from ..exporters.npz import texts, write_arrays
 from ..exporters.report import versions
 from .ensemble import PERCENTILES, Ensemble

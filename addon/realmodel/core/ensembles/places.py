@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..structures.closed_form import AIR, history
-from ..structures.proof import closed_forms
-from ..work import native_module
+from ..base.work import native_module
+from ..proof.closed_form import AIR, history
+from ..proof.random_points import closed_forms
 
 
 def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:

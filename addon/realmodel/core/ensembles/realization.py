@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..assembly import assemble, intersect
-from ..errors import InputRefused
-from ..model import Model
-from ..rock_input import RockInput, interpolate_rock
+from ..base.errors import InputRefused
+from ..base.work import Cancel, Progress, Work, run
+from ..cells.assembly import assemble, intersect
+from ..heights.draws import Draw
+from ..heights.turning_bands import Frame, Noise
+from ..model.model import Model
 from ..structures.setup import make_structures
-from ..work import Cancel, Progress, Work, run
-from .draws import Draw
-from .turning_bands import Frame, Noise
+from ..surfaces.rock_input import RockInput, interpolate_rock
 
 _INTERPOLATED = 0.5  # of the time
 

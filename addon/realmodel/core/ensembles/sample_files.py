@@ -14,12 +14,12 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
+from ..exporters.encodings.text_rows import write_rows
+from ..exporters.encodings.vtk_xml import write_grid, write_image
 from ..exporters.endings import by_ending
 from ..exporters.npz import texts, write_arrays
-from ..exporters.parts import distinct_names
-from ..exporters.text_rows import write_rows
-from ..exporters.vtk_xml import write_grid, write_image
-from ..section_drawing import draw_section
+from ..exporters.shapes.parts import distinct_names
+from ..results.section_drawing import draw_section
 from .places import Probabilities
 from .samples import GridSamples, Samples, SectionSamples
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..algebra import dot
-from ..errors import UsageError
-from ..regular_cells import checked_size, frame_of
-from ..section import Fence, Section
-from ..section_drawing import directions, flattened, is_vertical, plane_of
+from ..base.algebra import dot
+from ..base.errors import UsageError
+from ..model.section import Fence, Section
+from ..results.regular_cells import checked_size, frame_of
+from ..results.section_drawing import directions, flattened, is_vertical, plane_of
 
 MOST_PLACES = 20_000_000  # times blocks
 _COLUMNS, _ROWS = 200, 100  # of a section, where no size is given

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model import Model
-from ..rock_input import RockInput
-from ..structures.rock_structure import Triangulation
-from ..work import native_module
+from ..base.work import native_module
+from ..model.model import Model
+from ..surfaces.rock_input import RockInput
+from ..surfaces.rock_structure import Triangulation
 
 
 def heights(model: Model) -> list[np.ndarray | None]:

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that a model is written to, by their ending: one registry (docs/dev/extending.md)."""
+"""Files that a model is written to, by their ending: one registry (docs/dev/extending.md).
+
+Comes in: `ModelData`, a mesh for simulation, surfaces or a section, and a path. Goes out: a file that appears
+whole or not at all, with the same bytes for the same model.
+"""
 
 from __future__ import annotations
 
@@ -7,21 +11,21 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..atomic import Outputs, writable_folder, writable_target
-from ..errors import UsageError
+from ..base.atomic import Outputs, writable_folder, writable_target
+from ..base.errors import UsageError
 from ..simulation import PolyhedralMesh
-from .dxf import write_dxf
 from .endings import by_ending
-from .gltf import write_glb
 from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
-from .obj import write_mtl, write_obj
-from .parts import model_parts
-from .ply import write_ply
 from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
-from .stl import write_stl
-from .tsurf import write_tsurf
+from .shapes.dxf import write_dxf
+from .shapes.gltf import write_glb
+from .shapes.obj import write_mtl, write_obj
+from .shapes.parts import model_parts
+from .shapes.ply import write_ply
+from .shapes.stl import write_stl
+from .shapes.tsurf import write_tsurf
 
 Step = Callable[[float], None]
 

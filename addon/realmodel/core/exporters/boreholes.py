@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
-from ..model_boreholes import Interval
+from ..results.model_boreholes import Interval
 from .endings import by_ending
 
 

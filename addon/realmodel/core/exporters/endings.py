@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from ..errors import UsageError
+from ..base.errors import UsageError
 
 Entry = TypeVar("Entry")
 

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atomic import Outputs
-from ..contours import contours
-from ..errors import OutputFailed
-from ..geological_map import geological_map, ground_of
+from ..base.atomic import Outputs
+from ..base.errors import OutputFailed
+from ..results.contours import contours
+from ..results.geological_map import geological_map, ground_of
 
 AREAS, CONTOURS = "geology", "contours"
 _TOP = "top of the model"

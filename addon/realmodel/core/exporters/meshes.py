@@ -7,21 +7,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..atomic import Outputs, writable_folder, writable_target
-from ..errors import UsageError
+from ..base.atomic import Outputs, writable_folder, writable_target
+from ..base.errors import UsageError
+from ..base.units import MODEL_UNIT
 from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.element_faces import ElementFaces
-from ..units import MODEL_UNIT
-from .cdb import write_cdb
 from .endings import by_ending
-from .exodus import write_exodus
-from .f3grid import write_f3grid
-from .gmsh import write_msh
-from .inp import write_inp
-from .modflow import write_disu, write_disv
-from .openfoam import POLY_MESH, write_openfoam
-from .vtu import write_vtu
-from .vtu_elements import write_vtu_elements
+from .solvers.cdb import write_cdb
+from .solvers.exodus import write_exodus
+from .solvers.f3grid import write_f3grid
+from .solvers.gmsh import write_msh
+from .solvers.inp import write_inp
+from .solvers.modflow import write_disu, write_disv
+from .solvers.openfoam import POLY_MESH, write_openfoam
+from .solvers.vtu import write_vtu
+from .solvers.vtu_elements import write_vtu_elements
 
 Mesh = VolumeMesh | PolyhedralMesh
 Step = Callable[[float], None]

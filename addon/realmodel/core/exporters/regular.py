@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atomic import Outputs
-from ..regular_cells import plan_grids, regular_cells
+from ..base.atomic import Outputs
+from ..results.regular_cells import plan_grids, regular_cells
 from ..simulation.patches import solver_names
-from .parts import distinct_names
-from .text_rows import write_rows
-from .vtk_xml import write_image
+from .encodings.text_rows import write_rows
+from .encodings.vtk_xml import write_image
+from .shapes.parts import distinct_names
 
 _NO_HEIGHT = -9999.0
 _TIFF_TYPES = {"s": 2, "H": 3, "I": 4, "d": 12, "Q": 16}

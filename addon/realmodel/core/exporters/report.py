@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..erosion import Erosion
+from ..base.work import native_module
+from ..proof.validation import PLACES_OF_REPORT, ValidationReport
+from ..results.erosion import Erosion
+from ..results.volume_uncertainty import volume_deviations
 from ..simulation import cleaned_entry, mesh_entry
-from ..structures.displacement import displacements
-from ..surface_heights import used_vertices
-from ..validation import PLACES_OF_REPORT, ValidationReport
-from ..volume_uncertainty import volume_deviations
-from ..work import native_module
+from ..structures.sheets.displacement import displacements
+from ..surfaces.surface_heights import used_vertices
 
 SCHEMA = 1
 

@@ -20,13 +20,13 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
-from ..section_data import FenceData
-from ..section_drawing import draw_section
+from ..results.section_data import FenceData
+from ..results.section_drawing import draw_section
+from .encodings.vtk_xml import write_grid
 from .endings import by_ending
 from .npz import write_arrays
-from .part_formats import part_writers
-from .parts import section_parts
-from .vtk_xml import write_grid
+from .shapes.part_formats import part_writers
+from .shapes.parts import section_parts
 
 _POLYGON = 7
 

@@ -10,13 +10,13 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ..atomic import Outputs
-from ..errors import UsageError
+from ..base.atomic import Outputs
+from ..base.errors import UsageError
+from .encodings.vtk_xml import write_grid
 from .npz import joined_attributes, texts, write_arrays
-from .part_formats import part_writers
-from .parts import surface_parts
 from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries
-from .vtk_xml import write_grid
+from .shapes.part_formats import part_writers
+from .shapes.parts import surface_parts
 
 _TRIANGLE = 5  # VTK's number
 ATTRIBUTES = ("height", "variance", "distance")

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The implementations of the methods: `heights` runs the requested one on points, nodes and options."""
+"""Methods that give heights: `heights` runs the requested one.
+
+Comes in: points (N, 3), nodes (M, 2), a method with its options. Goes out: an `Interpolation`: heights of the
+nodes, with variances and warnings; or heights drawn at random that the points allow.
+"""
 
 from .interpolation import Interpolation
 from .run import chosen, heights, left_out_heights

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..algebra import principal_axes
-from ..methods import checked_options
+from ..base.algebra import principal_axes
+from ..settings.methods import checked_options
 from . import from_neighbours
 from .interpolation import Result, Task, run_method
 

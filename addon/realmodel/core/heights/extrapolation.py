@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..mapped_arrays import in_pieces
-from ..work import native_module
+from ..base.mapped_arrays import in_pieces
+from ..base.work import native_module
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 

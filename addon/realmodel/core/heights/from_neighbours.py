@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
-from ..variogram import NO_ANISOTROPY, Variogram, fit_warnings
-from ..work import native_module
+from ..base.work import native_module
+from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
+from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
 from .interpolation import Result, Task
 
 

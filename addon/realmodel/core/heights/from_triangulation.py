@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..work import native_module
+from ..base.work import native_module
 from .extrapolation import outside_hull
 from .interpolation import Result, Task
 

@@ -9,9 +9,9 @@ from importlib import import_module
 
 import numpy as np
 
-from ..methods import METHODS
-from ..variogram import Variogram
-from ..work import Work
+from ..base.work import Work
+from ..settings.methods import METHODS
+from ..settings.variogram import Variogram
 
 
 @dataclass(frozen=True)

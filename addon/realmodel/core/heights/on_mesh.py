@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import InputRefused, UsageError, place_text
-from ..work import native_module
+from ..base.errors import InputRefused, UsageError, place_text
+from ..base.work import native_module
 from .interpolation import Result, Task
 from .surface_reference import heights_of
 

@@ -11,10 +11,10 @@ from itertools import chain
 
 import numpy as np
 
-from ..elementary import atan2, cos, sin
-from ..errors import InputRefused
-from ..mapped_arrays import in_pieces
-from ..methods import checked_options
+from ..base.elementary import atan2, cos, sin
+from ..base.errors import InputRefused
+from ..base.mapped_arrays import in_pieces
+from ..settings.methods import checked_options
 from .interpolation import Result, Task, run_method
 from .surface_reference import heights_of
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..elementary import hypot
-from ..errors import InputRefused, place_text
-from ..mapped_arrays import ROWS_AT_ONCE, Room, in_pieces
+from ..base.elementary import hypot
+from ..base.errors import InputRefused, place_text
+from ..base.mapped_arrays import ROWS_AT_ONCE, Room, in_pieces
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import InputRefused
-from ..mapped_arrays import in_pieces
-from ..methods import METHODS, SURFACE_OPTIONS, checked_options
-from ..mis_ties import without_mis_ties
-from ..work import Work, native_module
+from ..base.errors import InputRefused
+from ..base.mapped_arrays import in_pieces
+from ..base.work import Work, native_module
+from ..settings.methods import METHODS, SURFACE_OPTIONS, checked_options
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task, run_method
+from .mis_ties import without_mis_ties
 
 
 def heights(

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import InputRefused
-from ..method_options import OptionRefused
-from ..work import native_module
+from ..base.errors import InputRefused
+from ..base.work import native_module
+from ..settings.method_options import OptionRefused
 from .interpolation import Task
 
 

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Readers of input files: points, meshes, regions."""
+"""Readers of input files.
 
-from .boreholes import Picks, read_boreholes
-from .map_input import MAP_ENDINGS, read_region, read_shapes
-from .mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
-from .off import read_off
+Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
+boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
+"""
+
+from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
+from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
+from .meshes.off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
-from .points import TABLE_ENDINGS, read_points
-from .table_preview import TablePreview, preview_table
+from .tables.boreholes import Picks, read_boreholes
+from .tables.points import TABLE_ENDINGS, read_points
+from .tables.table_preview import TablePreview, preview_table
 
 __all__ = [
     "MAP_ENDINGS",

@@ -6,13 +6,13 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
-from ..errors import InputRefused
-from ..map_layer import MapLayer
-from .geopackage import UNREADABLE, connect, is_geopackage
-from .map_input import is_map_layer, read_shapes
+from ..base.errors import InputRefused
+from ..settings.map_layer import MapLayer
+from .maps.geopackage import UNREADABLE, connect, is_geopackage
+from .maps.map_input import is_map_layer, read_shapes
+from .maps.shapes import NothingSelected
 from .point_input import RASTER_FORMATS, head_of
-from .points import KNOWN, body_rows, open_table
-from .shapes import NothingSelected
+from .tables.points import KNOWN, body_rows, open_table
 
 _NOTHING = "\0"  # no attribute is called so, and none has it
 

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputRefused
-from ..point_file import PointFile
-from ..units import MODEL_UNIT
-from .map_input import is_map_layer
+from ..base.errors import InputRefused
+from ..base.text import LINES_AT_ONCE, Step, no_step, read_bytes, read_text
+from ..base.units import MODEL_UNIT
+from ..settings.point_file import PointFile
+from .maps.map_input import is_map_layer
 from .point_input import RASTER_FORMATS, head_of, in_model, read_point_file
-from .points import KNOWN, body_rows, open_table
-from .table_layout import plain_name
-from .text import LINES_AT_ONCE, Step, no_step, read_bytes, read_text
+from .tables.points import KNOWN, body_rows, open_table
+from .tables.table_layout import plain_name
 
 _END_OF_STICK = 999.0  # in all three columns
 _END_LINE = re.compile(rb"^\s*(?:999(?:\.0*)?\s+){2}999(?:\.0*)?\s*$", re.MULTILINE)

@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ..directions import checked_direction
-from ..errors import InputRefused
-from ..map_layer import MapLayer
-from ..method_options import OptionRefused
-from ..point_file import PointFile
-from ..units import MODEL_UNIT
-from .map_input import shapes_in_turn
+from ..base.errors import InputRefused
+from ..base.text import Step, no_step
+from ..base.units import MODEL_UNIT
+from ..settings.directions import checked_direction
+from ..settings.map_layer import MapLayer
+from ..settings.method_options import OptionRefused
+from ..settings.point_file import PointFile
+from .maps.map_input import shapes_in_turn
+from .maps.shapes import Heights, Shapes
+from .maps.wkt import parse_wkt
 from .point_input import OFTEN_NO_VALUE, in_model, refuse_keys
-from .shapes import Heights, Shapes
-from .text import Step, no_step
-from .wkt import parse_wkt
 
 _NOT_LETTERS = re.compile(r"[^a-z]")
 _DIP, _DIRECTION, _STRIKE = re.compile("dip(angle)?"), re.compile("dip(dir|az).*"), re.compile("strike.*")

@@ -11,21 +11,21 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputRefused
-from ..mapped_arrays import Gather, in_memory, in_pieces
-from ..point_file import PointFile
-from ..units import MODEL_UNIT, factor
-from .ascii_grid import is_ascii_grid, read_ascii_grid
-from .cps3_grid import is_cps3_grid, read_cps3_grid
-from .geotiff import is_tiff, read_geotiff, world_file
-from .irap_grid import is_irap_grid, read_irap_grid
-from .map_input import is_map_layer, map_companions
-from .map_points import read_map_points
-from .points import read_point_rows
-from .raster import Raster
-from .surfer_grid import is_surfer_grid, read_surfer_grid
-from .text import Step, no_step
-from .zmap_grid import is_zmap_grid, read_zmap_grid
+from ..base.errors import InputRefused
+from ..base.mapped_arrays import Gather, in_memory, in_pieces
+from ..base.text import Step, no_step
+from ..base.units import MODEL_UNIT, factor
+from ..settings.point_file import PointFile
+from .maps.map_input import is_map_layer, map_companions
+from .maps.map_points import read_map_points
+from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
+from .rasters.cps3_grid import is_cps3_grid, read_cps3_grid
+from .rasters.geotiff import is_tiff, read_geotiff, world_file
+from .rasters.irap_grid import is_irap_grid, read_irap_grid
+from .rasters.raster import Raster
+from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
+from .rasters.zmap_grid import is_zmap_grid, read_zmap_grid
+from .tables.points import read_point_rows
 
 _HEAD = 4096  # bytes; comments may come before the first line of a grid
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes for simulation, in a plain form for the writers of solvers' formats."""
+"""Meshes for simulation, in a plain form for the writers of solvers' formats.
+
+Comes in: the cells and surfaces of a model, and edge lengths. Goes out: a `SimulationMesh` of elements that
+share their faces, or `CleanedCells` without small details.
+"""
 
 from .cleaned_cells import CleanedCells, cleaned_cells, cleaned_entry
 from .simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh

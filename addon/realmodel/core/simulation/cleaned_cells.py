@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..build_warning import BuildWarning
-from ..errors import InputRefused, UsageError
-from ..finite import is_number
-from ..method_options import check_threads
-from ..work import Cancel, Progress, Work, native_module, run
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, UsageError
+from ..base.finite import is_number
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..settings.method_options import check_threads
 from .volume_mesh import PolyhedralMesh, model_arrays
 from .volume_warnings import changed_volumes
 

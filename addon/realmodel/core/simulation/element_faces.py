@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BuildFailed
+from ..base.errors import BuildFailed
 from .patches import boundary_patches, solver_names
 from .volume_mesh import PolyhedralMesh, VolumeMesh
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..work import Work, native_module
+from ..base.work import Work, native_module
 from .native_call import call_native
 from .volume_mesh import model_arrays
 

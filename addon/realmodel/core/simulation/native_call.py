@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ..errors import BuildFailed, InputRefused
-from ..work import Work, native_module
+from ..base.errors import BuildFailed, InputRefused
+from ..base.work import Work, native_module
 
 
 def call_native(work: Work, function, *arguments):

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..build_warning import BuildWarning
-from ..errors import InputRefused, UsageError, place_text
-from ..finite import is_number
-from ..mesh_sizes import check_mesher, local_lengths
-from ..method_options import check_threads
-from ..planar_mesh import mesh_rings
-from ..work import Cancel, Progress, Work, native_module, run
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, UsageError, place_text
+from ..base.finite import is_number
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..settings.mesh_sizes import check_mesher, local_lengths
+from ..settings.method_options import check_threads
+from ..surfaces.planar_mesh import mesh_rings
 from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
 from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..build_warning import BuildWarning
+from ..base.build_warning import BuildWarning
 
 _MOST_CHANGE = 0.1  # of a block's volume, without a warning
 

@@ -10,23 +10,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..algebra import dot, norm, principal_axes
-from ..build_warning import BuildWarning
-from ..errors import InputRefused, place_text
-from ..planar_mesh import triangulate_rings
-from ..rules import RULES
-from ..surface_heights import needed_surfaces
-from ..work import Work
-from ..wrong_sides import heights_at
-from .branches import require_meeting
-from .continued import Border, border_of, connected, continued
-from .entries import Fault, fault_item
-from .fitted import plane_axes
-from .part_models import level
-from .parts import Structures
-from .refusals import ends_inside
-from .sides import FaultShape, fault_sides, sides_of
-from .triangles import edges_of
+from ..base.algebra import dot, norm, principal_axes
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, place_text
+from ..base.triangles import edges_of
+from ..base.work import Work
+from ..project.structure_entries import Fault, fault_item
+from ..settings.rules import RULES
+from ..surfaces.planar_mesh import triangulate_rings
+from ..surfaces.sides import FaultShape, fault_sides, sides_of
+from ..surfaces.surface_heights import needed_surfaces
+from ..surfaces.wrong_sides import heights_at
+from .parts.part_models import level
+from .parts.parts import Structures
+from .parts.refusals import ends_inside
+from .shapes.branches import require_meeting
+from .shapes.continued import Border, border_of, connected, continued
+from .shapes.fitted import plane_axes
 
 _GAP = 0.25  # of an edge length: a narrower gap is closed
 _SHARE = 0.5  # of the part of a side of the border that is in the rock: with so much near its end, it reaches

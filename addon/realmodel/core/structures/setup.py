@@ -8,22 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..algebra import norm
-from ..build_warning import BuildWarning
-from ..errors import BuildFailed
-from ..mapped_arrays import Keep, as_it_is
-from ..project import Project
-from ..rock_input import RockInput, mesh_rock, read_rocks
-from ..surface_input import Reader, read_each
-from ..work import Work, native_module
-from .entries import Body, Fault
+from ..base.algebra import norm
+from ..base.build_warning import BuildWarning
+from ..base.errors import BuildFailed
+from ..base.mapped_arrays import Keep, as_it_is
+from ..base.work import Work, native_module
+from ..project.project import Project
+from ..project.structure_entries import Body, Fault
+from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
+from ..surfaces.rock_structure import joined
+from ..surfaces.sides import FaultShape, fault_sides
+from ..surfaces.surface_input import Reader, read_each
 from .gaps import close_gaps, tops_of_faults
-from .parts import Structures, add_compartments, box_around, divide, structures_of
-from .reading import read_structures
-from .refusals import refused_structure
-from .rock_structure import joined
-from .sheets import make_sheets, warn_of_doubts
-from .sides import FaultShape, fault_sides
+from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
+from .parts.refusals import refused_structure
+from .shapes.reading import read_structures
+from .sheets.sheets import make_sheets, warn_of_doubts
 
 _READ, _MESHED = 0.2, 0.3  # of the time
 _DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..mapped_arrays import ROWS_AT_ONCE, in_pieces
-from ..model_data import SomeModel
+from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
+from ..cells.model_data import SomeModel
 
 _BASE = -2  # face_surface of the flat base
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atomic import Outputs
-from ..blocks import Block
-from ..build_warning import BuildWarning
-from ..errors import InputRefused
-from ..library import load_library
-from ..project import Project, Rock, Surface
-from ..project_writer import library_text, toml_value
-from ..structures.entries import Body, Fault
-from ..toml_table import TomlDocument
+from ..base.atomic import Outputs
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused
+from ..base.toml_table import TomlDocument
+from ..cells.blocks import Block
+from ..project.library import load_library
+from ..project.project import Project, Rock, Surface
+from ..project.project_writer import library_text, toml_value
+from ..project.structure_entries import Body, Fault
 from .grid import TileGrid
 
 CATALOG, LIBRARY, TILES, INDEX = "tiles.toml", "library.toml", "tiles", "model.pvtu"

@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..assembly import assemble
-from ..blocks import Block
-from ..built_cells import BuiltCells, CellParts
-from ..cell_complex import CellComplex
-from ..model import Model
-from ..model_data import ModelData
-from ..structures.joining import acts, body_block, build_joined
-from ..structures.labels import compartments
-from ..structures.parts import Structures
-from ..structures.windows import Window
-from ..surface_arrays import SurfaceArrays
-from ..work import Work
+from ..base.work import Work
+from ..cells.assembly import assemble
+from ..cells.blocks import Block
+from ..cells.built_cells import BuiltCells, CellParts
+from ..cells.cell_complex import CellComplex
+from ..cells.joining import acts, body_block, build_joined
+from ..cells.labels import compartments
+from ..cells.model_data import ModelData
+from ..model.model import Model
+from ..structures.parts.parts import Structures
+from ..surfaces.surface_arrays import SurfaceArrays
+from .faulted_windows import Window
 from .owned_cells import Seam, owners, reach_of
 from .tile_model import Frame, Name
 

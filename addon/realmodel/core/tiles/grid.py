@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from ..errors import UsageError
-from ..mapped_arrays import in_pieces
-from ..surface_heights import Triangulation
+from ..base.errors import UsageError
+from ..base.mapped_arrays import in_pieces
+from ..surfaces.surface_heights import Triangulation
 
 _SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
 _IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..atomic import explained
+from ..base.atomic import explained
 
 Name = tuple[int, int]  # column and row of a tile
 

@@ -12,25 +12,25 @@ from pathlib import Path
 
 import numpy as np
 
-from ..assembly import assemble
-from ..atomic import Outputs, explained
-from ..blocks import Block
-from ..build_warning import BuildWarning
-from ..built_cells import BuiltCells
-from ..cell_complex import CellComplex
-from ..errors import BuildFailed, OutputFailed
+from ..base.atomic import Outputs, explained
+from ..base.build_warning import BuildWarning
+from ..base.errors import BuildFailed, OutputFailed
+from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
+from ..base.work import Work, native_module, run
+from ..cells.assembly import assemble
+from ..cells.blocks import Block
+from ..cells.built_cells import BuiltCells
+from ..cells.cell_complex import CellComplex
+from ..cells.stack_refusals import refused_stack
 from ..exporters.npz import model_arrays, write_arrays
-from ..local_heights import LocalHeights, PartHeights
-from ..mapped_arrays import in_pieces, read_mapped, write_mapped
-from ..model import Model
-from ..project import Project, Rock, Surface
-from ..rock_input import RockInput
-from ..stack_refusals import refused_stack
-from ..structures.entries import Body, Fault
-from ..surface_arrays import SurfaceArrays
-from ..surface_heights import Triangulation, raise_to
-from ..work import Work, native_module, run
-from ..wrong_sides import WrongPoints, below_older, heights_at
+from ..model.model import Model
+from ..project.project import Project, Rock, Surface
+from ..project.structure_entries import Body, Fault
+from ..surfaces.local_heights import LocalHeights, PartHeights
+from ..surfaces.rock_input import RockInput
+from ..surfaces.surface_arrays import SurfaceArrays
+from ..surfaces.surface_heights import Triangulation, raise_to
+from ..surfaces.wrong_sides import WrongPoints, below_older, heights_at
 from .grid import (
     Part,
     TileGrid,

@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from ..algebra import dot
-from ..blocks import Block
-from ..build_warning import BuildWarning
-from ..errors import InputRefused, UsageError
-from ..model import Model
-from ..model_boreholes import Interval
-from ..project import Project
-from ..section import Fence, Section
+from ..base.algebra import dot
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, UsageError
+from ..cells.blocks import Block
+from ..model.model import Model
+from ..model.section import Fence, Section
+from ..project.project import Project
+from ..results.model_boreholes import Interval
 from .catalog import TILES, Catalog, TileEntry, read_catalog
 from .tile_model import read_model
 

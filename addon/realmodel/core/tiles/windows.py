@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..base.mapped_arrays import in_pieces
 from ..heights.regular_grid import RegularGrid
-from ..mapped_arrays import in_pieces
 from .settling import Box
 
 _IN_CELL = 2.0  # points, in the mean

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Text files with lines of numbers, read in pieces so that a caller can show progress and cancel."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import re
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from .errors import InputRefused
+
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
+LINES_AT_ONCE = 20_000
+BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
+
+BOM = codecs.BOM_UTF8
+_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+
+Step = Callable[[float], None]
+
+
+def no_step(_fraction: float) -> None:
+    """For callers without progress."""
+
+
+class FileBytes:
+    """The bytes of a file for readers: read on demand, not cached. Raises InputRefused."""
+
+    def __init__(self, file: Path):
+        self._file = file
+        self._block, self._begin = b"", 0  # the block read last, and its position
+        with _read_of(file):
+            self._size = file.stat().st_size
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, part: slice) -> bytes:
+        begin, end, _ = part.indices(self._size)
+        if end <= begin:
+            return b""
+        if begin < self._begin or end > self._begin + len(self._block):
+            if end - begin > BYTES_AT_ONCE:
+                return self._read(begin, end)
+            self._block = self._read(begin, min(begin + BYTES_AT_ONCE, self._size))
+            self._begin = begin
+        return self._block[begin - self._begin : end - self._begin]
+
+    def _read(self, begin: int, end: int) -> bytes:
+        found = bytearray()
+        with _read_of(self._file), self._file.open("rb", buffering=0) as opened:
+            opened.seek(begin)
+            while len(found) < end - begin and (more := opened.read(end - begin - len(found))):
+                found += more
+        if len(found) < end - begin:
+            raise InputRefused("it became shorter while it was read", file=self._file)
+        return bytes(found)
+
+    def find(self, text: bytes, begin: int = 0, end: int | None = None) -> int:
+        """The next position of a short text; -1 where there is none."""
+        end = self._size if end is None else min(end, self._size)
+        size = _BYTES_TO_FIND
+        while begin < end:
+            found = self[begin : min(begin + size + len(text) - 1, end)].find(text)
+            if found >= 0:
+                return begin + found
+            begin, size = begin + size, BYTES_AT_ONCE
+        return -1
+
+    def rfind(self, text: bytes) -> int:
+        """The last position of a short text; -1 where there is none."""
+        for end in range(self._size, 0, -BYTES_AT_ONCE):
+            begin = max(end - BYTES_AT_ONCE, 0)
+            found = self[begin : end + len(text) - 1].rfind(text)
+            if found >= 0:
+                return begin + found
+        return -1
+
+    def count(self, text: bytes, begin: int, end: int) -> int:
+        """The number of times that a text of one byte occurs between two positions."""
+        places = range(begin, end, BYTES_AT_ONCE)
+        return sum(self[at : min(at + BYTES_AT_ONCE, end)].count(text) for at in places)
+
+
+Content = bytes | FileBytes
+_BYTES_TO_FIND = 1 << 12  # mostly the end of a line
+
+
+@contextmanager
+def _read_of(file: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+
+
+@contextmanager
+def _utf_16_of(file: Path) -> Iterator[None]:
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
+
+
+class _Utf16Bytes(FileBytes):
+    """Text in UTF-16 as UTF-8. Raises InputRefused."""
+
+    def __init__(self, file: Path):
+        super().__init__(file)
+        self._codec = "utf-16-le" if super()._read(0, 2) == codecs.BOM_UTF16_LE else "utf-16-be"
+        decoder = codecs.getincrementaldecoder(self._codec)()
+        self._begins, self._places = [2], [0]  # of blocks of whole letters, in the file and as UTF-8
+        for at in range(2, self._size, BYTES_AT_ONCE):
+            end = min(at + BYTES_AT_ONCE, self._size)
+            with _utf_16_of(file):
+                text = decoder.decode(super()._read(at, end), final=end == self._size)
+            self._begins.append(end - len(decoder.getstate()[0]))
+            self._places.append(self._places[-1] + len(text.encode()))
+        self._size = self._places[-1]
+
+    def _read(self, begin: int, end: int) -> bytes:
+        first, last = bisect_right(self._places, begin) - 1, bisect_left(self._places, end)
+        found = super()._read(self._begins[first], self._begins[last]).decode(self._codec).encode()
+        return found[begin - self._places[first] : end - self._places[first]]
+
+
+class _OldLines(FileBytes):
+    """Text whose lines end in \\r, as old Macs have it, with \\n."""
+
+    def __init__(self, content: FileBytes):
+        self._content, self._size = content, len(content)
+        self._block, self._begin = b"", 0
+
+    def _read(self, begin: int, end: int) -> bytes:
+        return self._content[begin:end].replace(b"\r", b"\n")
+
+
+def content_of(file: Path) -> FileBytes:
+    """The content of a file, read piece by piece; text in UTF-16 as UTF-8. Raises InputRefused."""
+    content = FileBytes(Path(file))
+    return _Utf16Bytes(Path(file)) if content[:2] in _UTF_16 else content
+
+
+def text_content(file: Path) -> FileBytes:
+    """content_of a text file, with lines that end in \\n. Raises InputRefused."""
+    content = content_of(file)
+    require_text(file, content[:4096])
+    return with_newlines(content)
+
+
+def with_newlines(content: FileBytes) -> FileBytes:
+    """Text with lines that end in \\n, where all end in \\r; else itself."""
+    return content if content.find(b"\n") >= 0 or content.find(b"\r") < 0 else _OldLines(content)
+
+
+def pieces_of(content: Content, begin: int = 0, stop: int | None = None) -> Iterator[tuple[int, bytes]]:
+    """Whole lines in pieces, to a position or the end: the position of each piece, and its bytes."""
+    stop = len(content) if stop is None else stop
+    while begin < stop:
+        end = content.find(b"\n", min(begin + BYTES_AT_ONCE, stop) - 1, stop)
+        end = stop if end < 0 else end + 1
+        yield begin, content[begin:end]
+        begin = end
+
+
+def text_lines(file: Path) -> Iterator[tuple[int, list[str], float]]:
+    """Lines of text as read_text has them, few at once: the number of the first, from 1, these, and which
+    share of the file is done then. Raises InputRefused."""
+    content = content_of(file)
+    require_text(file, content[:4096])
+    encoding, number = encoding_of(content), 1
+    begin = len(BOM) if encoding == "utf-8" and content[: len(BOM)] == BOM else 0
+    decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder(encoding)(), translate=True)
+    rest: list[str] = []  # of a line that goes on
+    for at in range(begin, len(content), BYTES_AT_ONCE):
+        end = min(at + BYTES_AT_ONCE, len(content))
+        whole, newline, more = decoder.decode(content[at:end], final=end == len(content)).rpartition("\n")
+        rest.append(whole if newline else more)
+        if newline:
+            lines, rest = "".join(rest).split("\n"), [more]
+            yield number, lines, end / len(content)
+            number += len(lines)
+    if rest:
+        yield number, ["".join(rest)], 1.0
+
+
+def _with_plain_ends(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def encoding_of(content: Content) -> str:
+    """utf-8, or latin-1 where the bytes are not valid UTF-8."""
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        for at in range(0, len(content), BYTES_AT_ONCE):
+            piece = content[at : at + BYTES_AT_ONCE]
+            if not piece.isascii() or decoder.getstate()[0]:
+                decoder.decode(piece)
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"
+
+
+def read_bytes(file: Path) -> bytes:
+    """The content of a file; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
+    with _read_of(file):
+        raw = Path(file).read_bytes()
+    if raw[:2] in _UTF_16:
+        with _utf_16_of(file):
+            return raw.decode("utf-16").encode()
+    return raw
+
+
+def line_of_word(content: Content, number: int, begin: int = 0, stop: int | None = None) -> int:
+    """The line, from 1, of a word of the text between two positions, from 0; that of the last one where there
+    are fewer."""
+    last = line = content.count(b"\n", 0, begin) + 1
+    for _, piece in pieces_of(content, begin, stop):
+        words = len(piece.split())
+        if number < words:
+            counts = np.cumsum([len(text.split()) for text in piece.split(b"\n")])
+            return line + int(np.searchsorted(counts, number, "right"))
+        number -= words
+        if words:
+            last = line + piece.rstrip().count(b"\n")
+        line += piece.count(b"\n")
+    return last
+
+
+def require_text(file: Path, raw: bytes) -> None:
+    """Refuses binary content."""
+    if b"\0" in raw[:4096]:
+        raise InputRefused("this is a binary file, not text", file=file)
+
+
+def read_text(file: Path) -> str:
+    """The text of a file. Numbers are ASCII, so that names in any 8-bit encoding do no harm."""
+    raw = read_bytes(file)
+    require_text(file, raw)
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return _with_plain_ends(text)
+
+
+def column_numbers(
+    lines: list[str], columns: tuple[int, ...], delimiter: str | None, dtype, step: Step = no_step
+):
+    """(N, len(columns)) numbers of the given lines; blank lines and what follows '#' are left out.
+
+    Raises ValueError where NumPy cannot read a line: the caller then looks for it with more patience.
+    """
+    pieces = []
+    for start in range(0, len(lines), LINES_AT_ONCE):
+        piece = [line for line in lines[start : start + LINES_AT_ONCE] if line and not line.isspace()]
+        if piece and not all(line.lstrip().startswith("#") for line in piece):
+            pieces.append(
+                np.loadtxt(
+                    piece,
+                    dtype=dtype,
+                    comments="#",
+                    delimiter=delimiter,
+                    usecols=columns,
+                    ndmin=2,
+                    quotechar='"',
+                )
+            )
+        step(min(1.0, (start + LINES_AT_ONCE) / len(lines)))
+    return np.concatenate(pieces) if pieces else np.empty((0, len(columns)), dtype)

@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles in space: open edges, orientation, crossings."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from .algebra import dot, norm
+from .errors import InputRefused, place_text
+from .exact import orient2d
+
+_EDGES = ((0, 1), (1, 2), (2, 0))
+_ROUNDING = 1e-9  # relative: points nearer to a plane may be on it
+_FEW = 16  # triangles: with so many, all others are compared with each
+
+
+def welded(vertices: np.ndarray) -> np.ndarray:
+    """(V,) the least vertex at the same position as each."""
+    order = np.lexsort(vertices.T)  # of equal ones the least comes first
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = (vertices[order[1:]] != vertices[order[:-1]]).any(axis=1)
+    same = np.empty_like(order)
+    same[order] = order[is_first][np.cumsum(is_first) - 1]
+    return same
+
+
+def extents(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the greatest coordinates (T, D) of triangles (T, 3, D)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def without_flat(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (K, 3) int32 whose corners differ and do not lie in one line."""
+    first, second, third = vertices[triangles].transpose(1, 0, 2)
+    flat = (np.cross(second - first, third - first) == 0).all(axis=1)
+    return np.ascontiguousarray(triangles[~flat])
+
+
+def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(K, 3) as np.cross, which takes longer for the few pairs that there are at a fault."""
+    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
+    return np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], axis=1)
+
+
+def edges_of(triangles: np.ndarray) -> np.ndarray:
+    """(3 T, 2) the directed edges: those from corner 0 to 1 of all triangles, then 1 to 2, then 2 to 0."""
+    return np.concatenate([triangles[:, pair] for pair in _EDGES])
+
+
+def median_edge(plan: np.ndarray, triangles: np.ndarray) -> float:
+    """The median length of the edges of triangles in plan."""
+    begin, end = plan[edges_of(triangles)].transpose(1, 0, 2)
+    return float(np.median(norm(end - begin)))
+
+
+def edge_numbers(edges: np.ndarray, count: int) -> np.ndarray:
+    """(E,) int64: of edges (E, 2) between so many vertices, the same for both directions."""
+    a, b = edges.T.astype(np.int64)
+    return np.minimum(a, b) * count + np.maximum(a, b)
+
+
+def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(E, 2) edges that an odd number of triangles have; vertices at one position count as one."""
+    edges = np.sort(edges_of(welded(vertices)[triangles]), axis=1)
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return edges[count % 2 == 1]
+
+
+def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
+    """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
+    edges = edges_of(triangles)
+    keys = edge_numbers(edges, int(triangles.max(initial=0)) + 1)
+    order = np.argsort(keys, kind="stable")
+    differs = np.ones(len(order) + 1, bool)
+    differs[1:-1] = keys[order[1:]] != keys[order[:-1]]
+    following: dict[int, list[int]] = {}
+    for a, b in edges[np.sort(order[differs[:-1] & differs[1:]])].tolist():
+        following.setdefault(a, []).append(b)
+    loops = []
+    for start in sorted(following):
+        while following[start]:
+            loop = [start]
+            while following.get(loop[-1]):
+                loop.append(following[loop[-1]].pop(0))
+                if loop[-1] == start:
+                    break
+            loops.append(np.array(loop[:-1] if loop[-1] == start else loop))
+    return [loop for loop in loops if len(loop) > 2]
+
+
+def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(P,) how far the nearest triangle is from each point, up to rounding."""
+    corners = vertices[triangles]
+    found = np.full(len(points), np.inf)
+    for number, point in enumerate(points):
+        found[number] = distances_of_pairs(np.broadcast_to(point, (len(corners), 3)), corners).min()
+    return found
+
+
+def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(K,) how far each point (K, 3) is from the triangle of its row (K, 3, 3), up to rounding of what is
+    near it: long triangles have their plane from their shorter edges, taken from their nearest corner."""
+    rows = np.arange(len(points))
+    edges = np.roll(corners, -1, axis=1) - corners
+    longest = (edges * edges).sum(axis=2).argmax(axis=1)
+    normal = cross(edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3])
+    normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+    apart = points[:, None] - corners
+    nearest = (apart * apart).sum(axis=2).argmin(axis=1)
+    height = (apart[rows, nearest] * normal).sum(axis=1)
+    inside = np.ones(len(points), bool)
+    found = np.full(len(points), np.inf)
+    for first, second in _EDGES:
+        begin, along = corners[:, first], corners[:, second] - corners[:, first]
+        inside &= (cross(along, points - begin) * normal).sum(axis=1) >= 0
+        share = ((points - begin) * along).sum(axis=1) / (along * along).sum(axis=1)
+        nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
+        found = np.minimum(found, np.linalg.norm(points - nearest, axis=1))
+    return np.where(inside, np.abs(height), found)
+
+
+def unit_normals(corners: np.ndarray) -> np.ndarray:
+    """(T, 3) the normals of triangles (T, 3, 3), of length 1."""
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normals / norm(normals)[:, None]
+
+
+def nearest_triangles(
+    points: np.ndarray, reach: np.ndarray, corners: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) of triangles (T, 3, 3) the nearest to each point (P, 3), the first of equally near ones, and how
+    far it is; -1 and infinite where none is nearer than `reach` (P,)."""
+    boxes = np.stack([points - reach[:, None], points + reach[:, None], points], axis=1)
+    pairs = pairs_at_planes(boxes, corners)
+    away = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]])
+    within = away < reach[pairs[:, 0]]
+    pairs, away = pairs[within], away[within]
+    order = np.lexsort((pairs[:, 1], away, pairs[:, 0]))
+    pairs, away = pairs[order], away[order]
+    is_nearest = np.diff(pairs[:, 0], prepend=-1) != 0
+    number, distance = np.full(len(points), -1), np.full(len(points), np.inf)
+    number[pairs[is_nearest, 0]] = pairs[is_nearest, 1]
+    distance[pairs[is_nearest, 0]] = away[is_nearest]
+    return number, distance
+
+
+def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
+    if len(first) > len(second):
+        return crossing_pairs(second, first)[:, ::-1]
+    low, high = extents(second)
+    order = np.argsort(low[:, 0], kind="stable")
+    low, high = low[order], high[order]
+    widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
+    lowest, highest = extents(first)
+    begin = np.searchsorted(low[:, 0], lowest[:, 0] - widest, "left")
+    end = np.searchsorted(low[:, 0], highest[:, 0], "right")
+    found = []
+    for number in range(len(first)):
+        some = slice(begin[number], end[number])
+        near = ((high[some] >= lowest[number]) & (low[some] <= highest[number])).all(axis=1)
+        rows = order[some][near]
+        found.append(np.column_stack([np.full(len(rows), number), rows]))
+    return np.concatenate(found) if found else np.empty((0, 2), np.int64)
+
+
+def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(K, 2) rows of triangles in plan (N, 3, 2) and (M, 3, 2) that have a common area (exact): no edge of
+    one separates them."""
+    pairs = crossing_pairs(first, second)
+    one, other = first[pairs[:, 0]], second[pairs[:, 1]]
+    apart = np.zeros(len(pairs), bool)
+    for triangle, corners in ((one, other), (other, one)):
+        turn = orient2d(*triangle.transpose(1, 0, 2))
+        for i, j in _EDGES:
+            sides = [orient2d(triangle[:, i], triangle[:, j], corners[:, k]) * turn for k in range(3)]
+            apart |= np.max(sides, axis=0) <= 0
+    return pairs[~apart]
+
+
+def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
+    """As crossing_pairs, without pairs in which the box of the first is farther than `near` from the plane of
+    the second."""
+    low, high = extents(first)
+    middle, reach = (low + high) / 2, (high - low) / 2 + near
+    a, b, c = second.transpose(1, 0, 2)
+    normal = cross(b - a, c - a)
+    if len(second) <= _FEW:
+        found = [np.empty((0, 2), np.int64)]
+        low, high, middle, reach = (np.ascontiguousarray(each.T) for each in (low, high, middle, reach))
+        for number, (lowest, highest) in enumerate(zip(*extents(second), strict=True)):
+            kept = _near_planes(a[number, :, None], normal[number, :, None], middle, reach)
+            for k in range(3):
+                kept &= (high[k] >= lowest[k]) & (low[k] <= highest[k])
+            rows = np.flatnonzero(kept)
+            found.append(np.column_stack([rows, np.full(len(rows), number)]))
+        return np.concatenate(found)
+    one, other = crossing_pairs(first, second).T
+    kept = _near_planes(a[other].T, normal[other].T, middle[one].T, reach[one].T)
+    return np.column_stack([one[kept], other[kept]])
+
+
+def _near_planes(a: np.ndarray, normal: np.ndarray, middle: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether boxes, given by their middles and half sizes (3, K), may meet the planes through
+    points a (3, K) or (3, 1)."""
+    off = size = allowed = 0.0
+    for k in range(3):
+        away = normal[k] * (middle[k] - a[k])
+        off = off + away
+        size = size + np.abs(away)
+        allowed = allowed + np.abs(normal[k]) * reach[k]
+    return ~(np.abs(off) > allowed + _ROUNDING * (size + allowed))
+
+
+def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(N,) bool: the triangles of `first` (N, 3, 3) that an edge of one of `second` (M, 3, 3) passes, or
+    whose own edge passes one of these; touching counts, up to rounding."""
+    pairs = pairs_at_planes(first, second)
+    found = np.zeros(len(first), bool)
+    for start in range(0, len(pairs), 1 << 16):
+        some = pairs[start : start + (1 << 16)]
+        some = some[_straddles(first[some[:, 0]], second[some[:, 1]])]
+        one, other = first[some[:, 0]], second[some[:, 1]]
+        hit = np.zeros(len(some), bool)
+        for (triangle, edges), (i, j) in itertools.product(((one, other), (other, one)), _EDGES):
+            hit |= segments_hit(edges[:, i], edges[:, j], triangle)
+        found[some[hit, 0]] = True
+    return found
+
+
+def _straddles(triangles: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether the first triangle of each pair (K, 3, 3) has corners on both sides of the plane of
+    the second one, or on it."""
+    a, b, c = others.transpose(1, 0, 2)
+    off = np.einsum("kij,kj->ki", triangles - a[:, None], cross(b - a, c - a))
+    return (off.min(axis=1) <= 0) & (off.max(axis=1) >= 0)
+
+
+def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether the segment from begin to end (K, 3) meets the triangle of its row (K, 3, 3); one in
+    its plane does not."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = cross(b - a, c - a)
+    low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
+    crosses = ((low <= 0) & (high >= 0) | (low >= 0) & (high <= 0)) & (low != high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(crosses, low / (low - high), 0.0)
+    at = begin + share[:, None] * (end - begin)
+    for p, q in ((a, b), (b, c), (c, a)):
+        crosses &= (cross(q - p, at - p) * normal).sum(axis=1) >= 0
+    return crosses
+
+
+def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(K,) where segments that hit the plane of the triangle of their row do so, 0 to 1 of their lengths."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = cross(b - a, c - a)
+    low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
+    return low / (low - high)
+
+
+class NoTwoSides(Exception):
+    """A surface that returns to itself the other way round; edge: its ends (2, 3)."""
+
+    def __init__(self, edge: np.ndarray):
+        super().__init__("one-sided")
+        self.edge = edge
+
+
+def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (T, 3) int32, each turned so that it goes on from its neighbors.
+
+    The first triangle of each connected part stays as it is, unless most of the part then faces the other way
+    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSides.
+    """
+    same = welded(vertices)[triangles]
+    edges = edges_of(same)
+    owner = np.tile(np.arange(len(triangles)), 3)
+    ends = np.sort(edges, axis=1)
+    order = np.lexsort((ends[:, 1], ends[:, 0]))
+    _, first, count = np.unique(ends[order], axis=0, return_index=True, return_counts=True)
+    two = first[count == 2]
+    left, right = order[two], order[two + 1]
+    reversed_ = (edges[left] == edges[right]).all(axis=1)  # both go the same way along their edge
+    neighbors: list[list[tuple[int, bool, int]]] = [[] for _ in triangles]
+    pairs = zip(owner[left].tolist(), owner[right].tolist(), reversed_.tolist(), left.tolist(), strict=True)
+    for one, other, turns, edge in pairs:
+        neighbors[one].append((other, turns, edge))
+        neighbors[other].append((one, turns, edge))
+    turned = np.full(len(triangles), -1, np.int8)
+    part = np.zeros(len(triangles), np.int64)
+    parts = 0
+    for start in range(len(triangles)):
+        if turned[start] >= 0:
+            continue
+        turned[start], part[start] = 0, parts
+        waiting = [start]
+        while waiting:
+            at = waiting.pop()
+            for other, turns, edge in neighbors[at]:
+                wanted = turned[at] ^ turns
+                if turned[other] < 0:
+                    turned[other], part[other] = wanted, parts
+                    waiting.append(other)
+                elif turned[other] != wanted:
+                    raise NoTwoSides(vertices[edges[edge]])
+        parts += 1
+    result = np.where(turned[:, None] == 1, triangles[:, ::-1], triangles)
+    if parts > 1:
+        corners = vertices[result]
+        normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        facing = np.array([normals[part == number].sum(axis=0) for number in range(parts)])
+        away = (dot(facing, facing[0]) < 0)[part]
+        result = np.where(away[:, None], result[:, ::-1], result)
+    return np.ascontiguousarray(result, np.int32)
+
+
+def checked_triangulation(vertices, triangles) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
+    try:
+        vertices = np.ascontiguousarray(vertices, np.float64)
+        triangles = np.asarray(triangles)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("vertices or triangles are not an array of numbers") from error
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputRefused(f"vertices must be an array (V, 3), not {vertices.shape}")
+    if triangles.size == 0 or triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise InputRefused(f"triangles must be an array (T, 3) with T > 0, not {triangles.shape}")
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise InputRefused(f"triangles must be whole numbers, not {triangles.dtype}")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        bad = int(np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))[0])
+        raise InputRefused(
+            f"triangle {bad} names vertices {triangles[bad].tolist()}",
+            triangles=(bad,),
+            advice=f"they are numbered from 0 to {len(vertices) - 1}",
+        )
+    if not np.isfinite(vertices).all():
+        bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
+        raise InputRefused(f"vertex {bad} is {place_text(vertices[bad])}, not finite")
+    return vertices, np.ascontiguousarray(triangles, np.int32)

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work in a separate thread, while the caller's thread reports progress and checks for cancellation.
+
+Only the caller's thread calls progress() and cancel(): in Blender these touch the window, and Ctrl-C
+reaches the main thread alone.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from typing import Any, TypeVar
+
+from . import missing_native
+from .errors import BuildFailed, Cancelled
+
+Progress = Callable[[float, str], None]
+Cancel = Callable[[], bool]
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+POLL_SECONDS = 0.04
+_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or the name of the extension in Blender
+_SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
+
+
+class Work:
+    """The progress of a working thread, and the request to cancel it."""
+
+    def __init__(self):
+        self._lock = threading.Lock()
+        self._control = None
+        self._works: list[Work] = []  # of the items of `each`, while it runs
+        self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
+        self._part = 0.0, 1.0
+        self._share = 0.0
+        self._reported = 0.0
+        self._text = ""
+        self._cancelled = False
+
+    # -- in the working thread
+
+    @contextmanager
+    def phase(self, start: float, end: float, text: str):
+        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1."""
+        self.check()
+        with self._lock:
+            self._start, self._end, self._share, self._text = start, end, 0.0, text
+        yield
+        self.step(1.0)
+
+    @contextmanager
+    def part(self, start: float, end: float):
+        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job as a
+        part of another."""
+        before = self._part
+        low, high = before
+        with self._lock:
+            self._part = low + (high - low) * start, low + (high - low) * end
+            self._start, self._end, self._share = 0.0, 1.0, 0.0
+        yield
+        with self._lock:
+            self._part = before
+            self._start, self._end, self._share = start, end, 1.0
+
+    @property
+    def stretch(self) -> tuple[float, float]:
+        """The progress that the present phase begins and ends at."""
+        return self._start, self._end
+
+    def step(self, share: float) -> None:
+        """Sets the progress of the present phase, 0 to 1. Raises Cancelled if the caller has cancelled."""
+        self.check()
+        with self._lock:
+            self._share = min(max(share, self._share), 1.0)
+
+    def check(self) -> None:
+        if self._cancelled:
+            raise Cancelled("cancelled")
+
+    def native(self, function: Callable[..., Result], *arguments, **options) -> Result:
+        """Calls a native function that takes a `control`, as the present phase."""
+        native = native_module()
+        control = native.Control()
+        with self._lock:
+            self._control = control
+        try:
+            self.check()
+            return function(*arguments, control=control, **options)
+        except native.Cancelled as error:
+            raise Cancelled("cancelled") from error
+        except MemoryError as error:
+            raise BuildFailed(
+                "not enough memory for this model; use fewer triangles or a longer edge length"
+            ) from error
+        except RuntimeError as error:  # what the native part takes for impossible
+            raise BuildFailed(
+                f"RealModel has a defect: {error}; please report it, with the input that shows it"
+            ) from error
+        finally:
+            with self._lock:
+                self._control = None
+
+    def each(
+        self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
+    ) -> list[Result]:
+        """[task(work, item, threads) for item in items] as the present phase, several items in parallel where
+        `threads` (0: all) allows it. Each item has its own Work, whose phases go from 0 to 1, and a share of
+        the threads. Raises the error of the first item that failed."""
+        items = list(items)
+        all_threads = threads or os.cpu_count() or 1
+        at_once = min(len(items), all_threads)
+        if at_once > 1:
+            # twice as many threads as there are: while one item keeps one thread busy, another uses the rest
+            threads = -(-2 * all_threads // at_once)
+        works = [Work() for _ in items]
+
+        def done(number: int) -> Result:
+            before = getattr(_current, "work", None)
+            _current.work = works[number]
+            try:
+                return task(works[number], items[number], threads)
+            except BaseException:
+                for later in works[number + 1 :]:  # their results are not wanted any more
+                    later.cancel()
+                raise
+            finally:
+                _current.work = before
+
+        with self._lock:
+            self._works = works
+        try:
+            self.check()
+            if at_once < 2:
+                return [done(number) for number in range(len(items))]
+            with ThreadPoolExecutor(at_once, "realmodel work") as pool:
+                futures = [pool.submit(done, number) for number in range(len(items))]
+            return [future.result() for future in futures]
+        finally:
+            with self._lock:
+                self._works = []
+
+    # -- in the caller's thread
+
+    def state(self) -> tuple[float, str]:
+        """(fraction of the whole, never falling; what is being done)."""
+        with self._lock:
+            share = self._share
+            if self._control is not None:
+                share = max(share, self._control.fraction)
+            text = self._text
+            if self._works:
+                states = [work.state() for work in self._works]
+                share = max(share, sum(each for each, _ in states) / len(states))
+                text = next((text for each, text in states if text and each < 1.0), text)
+            low, high = self._part
+            share = self._start + (self._end - self._start) * share
+            self._reported = max(self._reported, low + (high - low) * share)
+            return self._reported, text
+
+    def cancel(self) -> None:
+        with self._lock:
+            self._cancelled = True
+            if self._control is not None:
+                self._control.cancel()
+            for work in self._works:
+                work.cancel()
+
+
+class Job:
+    """A task in a thread of its own, under way. Only the thread that started it looks after it."""
+
+    def __init__(self, task: Callable[[Work], Result]):
+        self._work = Work()
+        self._ended = threading.Event()
+        self._leaves_at: float | None = None  # when a stopped task is no longer waited for
+        self._result: Any = None
+        self._error: BaseException | None = None
+        _leaving[:] = [thread for thread in _leaving if thread.is_alive()]
+        # not a daemon: at its end Python must not tear native work out of its thread
+        self._thread = threading.Thread(
+            target=self._run, args=(task, list(_leaving)), name="realmodel work", daemon=False
+        )
+        self._thread.start()
+
+    def _run(self, task, leaving: list[threading.Thread]) -> None:
+        try:
+            for thread in leaving:  # so that only one holds memory at a time
+                thread.join()
+            _current.work = self._work
+            self._result = task(self._work)
+        except BaseException as error:  # raised by result() in the other thread
+            self._error = error
+        finally:
+            self._ended.set()
+
+    def state(self) -> tuple[float, str]:
+        """(fraction done, never falling; what is being done)."""
+        return self._work.state()
+
+    def cancel(self) -> None:
+        """Asks the task to stop. result() waits for it only briefly: freeing the memory of a large model may
+        take seconds. The thread goes on alone, and later jobs wait for it."""
+        if self._leaves_at is None:
+            self._leaves_at = time.monotonic() + _SECONDS_TO_LEAVE
+            _leaving.append(self._thread)
+        self._work.cancel()
+
+    @property
+    def done(self) -> bool:
+        """Whether result() answers at once."""
+        return self._ended.is_set() or (self._leaves_at is not None and time.monotonic() >= self._leaves_at)
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the task has ended, and result() returns what it has returned."""
+        return self._ended.is_set() and self._leaves_at is None and self._error is None
+
+    def wait(self, seconds: float | None = None) -> bool:
+        """Waits until the job is done, at most so many seconds; returns whether it is."""
+        if self._leaves_at is not None:
+            left = max(0.0, self._leaves_at - time.monotonic())
+            seconds = left if seconds is None else min(seconds, left)
+        self._ended.wait(seconds)
+        return self.done
+
+    def result(self):
+        """The result of the task, once it is done; raises its error, or Cancelled."""
+        self.wait()
+        if self._leaves_at is not None:
+            raise Cancelled("cancelled")
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+
+def start(task: Callable[[Work], Result]) -> Job:
+    """Starts task(work) in a new thread. Calls of `run` within the task become parts of it."""
+    return Job(task)
+
+
+def run(
+    task: Callable[[Work], Result], progress: Progress | None = None, cancel: Cancel | None = None
+) -> Result:
+    """Runs task(work) in a thread of its own and returns what it returns.
+
+    progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
+    KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
+    before the work was done.
+
+    Within a job, and without these two, the task is done at once as a part of that job.
+    """
+    work = getattr(_current, "work", None)
+    if work is not None and progress is None and cancel is None:
+        return task(work)
+    job = start(task)
+    try:
+        while not job.wait(POLL_SECONDS):
+            if progress is not None:
+                progress(*job.state())
+            if cancel is not None and cancel():
+                job.cancel()
+                job.wait()
+    except BaseException:
+        job.cancel()
+        while not job.done:
+            with suppress(KeyboardInterrupt):  # however often Ctrl-C is pressed meanwhile
+                job.wait()
+        raise
+    result = job.result()
+    if progress is not None:
+        progress(*job.state())
+    return result
+
+
+def wait_for_stopped() -> None:
+    """Waits until tasks that were asked to stop have ended: they use what their caller gave them."""
+    for thread in _leaving:
+        if thread is not threading.current_thread():
+            thread.join()
+
+
+_current = threading.local()  # work: of the job that this thread does
+_leaving: list[threading.Thread] = []  # asked to stop, but perhaps still running
+
+
+@contextmanager
+def _waiting_threads_sleep():
+    """Has OpenMP's threads sleep while they have nothing to do, unless the user said otherwise.
+
+    GNU's spin by default: on a busy machine they then take the time of those that work, and small
+    parallel loops get slower by far. The library reads this once, when it is loaded.
+    """
+    name = "OMP_WAIT_POLICY"
+    if f"{_PACKAGE}._native" in sys.modules or name in os.environ or "GOMP_SPINCOUNT" in os.environ:
+        yield
+        return
+    os.environ[name] = "PASSIVE"
+    try:
+        yield
+    finally:
+        os.environ.pop(name, None)
+
+
+def native_module():
+    """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
+    try:
+        with _waiting_threads_sleep():
+            from ... import _native  # type: ignore[attr-defined]  # compiled: it has no stub
+    except ImportError as error:
+        raise BuildFailed(missing_native.explanation(error)) from error
+    return _native

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The last steps of a build, from the input of each rock mass to the model; a stage needs only these."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..project.build_options import check_cells, check_stage
+from ..surfaces.rock_input import RockInput
+from ..surfaces.surface_arrays import SurfaceArrays
+from .blocks import Block
+from .built_cells import BuiltCells
+from .cell_complex import CellComplex
+from .joining import build_joined
+from .labels import cell_compartments, warnings_where_rock_is
+from .model_data import ModelData, SomeModel
+from .stack_refusals import refused_stack
+
+_STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
+
+
+def build_stage(
+    model: SomeModel,
+    m: int,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    cells: str | None = None,
+) -> SomeModel:
+    """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
+    check_stage(model.project, m)
+    kind = model.cell_kind if cells is None else cells
+    check_cells(kind)
+    inputs = [entry.stage(m) for entry in model.rock_inputs]
+    if kind == model.cell_kind and all(
+        len(entry.surfaces) == len(whole.surfaces)
+        for entry, whole in zip(inputs, model.rock_inputs, strict=True)
+    ):
+        return model
+    given = model.project
+    project = replace(given, rocks=[entry.rock for entry in inputs])
+
+    def task(work: Work) -> SomeModel:
+        structures = None if model.structures is None else model.structures.stage(m)
+        built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
+        timings = {"intersect": time.perf_counter() - began}
+        return type(model).of(
+            assemble(work, project, inputs, built, model.threads, timings, _STAGE_INTERSECTED, structures)
+        )
+
+    began = time.perf_counter()
+    return run(task, progress, cancel)
+
+
+def intersect(
+    work: Work, inputs, cells: str, threads: int, start: float, end: float, structures=None
+) -> BuiltCells:
+    """The cells of all rock masses, divided by structures where there are some."""
+    if structures is not None:
+        return build_joined(work, inputs, structures, cells, threads, start, end)
+    native = native_module()
+    rocks = [entry.native() for entry in inputs]
+    with work.phase(start, end, "intersecting and cutting"):
+        try:
+            return BuiltCells.of(
+                work.native(native.build_rock_masses, rocks, cells=cells, threads=threads), cells
+            )
+        except native.InputError as error:
+            raise refused_stack(error, inputs) from error
+
+
+def assemble(
+    work: Work,
+    project,
+    inputs: list[RockInput],
+    built: BuiltCells,
+    threads: int,
+    timings: dict[str, float],
+    start: float,
+    structures=None,
+) -> ModelData:
+    """The model that these cells are of."""
+    began = time.perf_counter()
+    with work.phase(start, 1.0, "assembling the model"):
+        own = _complex(inputs, built, structures)
+        own.find_components(work)
+        work.step(0.8)
+        blocks = list_blocks(inputs, built.volumes, own, structures)
+        names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+        kinds = [0] * len(names)
+        if structures is not None:
+            names += structures.names
+            kinds += structures.kinds
+        compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
+        model = ModelData(
+            own,
+            blocks,
+            _surfaces(inputs, structures),
+            surface_kind=np.array(kinds, np.int32),
+            cell_compartment=compartment,
+            compartment_names=compartment_names,
+            compartment_sides=sides,
+            structures=structures,
+            surface_names=names,
+            project=project,
+            rock_inputs=inputs,
+            warnings=_warnings(inputs, built, blocks, structures),
+            timings=timings,
+            threads=threads,
+        )
+    timings["merge"] = time.perf_counter() - began
+    return model
+
+
+def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComplex:
+    """The cells with blocks numbered without those that cannot exist."""
+    exists = [
+        number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
+    ]
+    if structures is not None:
+        exists += [structures.has_block(number) for number in range(len(structures))]
+    block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
+    cell_block = block_of_surface[built.complex.cell_block].astype(np.int32, copy=False)
+    return replace(built.complex, cell_block=cell_block)
+
+
+def _surfaces(inputs: list[RockInput], structures) -> SurfaceArrays:
+    """The surfaces, then the structures."""
+    surfaces = [entry.surface(number) for entry in inputs for number in range(len(entry.surfaces))]
+    return SurfaceArrays.of(surfaces if structures is None else [*surfaces, *structures.shapes])
+
+
+def _first_block(entry: RockInput) -> int:
+    """The number of a rock mass's first block: 0 lies on the base elevation."""
+    return 0 if entry.rock.base_elevation is not None else 1
+
+
+def list_blocks(inputs, volumes: np.ndarray, own: CellComplex, structures) -> list[Block]:
+    """The blocks of some cells; without cells those that may be."""
+    total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
+    bodies = [] if structures is None else structures.blocks_of_bodies()
+    total += len(bodies)
+    cells, components = own.count_blocks(total)
+    blocks: list[Block] = []
+    first_surface = 0
+    for number, entry in enumerate(inputs):
+        for k in range(_first_block(entry), len(entry.surfaces)):
+            surface = entry.rock.surfaces[k]
+            at = len(blocks)
+            blocks.append(
+                Block(
+                    name=surface.block_name if k else surface.block or "base block",
+                    rock=number,
+                    surface=first_surface + k,
+                    property=int(surface.property),
+                    volume=float(volumes[first_surface + k]),
+                    cells=int(cells[at]),
+                    components=int(components[at]),
+                )
+            )
+        first_surface += len(entry.surfaces)
+    for number, body, rock in bodies:
+        at = len(blocks)
+        blocks.append(
+            Block(
+                name=body.name,
+                rock=rock,
+                surface=first_surface + number,
+                property=int(body.property),
+                volume=float(volumes[first_surface + number]),
+                cells=int(cells[at]),
+                components=int(components[at]),
+            )
+        )
+    return blocks
+
+
+def _warnings(inputs, built: BuiltCells, blocks: list[Block], structures) -> list[BuildWarning]:
+    warnings = [warning for entry in inputs for warning in entry.warnings]
+    owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
+    for kind, surface, items, text in built.warnings:
+        rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
+        warnings.append(BuildWarning(text, kind, rock, named, items))
+    if structures is not None:
+        warnings += warnings_where_rock_is(inputs, built, structures)
+    for number, entry in enumerate(inputs):
+        if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
+            text = "a single surface does not bound a block"
+        elif not any(block.cells for block in blocks if block.rock == number):
+            text = "no block remains: surfaces and region do not overlap in plan, or all was eroded"
+        else:
+            continue
+        warnings.append(BuildWarning(text, "no_block", entry.rock.name))
+    return warnings

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a built model holds: its cells, blocks and surfaces, and what it was built from."""
+
+from __future__ import annotations
+
+import colorsys
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import Any, Self, TypeVar
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..heights import Interpolation
+from ..project.project import Project
+from ..structures.parts.parts import Structures
+from ..surfaces.rock_input import RockInput
+from ..surfaces.surface_arrays import SurfaceArrays, triangle_sheets, vertex_attributes
+from .blocks import Block, BlockBoundary
+from .cell_complex import CellComplex
+
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
+
+
+@dataclass(eq=False)
+class ModelData:
+    """The data of a Model, and what follows from them at once.
+
+    The arrays of `complex`, the cells, and of `surfaces`, the input surfaces, are attributes here, too, under
+    the names of docs/dev/geometry.md.
+    `surface_names` go with the global indices of the surfaces. `project` holds the arrays that the model was
+    built from, so that nothing is read again. `rock_inputs` are what the stack builder took, by rock mass.
+    `timings` are seconds by phase. `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
+    """
+
+    complex: CellComplex = field(repr=False)
+    blocks: list[Block]
+    surfaces: SurfaceArrays = field(repr=False)
+    surface_names: list[str]
+    project: Project
+    rock_inputs: list[RockInput] = field(default_factory=list, repr=False)
+    warnings: list[BuildWarning] = field(default_factory=list)
+    timings: dict[str, float] = field(default_factory=dict)
+    threads: int = 0
+    is_cut: bool = False
+    surface_kind: np.ndarray = None  # type: ignore[assignment]  # __post_init__ makes it: all interfaces
+    cell_compartment: np.ndarray = None  # type: ignore[assignment]  # likewise: all in one
+    compartment_names: list[str] = field(default_factory=list)
+    compartment_sides: np.ndarray | None = field(default=None, repr=False)
+    structures: Structures | None = field(default=None, repr=False)
+
+    @classmethod
+    def of(cls, data: ModelData) -> Self:
+        """The same as an object of this class."""
+        return cls(**{each.name: getattr(data, each.name) for each in fields(data)})
+
+    def __post_init__(self) -> None:
+        if self.surface_kind is None:
+            self.surface_kind = np.zeros(len(self.surface_names), np.int32)
+        if self.cell_compartment is None:
+            self.cell_compartment = np.zeros(len(self.cell_block), np.int32)
+
+    def native(self) -> dict[str, Any]:
+        """The cells as functions of the native module take them."""
+        return self.complex.native(len(self.blocks))
+
+    @property
+    def vertices(self) -> np.ndarray:
+        return self.complex.vertices
+
+    @property
+    def face_offsets(self) -> np.ndarray:
+        return self.complex.face_offsets
+
+    @property
+    def face_vertices(self) -> np.ndarray:
+        return self.complex.face_vertices
+
+    @property
+    def face_cells(self) -> np.ndarray:
+        return self.complex.face_cells
+
+    @property
+    def face_surface(self) -> np.ndarray:
+        return self.complex.face_surface
+
+    @property
+    def cell_block(self) -> np.ndarray:
+        return self.complex.cell_block
+
+    @property
+    def cell_kind(self) -> str:
+        """ "columns" or "blocks"."""
+        return self.complex.cell_kind
+
+    @property
+    def surface_vertices(self) -> np.ndarray:
+        return self.surfaces.vertices
+
+    @property
+    def surface_triangles(self) -> np.ndarray:
+        return self.surfaces.triangles
+
+    @property
+    def surface_vertex_offsets(self) -> np.ndarray:
+        return self.surfaces.vertex_offsets
+
+    @property
+    def surface_triangle_offsets(self) -> np.ndarray:
+        return self.surfaces.triangle_offsets
+
+    @property
+    def face_blocks(self) -> np.ndarray:
+        """(F, 2) int32: the block on each side of a face; -1 outside."""
+        return self.complex.face_blocks
+
+    @property
+    def cell_component(self) -> np.ndarray:
+        """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
+        return self.complex.cell_component
+
+    @cached_property
+    def cell_volumes(self) -> np.ndarray:
+        """(C,) float64: the volume of each cell, model units cubed."""
+        return self.complex.cell_volumes(self.threads)
+
+    def block_boundary(self, block: int) -> BlockBoundary:
+        """The closed boundary of one block, all its connected parts together."""
+        return self.complex.block_boundary(block)
+
+    def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As CellComplex.face_corners."""
+        return self.complex.face_corners(faces, turned)
+
+    @cached_property
+    def component_volumes(self) -> list[np.ndarray]:
+        """For each block the volumes of its connected parts, largest first."""
+        volume = np.bincount(self.cell_component, self.cell_volumes, len(self.cell_block))
+        roots = np.flatnonzero(self.cell_component == np.arange(len(self.cell_block)))
+        order = roots[np.lexsort((roots, -volume[roots], self.cell_block[roots]))]
+        counts = np.bincount(self.cell_block[order], minlength=len(self.blocks))
+        return np.split(volume[order], np.cumsum(counts)[:-1]) if len(counts) else []
+
+    @property
+    def volume(self) -> float:
+        """The volume of all blocks, model units cubed."""
+        return float(sum(block.volume for block in self.blocks))
+
+    @property
+    def block_colors(self) -> np.ndarray:
+        """(B, 3) float64: the color of each block's property, sRGB from 0 to 1; where there is none one of a
+        circle of hues."""
+        library = self.project.library
+        entries = [library.get(block.property) if library else None for block in self.blocks]
+        return np.array(
+            [
+                entry.rgb if entry and entry.rgb else colorsys.hsv_to_rgb(number * _GOLDEN % 1.0, 0.35, 0.85)
+                for number, entry in enumerate(entries)
+            ]
+        )
+
+    @property
+    def interpolations(self) -> list[Interpolation | None]:
+        """The interpolation of each surface, by its global index; None for ready meshes."""
+        return [result for entry in self.rock_inputs for result in entry.interpolations]
+
+    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
+        """What is known of the vertices of one input surface, by its global index, (V,) float64 each:
+        `height`; `variance` of the error of an interpolated height, squared model units; `distance` in plan
+        to the nearest point that it was interpolated from. NaN where there is no such thing, as for all
+        vertices of a ready mesh."""
+        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""
+        return self.surfaces.surface(number)
+
+    @property
+    def surface_triangle_sheet(self) -> np.ndarray:
+        """(Ts,) int32: of each of `surface_triangles` the sheet of its surface that it is of, from 0."""
+        structures = np.flatnonzero(self.surface_kind).tolist()
+        count = sum(len(self.surface(number)[1]) for number in structures)
+        return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
+
+    def sheet_triangles(self, number: int) -> list[np.ndarray]:
+        """The triangles (T, 3) of each sheet of a surface, by its global index; a surface that no fault
+        displaces has one."""
+        triangles = self.surface(number)[1]
+        begin, end = self.surface_triangle_offsets[number : number + 2]
+        sheet = self.surface_triangle_sheet[begin:end]
+        return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
+
+
+SomeModel = TypeVar("SomeModel", bound=ModelData)  # what is made of a model is of its class

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors of the stack builder in the user's terms: rock mass, surface, file, triangles, position."""
+
+from __future__ import annotations
+
+from ..base.errors import BuildFailed, InputRefused, number_list, place_text
+from ..project.project import rock_item, surface_item
+from ..surfaces.rock_input import RockInput
+
+_ONE_HEIGHT = "a surface may have only one height at each place"
+
+
+def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
+    """The refusal for a native InputError of build_rock_masses; the caller raises it."""
+    place = tuple(error.place) if error.place is not None else None
+    near = f" near {place_text(place)}" if place else ""
+    if error.kind == "rocks_overlap":
+        first, second = (inputs[int(i)].rock for i in error.items)
+        file, line = second.region_source() if second.region is not None else (None, None)
+        return InputRefused(
+            f"it overlaps {rock_item(first)} in plan{near}",
+            file=file,
+            line=line,
+            item=rock_item(second),
+            advice="rock masses may share borders but no area: correct the regions",
+            place=place,
+        )
+    entry, number = _surface_at(inputs, error.surface)
+    if entry is None:
+        return InputRefused(str(error), place=place)
+    rock = entry.rock
+    if error.kind == "base_not_below":
+        file, line = (
+            (rock.source.document.file, rock.source.line("base_elevation")) if rock.source else (None, None)
+        )
+        what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
+        lowest = f", whose lowest point is {place_text(place)}" if place else ""
+        lower = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
+        if place and (beyond := _beyond_its_points(entry, place[2])):
+            lower = f"{lower}; {beyond}"
+        return InputRefused(
+            what + lowest, file=file, line=line, item=rock_item(rock), advice=lower, place=place
+        )
+    surface = rock.surfaces[number]
+    file, line = surface.shape_source()
+    items = tuple(int(i) for i in error.items)
+    named = _triangles(items, entry.file_faces[number])
+    what, advice = str(error), None
+    if error.kind == "vertical_triangle":
+        verb = "is" if len(items) == 1 else "are"
+        what, advice = (
+            f"{named} {verb} vertical{near}",
+            f"{_ONE_HEIGHT}: tilt or remove the vertical triangles",
+        )
+    elif error.kind == "double_valued" and number in entry.torn:
+        return entry.torn[number].within(surface_item(rock, surface), file=file, line=line)
+    elif error.kind == "double_valued":
+        what, advice = (
+            f"{named} overlap in plan{near}",
+            f"{_ONE_HEIGHT}: remove the overhang or the double layer",
+        )
+    return InputRefused(
+        what,
+        file=file,
+        line=line,
+        item=surface_item(rock, surface),
+        advice=advice,
+        triangles=items,
+        place=place,
+    )
+
+
+def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None, int]:
+    """The rock mass of a surface counted through all of them, and its number there."""
+    if surface >= 0:
+        for entry in inputs:
+            if surface < len(entry.surfaces):
+                return entry, surface
+            surface -= len(entry.surfaces)
+    return None, -1
+
+
+def _beyond_its_points(entry, lowest: float) -> str:
+    """The advice where the lowest position is not at a point, but extrapolated by a method."""
+    for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
+        if shape is None or shape[0][:, 2].min() > lowest or not surface.interpolated:
+            continue
+        if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
+            least = surface.points[:, 2].min()
+            return f"the lowest point of surface '{surface.name}' is {least:.6g}, so check its method"
+    return ""
+
+
+def _triangles(items: tuple[int, ...], file_faces) -> str:
+    """'triangle 3' or 'triangles 3 and 5'; with the faces of the file where its polygons were divided."""
+    text = f"triangle{'s' if len(items) != 1 else ''} {number_list(items)}"
+    if file_faces is None:
+        return text
+    faces = dict.fromkeys(int(file_faces[i]) for i in items)
+    return f"{text} (of face{'s' if len(faces) != 1 else ''} {number_list(faces)})"

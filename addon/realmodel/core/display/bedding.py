@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The positions of the corners of blocks within their layers as deposited, for pictures of bedding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.work import Work, native_module
+from ..cells.model_data import ModelData
+from ..cells.native_rocks import native_rocks
+from ..surfaces.sides import fault_sides
+
+_INSIDE = 0.1  # of the size of a face: from its middle to a point in its cell
+_INWARDS = 1e-5  # of the distance from a corner to the inner point
+_NO_LAYER = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Bedding:
+    """height, thickness, depth: (C,) float32 of each corner: where it lies in its layer as it was deposited,
+    from 0 at the base to 1 at the top, whatever was eroded later; the thickness of the layer there, as it was
+    deposited; how deep it lies below the youngest top there, as the sheets of its compartment have it. Model
+    units. is_top: (F,) bool, the polygons on which nothing lies, but for the floors of voids. age: (F,)
+    float32, the number of the surface in its rock mass that the block was deposited beneath; of a body half a
+    step more than that which it came after.
+
+    In a body height and thickness are those of its mesh, from its lowest point to its highest."""
+
+    height: np.ndarray
+    thickness: np.ndarray
+    depth: np.ndarray
+    is_top: np.ndarray
+    age: np.ndarray
+
+    def part(self, corners: slice, polygons: slice) -> Bedding:
+        """The bedding of some polygons."""
+        return Bedding(
+            self.height[corners],
+            self.thickness[corners],
+            self.depth[corners],
+            self.is_top[polygons],
+            self.age[polygons],
+        )
+
+    @staticmethod
+    def joined(parts: list[Bedding]) -> Bedding:
+        """Several, one after another."""
+        return Bedding(*(np.concatenate([vars(part)[name] for part in parts]) for name in vars(parts[0])))
+
+
+def bedding_of(
+    work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray, threads: int
+) -> Bedding:
+    """Bedding coordinates of the faces of a model, cell by cell. faces: (N,) numbers; is_second: (N,) bool,
+    of the second cell; then the corners are those of the face in reverse order. Raises Cancelled."""
+    faces = np.ascontiguousarray(faces, np.int32)
+    cells = np.where(is_second, model.face_cells[faces, 1], model.face_cells[faces, 0])
+    block = model.cell_block[cells]
+    rocks = native_rocks(model)
+    first = np.cumsum([0, *(len(surfaces) for surfaces, *_ in rocks)])
+    rock = np.array([each.rock for each in model.blocks], np.int32)
+    surface = np.array([each.surface for each in model.blocks], np.int32)
+    layer = np.where(surface < first[-1], surface - first[rock], _NO_LAYER).astype(np.int32)
+    histories: list[tuple] = []
+    history = np.zeros(len(faces), np.int32)
+    corner_begin = np.cumsum(np.append(0, np.diff(model.face_offsets)[faces]))
+    of_corners = None
+    for number, (surfaces, _, base_elevation, rules) in enumerate(rocks):
+        own = np.flatnonzero(rock[block] == number)
+        history[own] = len(histories)
+        structure = model.rock_inputs[number].structure if model.rock_inputs else None
+        if structure is None:
+            histories.append((surfaces, base_elevation, rules))
+            continue
+        if of_corners is None:
+            of_corners = np.zeros(corner_begin[-1], np.int32)
+        compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own], threads)
+        of_corners[_runs(corner_begin, own)] = len(histories) + compartments
+        histories += [(sheets, base_elevation, rules) for sheets in structure.sheets]
+    if of_corners is not None:
+        plain = [n for n, entry in enumerate(model.rock_inputs) if entry.structure is None]
+        own = np.flatnonzero(np.isin(rock[block], plain))
+        of_corners[_runs(corner_begin, own)] = np.repeat(history[own], np.diff(corner_begin)[own])
+    height, thickness, depth = work.native(
+        native_module().bedding,
+        model.vertices,
+        model.face_offsets,
+        model.face_vertices,
+        model.face_cells,
+        histories,
+        faces,
+        np.ascontiguousarray(is_second, bool),
+        history,
+        layer[block],
+        np.zeros(0, np.int32) if of_corners is None else of_corners,
+        threads,
+    )
+    grows = (model.surface_kind == 0) | np.isin(np.arange(len(model.surface_kind)), surface)
+    is_top = (model.face_cells[faces, 1] < 0) & (model.face_surface[faces] >= 0)
+    is_top &= grows[np.maximum(model.face_surface[faces], 0)]
+    is_top[is_top] = ~seen_from_below(model, faces[is_top])
+    age = np.array([_age(model, number, layer) for number in range(len(model.blocks))], np.float32)
+    found = Bedding(height, thickness, depth, is_top, age[block])
+    body = np.where(layer == _NO_LAYER, surface, -1)
+    return _with_bodies(model, found, faces, is_second, body[block])
+
+
+def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
+    if layer[block] != _NO_LAYER:
+        return float(layer[block])
+    assert model.structures is not None  # a block that is no layer is a body
+    body = model.blocks[block].surface - len(model.surface_names) + len(model.structures.bodies)
+    return model.structures.times[body].get(model.blocks[block].rock, 0) + 0.5
+
+
+def _with_bodies(model: ModelData, found: Bedding, faces, is_second, body: np.ndarray) -> Bedding:
+    """body: (N,) the surface of the body that each polygon is of, -1: none."""
+    if (body < 0).all():
+        return found
+    offsets, corners = model.face_corners(faces, is_second)
+    of_corner = np.repeat(body, np.diff(offsets))
+    height, thickness = found.height.copy(), found.thickness.copy()
+    for surface in np.unique(body[body >= 0]):
+        own = of_corner == surface
+        levels = model.surface(surface)[0][:, 2]
+        thickness[own] = np.ptp(levels)
+        height[own] = np.clip((model.vertices[corners[own], 2] - levels.min()) / np.ptp(levels), 0.0, 1.0)
+    return replace(found, height=height, thickness=thickness)
+
+
+def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """The indices of the corners of some polygons, one polygon after the other. begin: (N + 1,) of all."""
+    size = begin[numbers + 1] - begin[numbers]
+    ends = np.cumsum(size)
+    return np.repeat(begin[numbers] - (ends - size), size) + np.arange(ends[-1] if len(ends) else 0)
+
+
+def _compartments(work: Work, model: ModelData, structure, faces, is_second, cells, threads) -> np.ndarray:
+    """(C,) the compartment of a rock mass that each corner of some faces lies in, by its rows of sides. What
+    a compartment of the model leaves open - a fault that does not divide the block, or that dies out - is
+    where the corner lies, drawn a little into its cell."""
+    faults = structure.faults
+    assert model.compartment_sides is not None  # the model has faults
+    offsets, _ = model.face_corners(faces, is_second)
+    of_polygon = model.compartment_sides[model.cell_compartment[cells]][:, faults.numbers]
+    sides = np.repeat(of_polygon, np.diff(offsets), axis=0)
+    points = None
+    for number, shape in enumerate(faults.shapes):
+        is_open = np.flatnonzero(sides[:, number] == 0)
+        if len(is_open):
+            points = _points_inside(model, faces, is_second) if points is None else points
+            sides[is_open, number] = fault_sides(work, points[is_open], shape, threads)
+    sides = faults.without_dropped(sides)
+    distinct, row = np.unique(sides, axis=0, return_inverse=True)
+    equal = (distinct[:, None] == structure.compartments).sum(axis=2)
+    return equal.argmax(axis=1).astype(np.int32)[row.ravel()]
+
+
+def _points_inside(model: ModelData, faces: np.ndarray, is_second: np.ndarray) -> np.ndarray:
+    """(C, 3) for each corner a point in its cell close by."""
+    offsets, corners = model.face_corners(faces, is_second)
+    begin, count = offsets[:-1], np.diff(offsets)
+    points = model.vertices[corners]
+    local = points - np.repeat(points[begin], count, axis=0)
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = begin
+    area = np.add.reduceat(np.cross(local, local[following]), begin) / 2
+    size = np.sqrt(np.linalg.norm(area, axis=1))[:, None]
+    middle = points[begin] + np.add.reduceat(local, begin) / count[:, None]
+    inside = middle - _INSIDE * area / np.maximum(size, np.finfo(float).tiny)
+    return points + _INWARDS * (np.repeat(inside, count, axis=0) - points)
+
+
+def seen_from_below(model: ModelData, faces: np.ndarray) -> np.ndarray:
+    """(N,) bool: the faces whose corners go clockwise seen from above."""
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    if not len(faces):
+        return np.zeros(0, bool)
+    x, y = model.vertices[corners, 0], model.vertices[corners, 1]
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    first = np.repeat(offsets[:-1], np.diff(offsets))
+    x, y = x - x[first], y - y[first]
+    return np.add.reduceat(x * y[following] - y * x[following], offsets[:-1]) < 0

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes of polygons made of parts of two others, and the sources of their vertices, corners, edges and
+polygons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..base.work import native_module
+from ..results.booleans import Intersection
+from .polygon_mesh import PolygonMesh
+
+_ONWARD = np.array([1, 2, 0])
+
+
+@dataclass(eq=False)
+class Operand:
+    """A mesh of polygons, divided into triangles, that takes part in a Boolean.
+
+    vertices: (V, 3) float64. offsets: (F + 1,), where the corners of each polygon begin. corner_vertices,
+    corner_edges: (C,), the vertex of each corner, and the edge from it to the next. triangle_corners: (T, 3).
+    triangle_polygons: (T,). is_mirrored: the triangles are to be turned around.
+    """
+
+    vertices: np.ndarray
+    offsets: np.ndarray
+    corner_vertices: np.ndarray
+    corner_edges: np.ndarray
+    triangle_corners: np.ndarray
+    triangle_polygons: np.ndarray
+    is_mirrored: bool = False
+    triangles: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        if self.is_mirrored:
+            self.triangle_corners = np.ascontiguousarray(self.triangle_corners[:, [0, 2, 1]])
+        self.triangles = self.corner_vertices[self.triangle_corners].astype(np.int32)
+
+
+@dataclass(eq=False)
+class Source:
+    """The elements of a mesh of parts that come from one operand.
+
+    vertices: (N,) vertices of the mesh that lie on the operand; vertex_of: (N, 3), the vertices of the
+    operand around each, with vertex_weights (N, 3). edges: (E,) edges of the mesh, parts of the operand's
+    edges edge_of (E,). polygons: (P,) polygons of the mesh, parts of the operand's polygons polygon_of (P,).
+    corners: (C,) corners of the mesh, between the operand's corners corner_of (C, 3), with corner_weights (C,
+    3).
+    """
+
+    vertices: np.ndarray
+    vertex_of: np.ndarray
+    vertex_weights: np.ndarray
+    edges: np.ndarray
+    edge_of: np.ndarray
+    polygons: np.ndarray
+    polygon_of: np.ndarray
+    corners: np.ndarray
+    corner_of: np.ndarray
+    corner_weights: np.ndarray
+
+
+@dataclass(eq=False)
+class MeshParts:
+    """A mesh of polygons (coordinates in double precision), and its parts from each operand. meeting: (K,)
+    the edges between polygons of the two operands."""
+
+    vertices: np.ndarray
+    offsets: np.ndarray
+    corners: np.ndarray
+    edges: np.ndarray
+    corner_edges: np.ndarray
+    sources: tuple[Source, Source]
+    meeting: np.ndarray
+
+    def shape(self, coordinates: np.ndarray) -> PolygonMesh:
+        """The mesh with other coordinates, (V, 3) float32."""
+        return PolygonMesh(coordinates, self.offsets, self.corners, None, self.edges, self.corner_edges)
+
+
+def mesh_of_parts(
+    found: Intersection,
+    rows: np.ndarray,
+    is_turned: np.ndarray,
+    operands: tuple[Operand, Operand],
+    mirror: bool,
+) -> MeshParts:
+    """The mesh of some triangles of an intersection. Polygons that were not divided are whole again.
+
+    rows: (M,) of the triangles. is_turned: (M,) bool, which are turned around. mirror: all are turned around
+    once more. The polygons are in the order of the operands and of their polygons.
+    """
+    source, origin = found.source[rows], found.source_triangle[rows]
+    triangles = found.triangles[rows]
+    weights = np.empty((len(rows), 3, 3))
+    polygon = np.empty(len(rows), np.int64)
+    between = np.empty((len(rows), 3), np.int64)  # corners of the operand that a triangle lies between
+    on_edge = np.empty((len(rows), 3), np.int64)
+    is_whole = np.zeros(len(rows), bool)
+    for number, operand in enumerate(operands):
+        own = source == number
+        weights[own] = _barycentric(
+            found.vertices[triangles[own]], operand.vertices[operand.triangles[origin[own]]]
+        )
+        polygon[own] = operand.triangle_polygons[origin[own]]
+        between[own] = operand.triangle_corners[origin[own]]
+        pieces = np.bincount(found.source_triangle[found.source == number], minlength=len(operand.triangles))
+        on_edge[own] = _edges_of(found, number, rows[own], pieces, weights[own], operand)
+        is_whole[own] = _whole_polygons(operand, origin[own], pieces, polygon[own], is_turned[own])
+    key = np.lexsort((np.arange(len(rows)), polygon, source))
+    first = np.ones(len(rows), bool)  # of its face: of a whole polygon only one triangle stands for it
+    same = (np.diff(source[key]) == 0) & (np.diff(polygon[key]) == 0) & is_whole[key][1:]
+    first[1:] = ~same
+    faces = key[first]
+
+    turned = is_turned[faces] ^ mirror
+    sizes = np.full(len(faces), 3, np.int64)
+    for number, operand in enumerate(operands):
+        there = is_whole[faces] & (source[faces] == number)
+        sizes[there] = np.diff(operand.offsets)[polygon[faces[there]]]
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    corner_face = np.repeat(np.arange(len(faces)), sizes)
+    within = np.arange(offsets[-1]) - offsets[corner_face]
+    backward = turned[corner_face]
+    within = np.where(backward, (sizes[corner_face] - within) % sizes[corner_face], within)
+    # where a face is turned around, the edge after a corner is the one before it
+    within_edge = np.where(backward, (within - 1) % sizes[corner_face], within)
+
+    row = faces[corner_face]
+    small = ~is_whole[row]
+    corner_of = np.empty((len(row), 3), np.int64)
+    corner_weights = np.zeros((len(row), 3))
+    corner_edge = np.empty(len(row), np.int64)
+    corners = np.empty(len(row), np.int64)
+    corner_of[small] = between[row[small]]
+    corner_weights[small] = weights[row[small], within[small]]
+    corner_edge[small] = on_edge[row[small], within_edge[small]]
+    corners[small] = triangles[row[small], within[small]]
+    for number, operand in enumerate(operands):
+        large = ~small & (source[row] == number)
+        if not large.any():
+            continue
+        begin = operand.offsets[polygon[row[large]]]
+        size = sizes[corner_face[large]]
+        at, at_edge = within[large], within_edge[large]
+        if operand.is_mirrored:  # its polygons are not turned around, its triangles are
+            at, at_edge = (size - at) % size, (size - at_edge - 1) % size
+        corner_of[large] = (begin + at)[:, None]
+        corner_weights[large, 0] = 1.0
+        corner_edge[large] = operand.corner_edges[begin + at_edge]
+        there = (source == number) & is_whole
+        vertex = np.full(len(operand.vertices), -1, np.int64)
+        nearest = np.argmax(weights[there], axis=2)
+        vertex[np.take_along_axis(operand.triangles[origin[there]], nearest, axis=1)] = triangles[there]
+        corners[large] = vertex[operand.corner_vertices[begin + at]]
+
+    used, corners = np.unique(corners, return_inverse=True)
+    corners = corners.ravel().astype(np.int32)
+    offsets = offsets.astype(np.int32)
+    edges, edge_of_corner = native_module().polygon_edges(offsets, corners, len(used))
+    face_source = source[faces]
+    sources = []
+    for number, operand in enumerate(operands):
+        at = np.flatnonzero(face_source[corner_face] == number)
+        vertices, first_at = np.unique(corners[at], return_index=True)
+        known = at[corner_edge[at] >= 0]
+        own_edges, first_edge = np.unique(edge_of_corner[known], return_index=True)
+        own_faces = np.flatnonzero(face_source == number)
+        sources.append(
+            Source(
+                vertices,
+                operand.corner_vertices[corner_of[at[first_at]]],
+                corner_weights[at[first_at]],
+                own_edges,
+                corner_edge[known[first_edge]],
+                own_faces,
+                polygon[faces[own_faces]],
+                at,
+                corner_of[at],
+                corner_weights[at],
+            )
+        )
+    meeting = np.intersect1d(*(edge_of_corner[own.corners] for own in sources))
+    one, other = sources
+    return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, (one, other), meeting)
+
+
+def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Values (N, ...) at corners or vertices, between three of which each place lies: (P, 3) numbers, and
+    weights. Whole numbers are rounded, of truth values the half counts, of anything else the nearest."""
+    if values.dtype.kind not in "fiub":
+        return values[np.take_along_axis(between, weights.argmax(axis=1)[:, None], axis=1)[:, 0]]
+    total = np.zeros(())
+    for corner in range(3):
+        weight = weights[:, corner].reshape(-1, *[1] * (values.ndim - 1))
+        there = values[between[:, corner]].astype(np.float64)
+        total = total + np.where(weight == 0.0, 0.0, weight * np.where(weight == 0.0, 0.0, there))
+    if values.dtype.kind == "b":
+        return total >= 0.5
+    return (total if values.dtype.kind == "f" else np.rint(total)).astype(values.dtype)
+
+
+def _barycentric(places: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(M, 3, 3): the weights [:, i] of the corners of triangles (M, 3, 3) at places [:, i]; at a corner they
+    are exactly 1, 0, 0."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    axis = np.abs(normal).argmax(axis=1)
+    plan = np.stack([(axis + 1) % 3, (axis + 2) % 3], axis=1)
+
+    def seen(points):
+        return np.take_along_axis(points, plan, axis=1)
+
+    def area(p, q, r):
+        u, v = q - p, r - p
+        return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+
+    a, b, c = seen(a), seen(b), seen(c)
+    found = np.empty((len(places), 3, 3))
+    for corner in range(3):
+        p = seen(places[:, corner])
+        parts = np.stack([area(p, b, c), area(p, c, a), area(p, a, b)], axis=1)
+        whole = parts.sum(axis=1, keepdims=True)
+        share = np.divide(parts, whole, out=np.full_like(parts, 1 / 3), where=whole != 0)
+        share = np.clip(share, 0.0, 1.0)
+        found[:, corner] = share / share.sum(axis=1, keepdims=True)
+        for k, at in enumerate((a, b, c)):
+            found[(p == at).all(axis=1), corner] = np.eye(3)[k]
+    return found
+
+
+def _edges_of(found, number, rows, pieces, weights, operand) -> np.ndarray:
+    """(M, 3): the edge of the operand on which the edge after each corner of triangles lies, -1 for none.
+
+    An edge of a piece is on the border of the triangle that it is part of where no other piece of it has the
+    edge; no distances are compared."""
+    on_border = np.ones((len(rows), 3), bool)
+    divided = pieces[found.source_triangle[rows]] > 1
+    if divided.any():
+        own = np.flatnonzero(found.source == number)
+        everything = own[pieces[found.source_triangle[own]] > 1]
+        corners = found.triangles[everything]
+        ends = np.sort(np.stack([corners, corners[:, _ONWARD]], axis=2), axis=2)
+        origin = np.repeat(found.source_triangle[everything], 3)
+        keys = np.column_stack([origin, ends.reshape(-1, 2)])
+        _, same, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+        single = (count[same.ravel()] == 1).reshape(-1, 3)
+        on_border[divided] = single[np.searchsorted(everything, rows[divided])]
+    beyond = np.maximum(weights, weights[:, _ONWARD]).argmin(
+        axis=2
+    )  # the corner that the edge is opposite to
+    triangle = operand.triangle_corners[found.source_triangle[rows]]
+    one = np.take_along_axis(triangle, _ONWARD[beyond], axis=1)
+    other = np.take_along_axis(triangle, _ONWARD[_ONWARD[beyond]], axis=1)
+    following = np.arange(len(operand.corner_vertices)) + 1
+    following[operand.offsets[1:] - 1] = operand.offsets[:-1]
+    edge = np.where(following[one] == other, operand.corner_edges[one], -1)
+    edge = np.where(following[other] == one, operand.corner_edges[other], edge)
+    return np.where(on_border, edge, -1)
+
+
+def _whole_polygons(operand, origin, pieces, polygon, is_turned) -> np.ndarray:
+    """(M,) bool: the triangles of polygons of more than three corners that are all there, none divided, and
+    turned alike."""
+    count = len(operand.offsets) - 1
+    needed = np.bincount(operand.triangle_polygons, minlength=count)
+    undivided = pieces[origin] == 1
+    there = np.bincount(polygon[undivided], minlength=count)
+    turned = np.bincount(polygon[undivided & is_turned], minlength=count)
+    whole = (there == needed) & ((turned == 0) | (turned == needed)) & (np.diff(operand.offsets) > 3)
+    return undivided & whole[polygon]

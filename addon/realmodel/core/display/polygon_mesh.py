@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blocks and cells of a model as meshes of polygons with all their edges, for display and export."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..base.work import Cancel, native_module, run
+from ..cells.model_data import ModelData
+from .bedding import Bedding, bedding_of, seen_from_below
+
+
+@dataclass(frozen=True, eq=False)
+class PolygonMesh:
+    """A mesh of polygons.
+
+    coordinates: (V, 3) float32. offsets: (F + 1,) int32, where the corners of each polygon begin, and where
+    the last end. corners: (C,) int32, vertex numbers, counter-clockwise seen from outside. face_surface:
+    (F,) int32, the global index of the surface that each polygon lies on (-1 a wall, -2 the flat base), or
+    None. edges: (E, 2) int32, each once, and corner_edges: (C,) int32, for each corner the edge from it to
+    the next; both None where whoever takes the mesh is to find them. smooth: shaded without breaks.
+    face_compartment: (F,) int32, the compartment that each polygon bounds, or None for models of one.
+    bedding: of blocks, where its corners lie in their layers.
+    """
+
+    coordinates: np.ndarray
+    offsets: np.ndarray
+    corners: np.ndarray
+    face_surface: np.ndarray | None = None
+    edges: np.ndarray | None = None
+    corner_edges: np.ndarray | None = None
+    smooth: bool = False
+    face_compartment: np.ndarray | None = None
+    bedding: Bedding | None = None
+
+    @property
+    def polygons(self) -> int:
+        """The number of polygons."""
+        return len(self.offsets) - 1
+
+
+def of_triangles(coordinates: np.ndarray, triangles: np.ndarray, smooth: bool = False) -> PolygonMesh:
+    """A mesh of triangles, (T, 3) int32, with its edges."""
+    offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32)
+    corners = np.ascontiguousarray(triangles, np.int32).reshape(-1)
+    edges, corner_edges = native_module().polygon_edges(offsets, corners, len(coordinates))
+    return PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges, smooth)
+
+
+def of_surfaces(model: ModelData, origin: np.ndarray) -> list[PolygonMesh | None]:
+    """For each surface of a model, by its global index, the faces that are left of it; None where it is all
+    eroded. origin: as for `of_blocks`."""
+    order = np.argsort(model.face_surface, kind="stable")
+    begin = np.searchsorted(model.face_surface[order], np.arange(len(model.surface_names) + 1))
+    found: list[PolygonMesh | None] = []
+    for first, last in pairwise(begin.tolist()):
+        if first == last:
+            found.append(None)
+            continue
+        faces = order[first:last]
+        # The cell that a face is numbered for lies below it or above; seen from above all turn the same way.
+        offsets, corners = model.face_corners(faces, seen_from_below(model, faces))
+        used, corners = np.unique(corners, return_inverse=True)
+        coordinates = (model.vertices[used] - origin).astype(np.float32)
+        offsets, corners = offsets.astype(np.int32), corners.astype(np.int32).ravel()
+        edges, corner_edges = native_module().polygon_edges(offsets, corners, len(used))
+        found.append(PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges))
+    return found
+
+
+def of_blocks(
+    model: ModelData,
+    origin: np.ndarray,
+    threads: int = 0,
+    cancel: Cancel | None = None,
+    compartments: Sequence[str] | None = None,
+) -> list[PolygonMesh | None]:
+    """For each block of a model its closed boundary, all its parts together; None where it has no cells.
+
+    origin: (3,) float64, taken off the coordinates before they are rounded to 32 bits. cancel: as for
+    `build`. compartments: names by which face_compartment counts; None: the model's own. Of a stage those of
+    the whole model are wanted; what these lack is counted on. Raises Cancelled, BuildFailed.
+    """
+    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks))
+    numbers = _numbers(model, compartments)
+    if numbers is None:
+        return [None if found is None else found[0] for found in shapes]
+    made: list[PolygonMesh | None] = []
+    for block, found in enumerate(shapes):
+        if found is None:
+            made.append(None)
+            continue
+        shape, faces = found
+        cells = model.face_cells[faces]
+        inside = np.append(model.cell_block, np.int32(-1))[cells] == block
+        cell = np.where(inside[:, 0], cells[:, 0], cells[:, 1])
+        made.append(replace(shape, face_compartment=numbers[model.cell_compartment[cell]]))
+    return made
+
+
+def of_cells(
+    model: ModelData,
+    origin: np.ndarray,
+    shrink: float | None,
+    threads: int = 0,
+    cancel: Cancel | None = None,
+    compartments: Sequence[str] | None = None,
+) -> list[PolygonMesh | None]:
+    """For each block of a model all its cells, each by itself with vertices of its own that are drawn towards
+    their mean by the factor `shrink`; where that is None the parts of the block in each compartment, each
+    closed by itself. Otherwise as `of_blocks`."""
+    numbers = _numbers(model, compartments)
+    if numbers is None:
+        shapes = _shells(model, origin, shrink, threads, cancel, model.cell_block, len(model.blocks))
+        return [None if found is None else found[0] for found in shapes]
+    count = int(model.cell_compartment.max()) + 1
+    label = (model.cell_block * count + model.cell_compartment).astype(np.int32)
+    shapes = _shells(model, origin, shrink, threads, cancel, label, len(model.blocks) * count)
+    parts = [None if found is None else found[0] for found in shapes]
+    return [
+        _joined(parts[begin : begin + count], numbers) for begin in range(0, len(model.blocks) * count, count)
+    ]
+
+
+def moved_apart(shape: PolygonMesh, shifts: np.ndarray) -> PolygonMesh:
+    """A mesh of `of_cells` with each compartment moved; shifts: (N, 3)."""
+    if shape.face_compartment is None:
+        return shape
+    of_vertex = np.zeros(len(shape.coordinates), np.int32)
+    of_vertex[shape.corners] = np.repeat(shape.face_compartment, np.diff(shape.offsets))
+    shifts = np.asarray(shifts, np.float32)[np.minimum(of_vertex, len(shifts) - 1)]
+    return replace(shape, coordinates=shape.coordinates + shifts)
+
+
+def _numbers(model: ModelData, names: Sequence[str] | None) -> np.ndarray | None:
+    """The numbers by which the compartments of a model are named; None where it has only one."""
+    own = model.compartment_names
+    names = list(own if names is None else names)
+    if max(len(own), len(names)) < 2:
+        return None
+    names += [name for name in own if name not in names]
+    return np.array([names.index(name) for name in own], np.int32)
+
+
+def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh | None:
+    """The parts of a block in each compartment as one mesh."""
+    given = [(part, number) for part, number in zip(parts, numbers, strict=False) if part is not None]
+    if not given:
+        return None
+    vertices, edges, corners = 0, 0, 0
+    found: dict[str, list] = {key: [] for key in ("offsets", "corners", "edges", "corner_edges")}
+    for part, _ in given:
+        assert part.edges is not None and part.corner_edges is not None  # of_cells has made it
+        found["offsets"].append(part.offsets[:-1] + corners)
+        found["corners"].append(part.corners + vertices)
+        found["edges"].append(part.edges + vertices)
+        found["corner_edges"].append(part.corner_edges + edges)
+        vertices, edges = vertices + len(part.coordinates), edges + len(part.edges)
+        corners += len(part.corners)
+    found["offsets"].append(np.array([corners]))
+    return PolygonMesh(
+        coordinates=np.concatenate([part.coordinates for part, _ in given]),
+        offsets=np.concatenate(found["offsets"]).astype(np.int32),
+        corners=np.concatenate(found["corners"]).astype(np.int32),
+        edges=np.concatenate(found["edges"]).astype(np.int32),
+        corner_edges=np.concatenate(found["corner_edges"]).astype(np.int32),
+        face_surface=np.concatenate([part.face_surface for part, _ in given]),
+        face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
+        bedding=Bedding.joined([part.bedding for part, _ in given if part.bedding is not None]),
+    )
+
+
+def _shells(
+    model, origin, shrink, threads, cancel, label, count
+) -> list[tuple[PolygonMesh, np.ndarray] | None]:
+    """The mesh around the cells of each label, and of each polygon the face of the model."""
+
+    def task(work):
+        shells = work.native(
+            native_module().complex_shells,
+            model.vertices,
+            model.face_offsets,
+            model.face_vertices,
+            model.face_cells,
+            label,
+            count,
+            tuple(float(value) for value in origin),
+            shrink,
+            threads,
+        )
+        there = [arrays for arrays in shells if arrays is not None]
+        if not there:
+            return shells, None
+        faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
+        return shells, bedding_of(work, model, faces, is_second, threads)
+
+    shells, bedding = run(task, cancel=cancel)
+    found: list[tuple[PolygonMesh, np.ndarray] | None] = []
+    corner, polygon = 0, 0
+    for arrays in shells:
+        if arrays is None:
+            found.append(None)
+            continue
+        coordinates, offsets, corners, faces, _, edges, corner_edges = arrays
+        ends = corner + len(corners), polygon + len(faces)
+        own = bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
+        corner, polygon = ends
+        surface = model.face_surface[faces]
+        shape = PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges, bedding=own)
+        found.append((shape, faces))
+    return found

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Named meshes of polygons for programs that take shapes: blocks, surfaces and sections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from ...base.work import native_module
+
+_PLAIN = (0.7, 0.7, 0.7)  # for parts without a property
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A shape: vertices (V, 3) float64, polygons as offsets (F + 1,) int64 and corners int32, those of a
+    closed shape counter-clockwise seen from outside.
+
+    name: no other part of the list has it. property: id of the library, 0: none. material: the name of what
+    it is made of. color: red, green, blue from 0 to 1, sRGB.
+    """
+
+    name: str
+    vertices: np.ndarray
+    offsets: np.ndarray
+    corners: np.ndarray
+    property: int = 0
+    material: str = ""
+    color: tuple[float, float, float] = field(default=_PLAIN)
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """(T, 3) int32: the polygons divided; what they close is closed."""
+        if (np.diff(self.offsets) == 3).all():
+            return np.ascontiguousarray(self.corners, np.int32).reshape(-1, 3)
+        offsets = np.ascontiguousarray(self.offsets, np.int64)
+        return native_module().triangulate_faces(self.vertices, offsets, self.corners)[0]
+
+
+def model_parts(model) -> list[Part]:
+    """The closed boundary of each existing block, named after it."""
+    names = distinct_names(block.name for block in model.blocks)
+    materials, colors = block_materials(model), model.block_colors.tolist()
+    parts = []
+    for number, block in enumerate(model.blocks):
+        if not block.cells:
+            continue
+        shape = model.block_boundary(number)
+        parts.append(
+            Part(
+                names[number],
+                shape.vertices,
+                shape.face_offsets,
+                shape.face_vertices,
+                block.property,
+                materials[block.property],
+                tuple(colors[number]),
+            )
+        )
+    return parts
+
+
+def block_materials(model) -> dict[int, str]:
+    """The name of the property of each block."""
+    library = model.project.library
+    used = {block.property for block in model.blocks}
+    entries = {number: library.get(number) if library else None for number in sorted(used)}
+    named = {number: entry.name if entry else f"property {number}" for number, entry in entries.items()}
+    return dict(zip(named, distinct_names(named.values()), strict=True))
+
+
+def surface_parts(surfaces) -> list[Part]:
+    """The surfaces of a SurfaceSet or a Model, each as it was used."""
+    parts = []
+    for number, name in enumerate(distinct_names(surfaces.surface_names)):
+        vertices, triangles = surfaces.surface(number)
+        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
+        parts.append(Part(name, vertices, offsets, triangles.ravel()))
+    return parts
+
+
+def section_parts(section) -> list[Part]:
+    """The polygons of a section or fence, those of each block together."""
+    names = distinct_names(section.block_names)
+    sizes = np.diff(section.offsets)
+    parts = []
+    for block in np.unique(section.block).tolist():
+        own = section.block == block
+        corners = section.polygon_vertices[np.repeat(own, sizes)]
+        used, corners = np.unique(corners, return_inverse=True)
+        prop = int(section.property[own][0])
+        parts.append(
+            Part(
+                names[block],
+                section.vertices[used],
+                np.concatenate([[0], np.cumsum(sizes[own])]).astype(np.int64),
+                corners.ravel().astype(np.int32),
+                prop,
+                f"property {prop}",
+                tuple(section.block_colors[block].tolist()),
+            )
+        )
+    return parts
+
+
+def distinct_names(given: Iterable[str]) -> list[str]:
+    """The same names, each in one line; a number is appended to repeated ones."""
+    taken: set[str] = set()
+    names = []
+    for name in given:
+        base = " ".join(name.split()) or "unnamed"
+        found, number = base, 1
+        while found in taken:
+            number += 1
+            found = f"{base} ({number})"
+        taken.add(found)
+        names.append(found)
+    return names
+
+
+def plain_words(names: Sequence[str]) -> list[str]:
+    """Names for formats without blanks: characters other than letters, digits, - and . become _."""
+    words = ["".join(c if c.isalnum() or c in "-._" else "_" for c in name) for name in names]
+    found: list[str] = []
+    for word in words:
+        number, free = 1, word
+        while free in found:
+            number += 1
+            free = f"{word}_{number}"
+        found.append(free)
+    return found

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cross-validation: the height of each point, estimated from the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.errors import InputRefused, UsageError
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..settings.method_options import check_threads
+from ..settings.methods import METHODS
+from ..settings.variogram import Variogram
+from . import left_out_heights
+from .interpolate import checked_nodes, checked_points, checked_triangles, method_settings
+from .mis_ties import without_mis_ties
+from .run import heights
+
+DEFAULT_FOLDS = 10
+
+
+@dataclass(frozen=True)
+class CrossValidation:
+    """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
+    minus the points' heights; standardised (P,), errors divided by the kriging standard deviation, None where
+    the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
+
+    Where a point cannot be estimated (a method that gives no height outside the hull of the other points),
+    its z and error are NaN; rmse is of the others.
+    """
+
+    points: np.ndarray
+    z: np.ndarray
+    errors: np.ndarray
+    standardised: np.ndarray | None
+    rmse: float
+    method: str
+    variogram: Variogram | None = None
+
+    @property
+    def mean_error(self) -> float:
+        """The mean error of the estimated points: above 0 where estimates are too high. NaN where there are
+        none."""
+        return float(self.errors[self.known].mean()) if self.known.any() else float("nan")
+
+    @property
+    def mean_absolute_error(self) -> float:
+        return float(np.abs(self.errors[self.known]).mean()) if self.known.any() else float("nan")
+
+    @property
+    def correlation(self) -> float:
+        """The correlation of measured and estimated heights (Pearson's); NaN where one of them is
+        constant."""
+        measured, estimated = self.points[self.known, 2], self.z[self.known]
+        if len(measured) < 2 or not np.ptp(measured) or not np.ptp(estimated):
+            return float("nan")
+        return float(np.corrcoef(measured, estimated)[0, 1])
+
+    @property
+    def known(self) -> np.ndarray:
+        """(P,) bool: the points that are estimated."""
+        return np.isfinite(self.errors)
+
+    def worst(self, number: int) -> np.ndarray:
+        """The indices of the points with the largest errors, the largest first."""
+        order = np.argsort(-np.abs(self.errors), kind="stable")  # NaN last
+        return order[: min(number, int(self.known.sum()))]
+
+    @property
+    def within_two_deviations(self) -> float | None:
+        """The share of errors below twice their deviation: about 0.95 where variances are honest."""
+        if self.standardised is None:
+            return None
+        known = np.isfinite(self.standardised)
+        return float((np.abs(self.standardised[known]) <= 2).mean()) if known.any() else None
+
+
+def cross_validate(
+    points,
+    method: str = "kriging",
+    neighbours: int | None = None,
+    threads: int = 0,
+    folds: int = DEFAULT_FOLDS,
+    *,
+    mesh=None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    **options,
+) -> CrossValidation:
+    """Estimates the height of each point from the others by a method.
+
+    points: (P, 3), at least 2 positions in plan; points at one position count once. Kriging and inverse
+    distance leave the points out one by one, with the variogram fitted to all of them (where all points are
+    neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
+    methods are run `folds` times, each time without every folds-th point. mesh: (nodes (N, 2), triangles (T,
+    3)), for a method that works on a mesh. options: as for `interpolate`.
+
+    Raises InputRefused, UsageError, Cancelled.
+    """
+    points = checked_points(points)
+    settings = method_settings(method, neighbours, options)
+    threads = check_threads(threads)
+    if isinstance(folds, bool) or not hasattr(folds, "__index__") or int(folds) < 2:
+        raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
+    if (mesh is None) == METHODS[method].on_mesh:
+        needs = "needs mesh = (nodes, triangles)" if mesh is None else "does not use a mesh"
+        raise UsageError(f"method '{method}' {needs}")
+    if mesh is not None:
+        nodes = checked_nodes(mesh[0])
+        mesh = nodes, checked_triangles(mesh[1], len(nodes))
+
+    def task(work: Work) -> CrossValidation:
+        with work.phase(0.0, 1.0, "cross-validating"):
+            return validate(work, points, method, settings, threads, int(folds), mesh)
+
+    return run(task, progress, cancel)
+
+
+def validate(
+    work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh=None
+) -> CrossValidation:
+    """cross_validate within a work that is already running, from checked arrays and settings."""
+    points = distinct_points(points)
+    if len(points) < 2:
+        raise InputRefused("cross-validation needs at least two points", item="points")
+    variance, variogram = None, None
+    if METHODS[method].leaves_one_out:
+        result = left_out_heights(work, points, method, settings, threads)
+        z, variance, variogram = result.z, result.variance, result.variogram
+    else:
+        z = _in_folds(work, points, method, settings, threads, min(folds, len(points)), mesh)
+    errors = z - points[:, 2]
+    standardised = None
+    if variance is not None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            standardised = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
+    known = np.isfinite(errors)
+    rmse = float(np.sqrt(np.mean(errors[known] ** 2))) if known.any() else float("nan")
+    return CrossValidation(points, z, errors, standardised, rmse, method, variogram)
+
+
+def distinct_points(points: np.ndarray) -> np.ndarray:
+    """The points without those that repeat another; heights that differ a little are averaged."""
+    points, _ = without_mis_ties(points)
+    _, first = np.unique(points, axis=0, return_index=True)
+    return np.ascontiguousarray(points[np.sort(first)])
+
+
+def _in_folds(work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh) -> np.ndarray:
+    z = np.empty(len(points))
+    for fold in range(folds):
+        work.step(fold / folds)
+        out = np.zeros(len(points), bool)
+        out[fold::folds] = True
+        places, others = np.ascontiguousarray(points[out, :2]), np.ascontiguousarray(points[~out])
+        if mesh is None:
+            z[out] = heights(work, others, places, method, settings, threads).z
+        else:
+            nodes, triangles = mesh
+            shape = np.column_stack(
+                [nodes, heights(work, others, nodes, method, settings, threads, triangles).z]
+            )
+            surface_heights = native_module().surface_heights
+            z[out] = work.native(surface_heights, shape, triangles, places, threads=threads)
+    return z

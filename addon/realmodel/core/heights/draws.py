@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Heights that points allow, drawn at random: conditional realizations of an interpolated surface.
+
+A field S with the surface's variogram is drawn without regard to the points. The surface's method
+interpolates it from its values at the points. The difference is an error as the method makes it, 0 at the
+points; it is added to the interpolated heights (Chiles and Delfiner 2012, "Geostatistics", section 7.3).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.work import Work
+from ..settings.methods import SURFACE_OPTIONS, checked_options
+from ..settings.variogram import Variogram
+from . import Interpolation, heights
+from .from_neighbours import structure
+from .interpolation import Task
+from .mis_ties import without_mis_ties
+from .on_mesh import within_bounds
+from .surface_reference import heights_of
+from .turning_bands import Frame, Noise, gaussian_field
+
+_LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
+_NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
+
+
+@dataclass(frozen=True)
+class _Known:
+    """The data of a surface that do not change between realizations: the interpolated heights, the method and
+    the options that reproduce them, counts, (P,) bool, the points that they use, and the variogram. For a
+    surface parallel to another one these are of its thickness."""
+
+    result: Interpolation
+    method: str
+    settings: dict
+    variogram: Variogram | None
+    counts: np.ndarray
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A realization of one surface. known: by points and nodes, filled as they come, shared by all
+    realizations of the surface. given: the interpolated heights, where no fault displaces the surface."""
+
+    frame: Frame
+    noise: Noise
+    known: dict[bytes, _Known]
+    given: Interpolation | None = None
+
+    def heights(
+        self, work: Work, points, nodes, method: str, settings: dict, threads: int, triangles, surfaces
+    ) -> Interpolation:
+        """As heights.heights, with a random error added, which is 0 at the points."""
+        own = self._known(work, points, nodes, method, settings, threads, triangles, surfaces)
+        if own.variogram is None:
+            return own.result
+        points, _ = without_mis_ties(points[own.counts])
+        anisotropy = own.settings.get("anisotropy")
+        at_points, at_nodes = self._field(work, own.variogram, anisotropy, points[:, :2], nodes, threads)
+        drawn = np.column_stack([points[:, :2], at_points])
+        plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
+        plain = {option: value for option, value in plain.items() if option in own.settings}
+        interpolated = heights(work, drawn, nodes, own.method, plain, threads, triangles)
+        z = own.result.z + (at_nodes - interpolated.z)
+        bounded = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
+        return replace(own.result, z=within_bounds(bounded, z, own.result.z))
+
+    def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
+        """The data that do not change between realizations. They are not cached for a surface that depends on
+        others, as those change, too."""
+        if any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS):
+            result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
+            return self._found(work, points, nodes, method, settings, threads, surfaces, result)
+        key = hashlib.sha256(np.ascontiguousarray(points)).digest() + hashlib.sha256(nodes).digest()
+        if key not in self.known:
+            result = self.given or heights(
+                work, points, nodes, method, settings, threads, triangles, surfaces
+            )
+            self.known[key] = self._found(work, points, nodes, method, settings, threads, surfaces, result)
+        return self.known[key]
+
+    def _found(self, work, points, nodes, method, settings, threads, surfaces, result) -> _Known:
+        counts = np.ones(len(points), bool)
+        if "thickness_method" in settings:
+            if settings["thickness"] is not None:
+                return _Known(result, method, settings, None, counts)
+            task = Task(work, points, nodes, settings, threads, surfaces=surfaces or {})
+            under = heights_of(task, settings["to"], np.ascontiguousarray(points[:, :2]), "to")
+            counts = np.isfinite(under)
+            points = points - np.column_stack([np.zeros((len(points), 2)), under])
+            method = settings["thickness_method"]
+            settings = checked_options(method, {})
+        elif result.method != method:
+            method = result.method
+            settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
+        variogram = result.variogram
+        plain, _ = without_mis_ties(points[counts])
+        if variogram is None and len(np.unique(plain[:, :2], axis=0)) >= _LEAST_POINTS:
+            asked = checked_options("kriging", {})
+            variogram = structure(Task(work, plain, nodes, asked, threads)).variogram
+        if variogram is not None and "variogram" in settings:
+            settings = {**settings, "variogram": variogram.settings()}
+            if result.neighbours is not None:
+                settings["neighbours"] = result.neighbours
+        if variogram is not None and variogram.sill <= 0:
+            variogram = None
+        return _Known(result, method, settings, variogram, counts)
+
+    def _field(
+        self, work, variogram: Variogram, anisotropy: dict | None, points, nodes, threads
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
+        at_points, at_nodes = (
+            gaussian_field(work, variogram, anisotropy, self.frame, places, self.noise, threads)
+            for places in (points, nodes)
+        )
+        if variogram.nugget > 0:
+            _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
+            noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
+            noise *= math.sqrt(variogram.nugget)
+            of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
+            number = {tuple(point): n for n, point in enumerate(points.tolist())}
+            for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):
+                point = number.get(tuple(nodes[node].tolist()))
+                if point is not None:
+                    of_nodes[node] = of_points[point]
+            at_points += of_points
+            at_nodes += of_nodes
+        return at_points, at_nodes

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Heights of a surface at given places, from scattered points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.errors import InputRefused, UsageError, place_text
+from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
+from ..base.work import Cancel, Progress, Work, run
+from ..settings.method_options import check_threads
+from ..settings.methods import METHODS, check_method, checked_options
+from . import Interpolation, heights
+
+
+def interpolate(
+    points,
+    nodes,
+    method: str = "kriging",
+    triangles=None,
+    neighbours: int | None = None,
+    threads: int = 0,
+    *,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    **options,
+) -> Interpolation:
+    """Interpolates scattered points at nodes.
+
+    points: (P, 3) float64, model units; None for a method that does without. nodes: (N, 2).
+    method and its options: docs/reference/methods.md.
+    triangles: (T, 3) of the nodes' mesh, where the method works on it.
+    neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
+    16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
+
+    Points at one place count once; where their heights differ a little (mis-ties of measured lines, up to
+    a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
+
+    Raises InputRefused for points or options that make no sense, UsageError for a wrong call, Cancelled.
+    """
+    settings = method_settings(method, neighbours, options)
+    if points is not None or METHODS[method].needs_points(settings):
+        points = checked_points(points)
+    else:
+        points = np.empty((0, 3))
+    nodes = checked_nodes(nodes)
+    threads = check_threads(threads)
+    triangles = checked_triangles(triangles, len(nodes))
+
+    def task(work: Work) -> Interpolation:
+        with work.phase(0.0, 1.0, "interpolating"):
+            return heights(work, points, nodes, method, settings, threads, triangles)
+
+    return run(task, progress, cancel)
+
+
+def method_settings(method: str, neighbours: int | None, options: dict) -> dict:
+    """The complete settings of a method from a caller's arguments. Raises InputRefused."""
+    check_method(method)
+    if neighbours is not None:
+        options = {"neighbours": neighbours, **options}
+    return checked_options(method, options)
+
+
+def checked_triangles(triangles, nodes: int) -> np.ndarray | None:
+    """(T, 3) int32 triangles of a mesh, checked against the number of its nodes. Raises UsageError."""
+    if triangles is None:
+        return None
+    if np.shape(triangles)[1:] != (3,):
+        raise UsageError(f"triangles must be an array (T, 3), not {np.shape(triangles)}")
+    triangles = np.asarray(triangles)
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise UsageError(f"triangles must be whole numbers, not {triangles.dtype}")
+    if triangles.size and (triangles.min() < 0 or triangles.max() >= nodes):
+        raise UsageError(f"triangles must name nodes from 0 to {nodes - 1}")
+    return np.ascontiguousarray(triangles, np.int32)
+
+
+def checked_points(points, item: str = "points") -> np.ndarray:
+    """(P, 3) float64 points, at least one, all finite. Raises InputRefused."""
+    points = np.ascontiguousarray(_array(points, 3, item))
+    if not len(points):
+        raise InputRefused("there are no points", item=item)
+    bad = _first_bad(points)
+    if bad is not None:
+        raise InputRefused(f"point {bad} is {place_text(points[bad])}, not finite", item=item)
+    return points
+
+
+def checked_nodes(nodes) -> np.ndarray:
+    """(N, 2) float64 nodes, all finite. Raises InputRefused."""
+    nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
+    bad = _first_bad(nodes)
+    if bad is not None:
+        raise InputRefused(f"node {bad} is not finite", item="nodes")
+    return nodes
+
+
+def _array(values, columns: int, item: str) -> np.ndarray:
+    try:
+        array = np.asarray(values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("not an array of numbers", item=item) from error
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise InputRefused(f"must be an array (N, {columns}), not {array.shape}", item=item)
+    return array
+
+
+def _first_bad(array: np.ndarray) -> int | None:
+    """The first row that is not finite."""
+    for number, piece in enumerate(in_pieces(array)):
+        finite = np.isfinite(piece).all(axis=1)
+        if not finite.all():
+            return number * ROWS_AT_ONCE + int(np.flatnonzero(~finite)[0])
+    return None

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The steps of a build: read, mesh, interpolate, intersect."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.assembly import assemble, intersect
+from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
+from ..project.project import Project, check_project
+from ..settings.method_options import check_threads
+from ..structures.setup import make_structures
+from ..structures.shapes.reading import read_structures
+from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .estimate import require_memory
+from .model import Model
+
+# Shares of the time of a build, roughly; phases that a project does not have are left out
+_SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "merge": 0.02}
+
+__all__ = ["CELL_KINDS", "build"]
+
+
+def build(
+    project: Project,
+    cells: str = "columns",
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    *,
+    stage: int | None = None,
+    memory: int | None = None,
+) -> Model:
+    """Builds the model of a project.
+
+    cells: "columns", each under one facet of the surface above it, or "blocks", one for each connected
+    part of a block. threads: 0 for all that there are; the result is the same for any number.
+    stage: build only up to this surface (from 0) of each rock mass.
+    memory: bytes that building may take; None: what is free. What is expected to take more (estimate) is
+    refused before it begins.
+    progress(fraction, text) and cancel() are called from this thread every 40 ms while another works;
+    the fraction never falls. cancel() returning True ends it with Cancelled.
+
+    Raises InputRefused (what, where, what to do), NotEnoughMemory, BuildFailed, UsageError, Cancelled.
+    """
+    check_cells(cells)
+    check_memory(memory)
+    threads = check_threads(threads)
+    check_project(project)
+    if stage is not None:
+        check_stage(project, stage)
+    native_module()
+    return run(lambda work: _build(work, project, cells, threads, stage, memory), progress, cancel)
+
+
+def _build(
+    work: Work, project: Project, cells: str, threads: int, stage: int | None, memory: int | None
+) -> Model:
+    timings = {"read": 0.0, "mesh": 0.0, "interpolate": 0.0, "intersect": 0.0}
+    ends = _phase_ends(project)
+
+    @contextmanager
+    def timed(name: str):
+        began = time.perf_counter()
+        yield
+        timings[name] += time.perf_counter() - began
+
+    with timed("read"), work.phase(0.0, ends["read"], "reading"):
+        inputs = read_rocks(work, project)
+        faults, bodies, warnings = read_structures(work, project, threads, inputs)
+    for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
+        with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+
+    def taken() -> list[RockInput]:
+        return inputs if stage is None else [entry.stage(stage) for entry in inputs]
+
+    require_memory(taken(), cells, memory, len(faults) + len(bodies))
+    structures = None
+    with timed("interpolate"):
+        if faults or bodies:
+            structures = make_structures(
+                work, project, faults, bodies, inputs, threads, stage, ends["mesh"], ends["interpolate"]
+            )
+        else:
+            parts = _parts(ends["mesh"], ends["interpolate"], len(inputs))
+            for entry, (start, end) in zip(inputs, parts, strict=True):
+                interpolate_rock(work, entry, start, end, threads, stage)
+    inputs = taken()
+    if structures is not None:
+        inputs[0].warnings += warnings
+        structures = structures if stage is None else structures.stage(stage)
+    with timed("intersect"):
+        built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
+    given = replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+    return Model.of(assemble(work, given, inputs, built, threads, timings, ends["intersect"], structures))
+
+
+def _phase_ends(project: Project) -> dict[str, float]:
+    """The progress at the end of each phase: fixed shares of the phases that this project has."""
+    has_files = bool(project.input_files())
+    interpolates = bool(project.faults) or any(rock.interpolates for rock in project.rocks)
+    shares = _SHARES | {
+        "read": _SHARES["read"] * has_files,
+        "mesh": _SHARES["mesh"] * interpolates,
+        "interpolate": _SHARES["interpolate"] * interpolates,
+    }
+    ends = np.cumsum(list(shares.values())) / sum(shares.values())
+    return dict(zip(shares, ends.tolist(), strict=True))
+
+
+def _parts(start: float, end: float, count: int) -> list[tuple[float, float]]:
+    """The stretch from `start` to `end` in equal parts."""
+    steps = np.linspace(start, end, count + 1).tolist()
+    return list(itertools.pairwise(steps))

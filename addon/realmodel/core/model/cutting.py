@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A finished model cut: halves that are models again, and sections."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from dataclasses import dataclass, replace
+from typing import Generic
+
+import numpy as np
+
+from ..base.errors import InputRefused, UsageError, number_list, place_text
+from ..base.triangles import checked_triangulation
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.cell_complex import CellComplex
+from ..cells.model_data import ModelData, SomeModel
+from ..results.automatic_library import model_with_library
+from ..results.section_faults import traces_on_fence, traces_on_plane
+from ..settings.method_options import check_threads
+from .section import Fence, Section
+
+_CUT_SHARE = 0.97
+
+
+@dataclass(eq=False)
+class Cut(Generic[SomeModel]):
+    """Both halves of a model, each a model with the same blocks, surfaces and project.
+
+    above: the half to which the plane's normal points, above the surface, or outside of a closed surface or
+    block. outside, inside: other names of above and below. The caps have face_surface -3 and are the polygons
+    of `section`. above_cells, below_cells: (C,) int32, for each cell of a half the cell of the original model
+    that it is or was part of.
+    """
+
+    above: SomeModel
+    below: SomeModel
+    section: Section
+    above_cells: np.ndarray
+    below_cells: np.ndarray
+
+    @property
+    def inside(self) -> SomeModel:
+        return self.below
+
+    @property
+    def outside(self) -> SomeModel:
+        return self.above
+
+
+def cut_by_plane(
+    model: SomeModel,
+    point,
+    normal,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut[SomeModel]:
+    """Cuts a model by a plane. Returns both halves, above (where the normal points) and below, and the
+    section.
+
+    point, normal: three numbers each; the normal may have any length. The model itself does not change.
+    Raises UsageError for an invalid plane, BuildFailed, Cancelled.
+    """
+    point, normal = _plane(point, normal)
+    return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
+
+
+def cut_by_surface(
+    model: SomeModel,
+    vertices,
+    triangles,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut[SomeModel]:
+    """Cuts a model by a triangulated surface in any position: above and below it; outside and inside of a
+    closed one.
+
+    vertices: (V, 3) float64; triangles: (T, 3) whole numbers, of any orientation.
+    Raises InputRefused for a surface that does not separate the model, branches, has no two sides or crosses
+    itself; BuildFailed, Cancelled.
+    """
+    vertices, triangles = checked_triangulation(vertices, triangles)
+    return _cut(model, lambda native: (native.cut_by_surface, vertices, triangles), threads, progress, cancel)
+
+
+def cut_by_block(
+    model: SomeModel,
+    other: ModelData,
+    block: int | str,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut[SomeModel]:
+    """Cuts a model by a block (number or name) of another model, or of the same one: inside and outside.
+
+    Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
+    """
+    number = _block_number(other, block)
+    return _cut(
+        model,
+        lambda native: (native.cut_by_block, other.native(), number),
+        threads,
+        progress,
+        cancel,
+    )
+
+
+def _block_number(model: ModelData, block: int | str) -> int:
+    names = [entry.name for entry in model.blocks]
+    if isinstance(block, str):
+        if names.count(block) != 1:
+            known = "no block" if block not in names else "more than one block"
+            raise UsageError(f"the model has {known} named '{block}'; give its number")
+        return names.index(block)
+    if isinstance(block, bool) or not hasattr(block, "__index__") or not 0 <= int(block) < len(names):
+        raise UsageError(f"block {block} does not exist: blocks are numbered from 0 to {len(names) - 1}")
+    return int(block)
+
+
+def _cut(
+    model: SomeModel, call, threads: int, progress: Progress | None, cancel: Cancel | None
+) -> Cut[SomeModel]:
+    """The cut made by call(native), a native function and its arguments after the model."""
+    threads = check_threads(threads)
+    native = native_module()
+
+    def task(work: Work) -> Cut[SomeModel]:
+        began = time.perf_counter()
+        function, *cutter = call(native)
+        with work.phase(0.0, _CUT_SHARE, "cutting"):
+            try:
+                halves = work.native(function, model.native(), *cutter, threads=threads)
+            except native.InputError as error:
+                raise _refused(error) from error
+        return _assembled(work, model, halves, began)
+
+    return run(task, progress, cancel)
+
+
+_ADVICE = {
+    "ends_inside": "extend it beyond the model, or close it",
+    "branching": "remove the triangles where it branches",
+    "one_sided": "remove triangles until it has one upper and one lower side",
+    "two_sides": "cut by each part in turn",
+    "no_block": "choose a block that has cells",
+    "open_cell": "move the surface that cuts a little, or repair the model",
+}
+
+
+def _refused(error) -> InputRefused:
+    place = tuple(error.place) if error.place is not None else None
+    near = f" near {place_text(place)}" if place else ""
+    triangles = tuple(int(i) for i in error.items) if error.kind in ("branching", "one_sided") else ()
+    named = f": triangles {number_list(triangles)}" if triangles else ""
+    return InputRefused(
+        f"{error}{named}{near}",
+        item="the cut",
+        advice=_ADVICE.get(error.kind),
+        triangles=triangles,
+        place=place,
+    )
+
+
+def section(
+    model: ModelData,
+    point,
+    normal,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Section:
+    """The section by a plane alone, in a fraction of the time of cut_by_plane."""
+    point, normal = _plane(point, normal)
+    threads = check_threads(threads)
+    native_module()
+
+    def task(work: Work) -> Section:
+        with work.phase(0.0, 1.0, "cutting"):
+            found = work.native(
+                native_module().section_by_plane,
+                model.native(),
+                point,
+                normal,
+                threads=threads,
+            )
+        return Section(
+            **_section_arrays(model, found),
+            plane=(point, normal),
+            faults=traces_on_plane(model, point, normal),
+        )
+
+    return run(task, progress, cancel)
+
+
+def fence(
+    model: ModelData,
+    polyline,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Fence:
+    """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
+    try:
+        polyline = np.ascontiguousarray(polyline, np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError("polyline must be an array (N, 2) of numbers") from error
+    if polyline.ndim != 2 or polyline.shape[1] != 2 or len(polyline) < 2:
+        raise UsageError(f"polyline must be an array (N, 2) with N > 1, not {polyline.shape}")
+    if not np.isfinite(polyline).all():
+        raise UsageError("polyline must be finite")
+    if not np.diff(polyline, axis=0).any(axis=1).all():
+        raise UsageError("polyline has two consecutive points that are equal; remove one")
+    threads = check_threads(threads)
+    native_module()
+
+    def task(work: Work) -> Fence:
+        panels = []
+        for number, (start, end) in enumerate(itertools.pairwise(polyline)):
+            with work.phase(number / (len(polyline) - 1), (number + 1) / (len(polyline) - 1), "cutting"):
+                panels.append(
+                    work.native(
+                        native_module().fence_panel,
+                        model.native(),
+                        tuple(start),
+                        tuple(end),
+                        threads=threads,
+                    )
+                )
+        numbers = [np.full(len(panel["cells"]), k, np.int32) for k, panel in enumerate(panels)]
+        return Fence(
+            **_section_arrays(model, _joined(panels)),
+            polyline=polyline,
+            panel=np.concatenate(numbers),
+            faults=traces_on_fence(model, polyline),
+        )
+
+    return run(task, progress, cancel)
+
+
+def _joined(panels: list[dict]) -> dict:
+    """Several sections joined to one."""
+    vertices = np.cumsum([0, *(len(panel["vertices"]) for panel in panels)])
+    corners = np.cumsum([0, *(len(panel["polygon_vertices"]) for panel in panels)])
+    polygons = [p["polygon_vertices"] + v for p, v in zip(panels, vertices, strict=False)]
+    offsets = [p["offsets"][:-1] + c for p, c in zip(panels, corners, strict=False)]
+    return {
+        "vertices": np.concatenate([panel["vertices"] for panel in panels]),
+        "offsets": np.concatenate([*offsets, corners[-1:]]).astype(np.int64),
+        "polygon_vertices": np.concatenate(polygons).astype(np.int32),
+        "cells": np.concatenate([panel["cells"] for panel in panels]),
+    }
+
+
+def _plane(point, normal) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    found = []
+    for name, given in (("point", point), ("normal", normal)):
+        try:
+            numbers = np.asarray(given, np.float64)
+        except (TypeError, ValueError) as error:
+            raise UsageError(f"{name} must be three numbers") from error
+        if numbers.shape != (3,) or not np.isfinite(numbers).all():
+            raise UsageError(f"{name} must be three finite numbers, not {given!r}")
+        found.append(tuple(numbers.tolist()))
+    if not any(found[1]):
+        raise UsageError("normal must not be zero: it gives the orientation of the plane and its upper side")
+    return found[0], found[1]
+
+
+def _section_arrays(model: ModelData, found: dict) -> dict:
+    """The arrays of a Section."""
+    cells = found["cells"]
+    blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
+    block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])
+    compartment = np.append(model.cell_compartment, np.int32(-1))[cells].astype(np.int32, copy=False)
+    library_ids = np.array([entry.property for entry in model.blocks], np.int32)
+    return {
+        "vertices": found["vertices"],
+        "offsets": found["offsets"],
+        "polygon_vertices": found["polygon_vertices"],
+        "cells": cells,
+        "blocks": blocks,
+        "block": block,
+        "property": library_ids[block] if len(block) else np.empty(0, np.int32),
+        "compartment": np.where(blocks[:, 0] >= 0, compartment[:, 0], compartment[:, 1]),
+        "block_names": [entry.name for entry in model.blocks],
+        "compartment_names": list(model.compartment_names),
+        "block_colors": model_with_library(model).block_colors,
+        "name": model.project.name,
+        "unit": model.project.units,
+    }
+
+
+def _assembled(work: Work, model: SomeModel, halves: dict, began: float) -> Cut[SomeModel]:
+    with work.phase(_CUT_SHARE, 1.0, "assembling the halves"):
+        found = Section(**_section_arrays(model, halves["section"]))
+        above = _half(work, model, halves["above"], halves["above_touches"])
+        work.step(0.5)
+        below = _half(work, model, halves["below"], halves["below_touches"])
+    for half in (above, below):
+        half.timings["cut"] = time.perf_counter() - began
+    return Cut(above, below, found, halves["above"]["cells"], halves["below"]["cells"])
+
+
+def _half(work: Work, model: SomeModel, arrays: dict, touches: bool) -> SomeModel:
+    own = CellComplex.of(arrays, "blocks" if touches else model.cell_kind)
+    own.find_components(work)
+    cells, components = own.count_blocks(len(model.blocks))
+    blocks = [
+        replace(
+            block,
+            volume=float(arrays["volumes"][number]),
+            cells=int(cells[number]),
+            components=int(components[number]),
+        )
+        for number, block in enumerate(model.blocks)
+    ]
+    return replace(
+        model,
+        complex=own,
+        blocks=blocks,
+        is_cut=True,
+        warnings=list(model.warnings),
+        timings={},
+        cell_compartment=model.cell_compartment[arrays["cells"]],
+        compartment_names=model.compartment_names,
+    )

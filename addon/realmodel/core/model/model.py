@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The built model: what it holds (model_data.py), and all that can be made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..base.errors import UsageError
+from ..base.work import Cancel, Progress
+from ..cells.assembly import build_stage
+from ..cells.model_data import ModelData
+from ..exporters import save_model
+from ..exporters.surfaces import save_surfaces
+from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
+from ..results.contours import contours
+from ..results.erosion import Erosion, eroded
+from ..results.geological_map import geological_map
+from ..results.model_boreholes import borehole
+from ..simulation import cleaned_cells, simulation_mesh
+from . import cutting
+
+
+class Model(ModelData):
+    """A built model: blocks of polyhedral cells that share faces."""
+
+    def save(
+        self,
+        path: str | Path,
+        cell_size: float | Sequence[float] | None = None,
+        contour_interval: float | None = None,
+        tolerance: float | None = None,
+    ) -> None:
+        """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
+        or not at all.
+
+        cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
+        None: a hundredth of the longest side. contour_interval: of maps (.gpkg, .geojson); None: one of about
+        fifteen levels. tolerance: of formats with the model's cells (.vtu, .foam, .exo, .disu): they are
+        cleaned as cleaned_cells does; None: the exact cells. Raises UsageError for an ending that is not
+        known, OutputFailed where it cannot be written.
+        """
+        save_model(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
+
+    def save_surfaces(self, path: str | Path) -> None:
+        """Writes the surfaces, faults and bodies as they were used, by the file's ending (.obj, .ply, .stl,
+        .glb, .dxf, .ts with a part for each, .npz, .vtu). It appears whole or not at all.
+
+        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        """
+        save_surfaces(self, path)
+
+    def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
+        """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
+        rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
+        surfaces up to m."""
+        if self.is_cut:
+            raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
+        return build_stage(self, m, progress, cancel)
+
+    def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
+        """What each surface removed of each block when it came: (S, B) volumes, and their sums.
+
+        The volume of a block just before the surface, less that just after. For each surface that cuts the
+        model is built once more up to the surface before, with whole blocks as cells; what rounding alone
+        makes is given as 0. Raises UsageError where the model is a half, Cancelled.
+        """
+        if self.is_cut:
+            raise UsageError("a cut model has no erosion: ask the whole model")
+        return eroded(self, self.threads, progress, cancel)
+
+    def validate(
+        self,
+        places: int = PLACES_OF_CHECK,
+        seed: int = 1,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> ValidationReport:
+        """Tests the model as docs/dev/geometry.md says: every cell, face and vertex of it; and whether at
+        about `places` plan positions it is what the closed form says. 0 places, or a half: only the first.
+
+        seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
+        A model that fails is no error here: the report says what is wrong and where.
+        Raises UsageError, Cancelled.
+        """
+        return validate(self, places, seed, threads, progress, cancel)
+
+    simulation_mesh = simulation_mesh
+    cleaned_cells = cleaned_cells
+    geological_map = geological_map
+    contours = contours
+    cut_by_plane = cutting.cut_by_plane
+    cut_by_surface = cutting.cut_by_surface
+    cut_by_block = cutting.cut_by_block
+    section = cutting.section
+    fence = cutting.fence
+    borehole = borehole

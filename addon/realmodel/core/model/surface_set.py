@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfaces of a project with their heights, before anything is intersected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import UsageError
+from ..base.mapped_arrays import Keep, as_it_is
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..exporters.surfaces import save_surfaces
+from ..heights import Interpolation
+from ..project.build_options import check_stage
+from ..project.project import Project, Rock, check_project
+from ..settings.method_options import check_threads
+from ..structures.parts.parts import Structures, structures_of
+from ..structures.setup import make_structures
+from ..structures.shapes.reading import read_structures
+from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks, settle_methods
+from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
+from ..surfaces.surface_input import Reader, read_each
+
+_READ, _MESHED = 0.2, 0.4  # shares of the time
+_CHOSEN = 0.3  # of the rest of the progress
+
+
+@dataclass(eq=False)
+class SurfaceSet:
+    """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
+    they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
+    all numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
+    `project` holds the arrays in the place of files. `surface_kind` is that of a Model.
+    """
+
+    project: Project
+    rock_inputs: list[RockInput] = field(repr=False)
+    surface_names: list[str]
+    surface_kind: np.ndarray
+    warnings: list[BuildWarning]
+    structures: Structures = field(repr=False)
+
+    @property
+    def interpolations(self) -> list[Interpolation | None]:
+        """The interpolation of each surface; None for ready meshes."""
+        return [result for entry in self.rock_inputs for result in entry.interpolations]
+
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
+        interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
+        return [*interfaces, *self.structures.shapes][number]
+
+    @property
+    def surface_triangle_sheet(self) -> np.ndarray:
+        """As Model.surface_triangle_sheet."""
+        count = sum(len(triangles) for _, triangles in self.structures.shapes)
+        return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
+
+    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
+        """As Model.surface_attributes."""
+        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+
+    def save(self, path: str | Path) -> None:
+        """Writes the surfaces to a file, by its ending (.obj, .ply, .stl, .glb, .dxf, .ts with a
+        part for each, .npz, .vtu). It appears whole or not at all.
+
+        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        """
+        save_surfaces(self, path)
+
+
+def build_surfaces(
+    project: Project,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    *,
+    stage: int | None = None,
+    keep: Keep = as_it_is,
+    reader: Reader = read_each,
+    flat: Callable[[Rock], Collection[int]] | None = None,
+) -> SurfaceSet:
+    """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
+
+    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass. keep: where each
+    surface is, once it is made (MappedArrays); then nothing is known of what interpolating them gave. reader:
+    how surfaces are read. flat(rock): surfaces that are not interpolated (rock_input.interpolate_rock), when
+    the method "auto" has made its choice; None: all are.
+    Raises InputRefused, UsageError, Cancelled.
+    """
+    threads = check_threads(threads)
+    check_project(project)
+    if stage is not None:
+        check_stage(project, stage)
+    if not any(rock.surfaces for rock in project.rocks):
+        raise UsageError("the project has no surfaces")
+    native_module()
+    return run(lambda work: _build(work, project, threads, stage, keep, reader, flat), progress, cancel)
+
+
+def _build(
+    work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader, flat
+) -> SurfaceSet:
+    with work.phase(0.0, _READ, "reading"):
+        inputs = read_rocks(work, project, reader)
+        faults, bodies, warnings = read_structures(work, project, threads, inputs)
+        inputs[0].warnings += warnings
+    count = len(inputs)
+    for number, entry in enumerate(inputs):
+        begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))
+        with work.phase(begin, end, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+    structures = structures_of(project, faults, bodies)
+    if faults:
+        structures = make_structures(work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0)
+    else:
+        for number, entry in enumerate(inputs):
+            begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
+            numbers = ()
+            if flat is not None:
+                settle_methods(work, entry, begin, begin + _CHOSEN * (end - begin), threads)
+                numbers = flat(entry.rock)
+            interpolate_rock(work, entry, begin, end, threads, stage, keep, numbers)
+    if stage is not None:
+        inputs = [entry.stage(stage) for entry in inputs]
+    names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+    return SurfaceSet(
+        project,
+        inputs,
+        [*names, *structures.names],
+        np.array([0] * len(names) + structures.kinds, np.int32),
+        [warning for entry in inputs for warning in entry.warnings],
+        structures,
+    )

@@ -1,0 +1,495 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A project: rock masses with their surfaces, oldest first, from files or from arrays, and its checks."""
+
+from __future__ import annotations
+
+import builtins
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.toml_table import Source
+from ..base.units import METERS, MODEL_UNIT
+from ..readers.point_input import companions
+from ..settings.boreholes import Boreholes
+from ..settings.map_layer import MapLayer
+from ..settings.mesh_sizes import AUTO, local_lengths
+from ..settings.meshers import DEFAULT_MESHER
+from ..settings.method_options import OptionRefused, checked, is_name
+from ..settings.methods import (
+    CONTINUATION,
+    CONTINUATION_OPTIONS,
+    DEFAULT_METHOD,
+    METHODS,
+    SURFACE_OPTIONS,
+    check_method,
+    checked_options,
+)
+from ..settings.point_file import MeshFile, PointFile, ReadingRefused
+from ..settings.rules import DEFAULT_RULE
+from ..settings.schema import ROCK, SURFACE
+from .library import Library
+from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
+from .region_rings import is_several
+from .structure_checks import check_structures
+from .structure_entries import Body, Fault
+
+
+@dataclass
+class Surface:
+    """One bounding surface of the layers.
+
+    Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
+    (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
+    PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
+    Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
+    older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
+    `property` is the library id of the block deposited beneath it (0: none), `block` that block's
+    name.
+    `shape_file` is the file that the arrays were read from, if any: messages name it.
+    """
+
+    name: str
+    vertices: np.ndarray | None = None
+    triangles: np.ndarray | None = None
+    points: np.ndarray | str | Path | PointFile | None = None
+    method: str | None = None
+    options: dict = field(default_factory=dict)
+    rule: str = DEFAULT_RULE
+    property: int = 0
+    block: str | None = None
+    mesh: str | Path | MeshFile | None = None
+    minimum_thickness: float | None = None
+    correlation: float | None = None
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
+
+    @builtins.property  # a field of this class is called property
+    def interpolated(self) -> bool:
+        """Whether its heights are made: from points, by a method that needs none, or from boreholes."""
+        return self.points is not None or (
+            self.mesh is None and self.vertices is None and self.triangles is None
+        )
+
+    @builtins.property  # a field of this class is called property
+    def needs_points(self) -> bool:
+        """Whether its method makes nothing without points. Raises OptionRefused."""
+        method, settings = self.method_options()
+        return METHODS[method].needs_points(settings)
+
+    @builtins.property  # a field of this class is called property
+    def block_name(self) -> str:
+        return self.block or f"{self.name} block"
+
+    @builtins.property  # a field of this class is called property
+    def input_file(self) -> Path | None:
+        """The file that gives this surface its shape; None where arrays do."""
+        if self.interpolated:
+            return None if self.point_file is None else Path(self.point_file.file)
+        return None if self.mesh_file is None else Path(self.mesh_file.file)
+
+    @builtins.property  # a field of this class is called property
+    def mesh_file(self) -> MeshFile | None:
+        """The file of its ready mesh; None where it has none."""
+        return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
+
+    @builtins.property  # a field of this class is called property
+    def point_file(self) -> PointFile | None:
+        """The file of its points and how it is read; None where they are an array, or there are none."""
+        return (
+            PointFile(self.points)
+            if isinstance(self.points, (str, Path))
+            else (self.points if isinstance(self.points, PointFile) else None)
+        )
+
+    def point_array(self) -> np.ndarray:
+        """(P, 3) float64 the points of a surface that is read; none where it has none."""
+        assert not isinstance(self.points, (str, Path, PointFile))
+        return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
+
+    def shape_source(self) -> tuple[Path | None, int | None]:
+        """The source of the shape, for messages: its file, or its line in the project file."""
+        if self.shape_file is not None:
+            return self.shape_file, None
+        if self.source is not None:
+            return self.source.document.file, self.source.line()
+        return None, None
+
+    def method_options(self) -> tuple[str, dict]:
+        """The method and its complete options; of a ready mesh those by which it is continued to faults.
+        Raises OptionRefused."""
+        if self.method is None and not self.interpolated:
+            return CONTINUATION, checked_options(CONTINUATION, {**CONTINUATION_OPTIONS, **self.options})
+        method = self.method or DEFAULT_METHOD
+        return method, checked_options(method, self.options)
+
+
+@dataclass
+class Rock:
+    """A rock mass: a region in plan, and surfaces oldest first.
+
+    `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
+    GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
+    `boreholes` give points to every surface that is not a ready mesh, beside its own; `hole_picks` is what
+    each of them met once they are read (Picks.holes): for display, no input.
+    `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
+    "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
+    instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
+    `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
+    as of a region; `size` may be at what is in such files too.
+    With `base_elevation` there is a block between this height and the oldest surface.
+    `shape_file` is the file that the rings were read from, if any: messages name it.
+    """
+
+    name: str
+    surfaces: list[Surface]
+    region: np.ndarray | Sequence | str | Path | MapLayer | None = None
+    holes: Sequence = ()
+    edge_length: float | str | None = None
+    triangles: int | None = None
+    mesher: str = DEFAULT_MESHER
+    size: Sequence[Mapping] = ()
+    base_elevation: float | None = None
+    constraints: Sequence = ()
+    boreholes: Boreholes | None = None
+    hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def region_file(self) -> Path | None:
+        layer = map_layer(self.region)
+        return None if layer is None else Path(layer.file)
+
+    def rings(self) -> list[np.ndarray]:
+        """The rings (N, 2) of a region of arrays, outlines and holes alike; they count even-odd."""
+        assert self.region is not None and not isinstance(self.region, (str, Path, MapLayer))
+        outlines = self.region if is_several(self.region) else [self.region]
+        return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
+
+    def constraint_lines(self) -> list[np.ndarray]:
+        """The lines (N, 2) of constraints that are arrays."""
+        return [line for line in self.constraints if len(line) > 1]
+
+    def constraint_points(self) -> np.ndarray | None:
+        """The points (N, 2) of constraints that are arrays; None where there are none."""
+        points = [point for point in self.constraints if len(point) == 1]
+        return np.concatenate(points) if points else None
+
+    def region_source(self) -> tuple[Path | None, int | None]:
+        """The source of the region, for messages: its file, or its line in the project file."""
+        if self.shape_file is not None:
+            return self.shape_file, None
+        if self.source is not None:
+            return self.source.document.file, self.source.line("region")
+        return None, None
+
+    def edge_length_source(self) -> tuple[Path | None, int | None]:
+        """The place of the edge length in the project file, for messages."""
+        if self.source is not None:
+            return self.source.document.file, self.source.line("edge_length")
+        return None, None
+
+    @property
+    def interpolates(self) -> bool:
+        return any(surface.interpolated for surface in self.surfaces)
+
+
+@dataclass
+class Project:
+    """Rock masses that make one model, the faults and bodies in them, and the library of their properties.
+
+    units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
+    one counts.
+    """
+
+    name: str
+    rocks: list[Rock]
+    library: Library | None = None
+    path: Path | None = None
+    units: str = MODEL_UNIT
+    faults: list[Fault] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
+
+    def input_files(self) -> list[Path]:
+        """Every file that this project reads, itself included."""
+        files = [self.path, self.library.path if self.library else None]
+        for rock in self.rocks:
+            files += [*layer_files(rock.region), *(surface.input_file for surface in rock.surfaces)]
+            files += [file for given in rock.constraints for file in layer_files(given)]
+            files += files_of_sizes(rock.size)
+            files += rock.boreholes.files if rock.boreholes is not None else []
+            for surface in rock.surfaces:
+                if surface.point_file is not None:
+                    files += companions(Path(surface.point_file.file))
+        for entry in (*self.faults, *self.bodies):
+            if entry.input_file is not None:
+                files += [entry.input_file, *companions(entry.input_file)]
+        return [Path(file) for file in files if file is not None]
+
+    def stage(self, m: int) -> Project:
+        """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
+        rocks = [Rock(**{**vars(rock), "surfaces": rock.surfaces[: m + 1]}) for rock in self.rocks]
+        return replace(self, rocks=rocks)
+
+
+def rock_item(rock: Rock) -> str:
+    return f"rock '{rock.name}'"
+
+
+def surface_item(rock: Rock, surface: Surface) -> str:
+    return f"rock '{rock.name}', surface '{surface.name}'"
+
+
+def is_file(path: Path) -> bool:
+    """Whether a path leads to a file; no for one that cannot be a path at all."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def check_project(project: Project) -> None:
+    """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
+    if not is_name(project.name):
+        raise InputRefused("a project needs a name", file=project.path)
+    if project.units not in METERS:
+        what = f"unknown unit {project.units!r}"
+        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
+    if not project.rocks:
+        raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
+    seen: set[str] = set()
+    for rock in project.rocks:
+        if not is_name(rock.name):
+            raise _refuse(rock.source, "a rock mass", "it has no name", "name")
+        if rock.name in seen:
+            advice = "give each rock mass a unique name"
+            raise _refuse(rock.source, rock_item(rock), "another rock mass has this name", "name", advice)
+        seen.add(rock.name)
+        _check_rock(project, rock)
+    check_structures(project)
+
+
+def _refuse(
+    source: Source | None, item: str, what: str, key: str | None = None, advice: str | None = None
+) -> InputRefused:
+    file = source.document.file if source else None
+    return InputRefused(what, file=file, line=source.line(key) if source else None, item=item, advice=advice)
+
+
+def _check_values(entry, settings, keys, refuse) -> None:
+    """Refuses what the declarations of settings do not allow."""
+    for key in keys:
+        try:
+            checked(key, settings[key], getattr(entry, key))
+        except OptionRefused as error:
+            raise refuse(error.what, key, error.advice) from error
+
+
+def _check_rock(project: Project, rock: Rock) -> None:
+    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
+        return _refuse(rock.source, rock_item(rock), what, key, advice)
+
+    if not rock.surfaces:
+        raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
+    _check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
+    _check_mesh(rock, refuse)
+    if rock.region is None and len(rock.holes):
+        raise refuse("it has holes but no region", "holes", "add the outline as region")
+    if isinstance(rock.region, (str, Path, MapLayer)) and len(rock.holes):
+        raise refuse(
+            "holes need a region given by coordinates", "holes", "put the holes into the region's file"
+        )
+    check_layer(rock.region, "region", refuse, is_file)
+    for given in rock.constraints:
+        check_layer(given, "constraints", refuse, is_file)
+    if len(rock.constraints) and not rock.interpolates:
+        what = "constraints have no effect, as no surface is interpolated"
+        raise refuse(what, "constraints")
+    _check_boreholes(rock, refuse)
+    names: set[str] = set()
+    for surface in rock.surfaces:
+        _check_surface(project, rock, surface)
+        if surface.name in names:
+            raise _refuse(
+                surface.source,
+                surface_item(rock, surface),
+                "another surface has this name",
+                "name",
+                "give each surface of a rock mass a unique name",
+            )
+        names.add(surface.name)
+    _check_references(rock)
+
+
+def _check_boreholes(rock: Rock, refuse) -> None:
+    if rock.boreholes is None:
+        return
+    try:
+        rock.boreholes.check()
+    except ReadingRefused as error:
+        raise refuse(f"boreholes: {error.what}", "boreholes", error.advice) from error
+    for file in rock.boreholes.files:
+        if not is_file(file):
+            raise refuse(f"file not found: {file}", "boreholes", "check the path")
+    if not rock.interpolates:
+        raise refuse("boreholes have no effect, as no surface is interpolated", "boreholes")
+
+
+def _check_mesh(rock: Rock, refuse) -> None:
+    """Refuses settings from which no planar mesh can be made."""
+    if rock.triangles is not None and rock.edge_length not in (None, AUTO):
+        raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
+    try:
+        sizes = [_at_a_place(entry, refuse) for entry in rock.size]
+        local_lengths(sizes, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
+    except InputRefused as error:
+        raise refuse(f"{error.item}: {error.what}" if error.item else error.what, "size") from error
+
+
+def _at_a_place(entry, refuse):
+    """An entry of `size` that is at what a file or a text holds, with a place instead, once there is that
+    file; others as they are."""
+    if not (isinstance(entry, Mapping) and is_place_elsewhere(entry.get("at"))):
+        return entry
+    check_layer(entry["at"], "size", refuse, is_file)
+    return {**entry, "at": [0.0, 0.0]}
+
+
+def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
+    if not is_name(surface.name):
+        raise _refuse(surface.source, rock_item(rock), "a surface has no name", "name")
+    item = surface_item(rock, surface)
+
+    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
+        return _refuse(surface.source, item, what, key, advice)
+
+    _check_shape(rock, surface, refuse, bool(project.faults))
+    _check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
+    _check_property(project.library, surface, refuse)
+
+
+def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
+    """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
+    continued to faults."""
+    arrays = surface.vertices is not None or surface.triangles is not None
+    shapes = [
+        name
+        for name, given in (
+            ("points", surface.points is not None),
+            ("mesh", surface.mesh is not None),
+            ("vertices", arrays),
+        )
+        if given
+    ]
+    no_points = not shapes and rock.boreholes is None
+    if no_points and surface.method is None:
+        raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
+    if len(shapes) > 1:
+        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "use only one of them")
+    if arrays and (surface.vertices is None or surface.triangles is None):
+        raise refuse("it needs vertices and triangles together")
+    file = surface.input_file
+    if file is not None and not is_file(file):
+        raise refuse(f"file not found: {file}", shapes[0], "check the path")
+    if not surface.interpolated:
+        try:
+            if surface.mesh_file is not None:
+                surface.mesh_file.check()
+        except ReadingRefused as error:
+            raise refuse(error.what, error.key, error.advice) from error
+        given = [*(["method"] if surface.method is not None else []), *surface.options]
+        given = [] if continues else given
+        given += [key for key in ("minimum_thickness", "correlation") if getattr(surface, key) is not None]
+        if given:
+            raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
+        if continues:
+            _check_method(surface, refuse)
+            _check_continuation(surface, refuse)
+        return
+    try:
+        if surface.point_file is not None:
+            surface.point_file.check()
+    except ReadingRefused as error:
+        raise refuse(error.what, error.key, error.advice) from error
+    _check_method(surface, refuse, no_points)
+    length = rock.edge_length if rock.triangles is None else rock.triangles
+    for key, value in (("region", rock.region), ("edge_length", length)):
+        if value is None:
+            raise refuse(
+                f"its points cannot be interpolated: {rock_item(rock)} has no {key}",
+                "points",
+                f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
+            )
+
+
+def _check_continuation(surface: Surface, refuse) -> None:
+    """Refuses options that give a ready mesh no heights where it does not reach its faults."""
+    for option in SURFACE_OPTIONS:
+        if isinstance(surface.options.get(option), str):
+            what = f"'{option}' names a surface; a mesh is continued from its own vertices"
+            raise refuse(what, option, "choose another method, or a number")
+    if surface.options.get("extrapolate") == "none":
+        what = 'extrapolate = "none" gives no heights where the mesh is continued to the faults'
+        raise refuse(what, "extrapolate", 'use "nearest" or "method"')
+
+
+def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
+    try:
+        check_method(surface.method or DEFAULT_METHOD)
+        if no_points and surface.needs_points:
+            method, _ = surface.method_options()
+            option = METHODS[method].instead_of_points
+            either = f", or {option} = ..." if option else ""
+            raise refuse(f"method '{method}' needs points", "method", f"add points = ...{either}")
+        surface.method_options()
+    except OptionRefused as error:
+        raise refuse(error.what, error.option, error.advice) from error
+
+
+def _check_references(rock: Rock) -> None:
+    """Refuses unknown names of surfaces, a minimum thickness above nothing, and circular references."""
+    numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
+    needs: list[list[tuple[str, int]]] = []
+    for number, surface in enumerate(rock.surfaces):
+        item, needed = surface_item(rock, surface), []
+        for option in SURFACE_OPTIONS:
+            name = surface.options.get(option)
+            if not isinstance(name, str):
+                continue
+            if name not in numbers:
+                what = f"'{option}' names surface '{name}', which {rock_item(rock)} does not have"
+                raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
+            needed.append((option, numbers[name]))
+        for key in ("minimum_thickness", "correlation"):
+            if number == 0 and getattr(surface, key) is not None:
+                what = f"the oldest surface cannot have a {key}, as there is no surface beneath it"
+                raise _refuse(surface.source, item, what, key)
+        if surface.minimum_thickness is not None:
+            needed.append(("minimum_thickness", number - 1))
+        needs.append(needed)
+    done: set[int] = set()
+
+    def visit(number: int, above: tuple[int, ...]) -> None:
+        for option, needed in needs[number]:
+            if needed in (*above, number):
+                surface, other = rock.surfaces[number], rock.surfaces[needed]
+                what = f"'{option}' names '{other.name}', which depends on this surface"
+                raise _refuse(surface.source, surface_item(rock, surface), what, option)
+            if needed not in done:
+                visit(needed, (*above, number))
+        done.add(number)
+
+    for number in range(len(rock.surfaces)):
+        if number not in done:
+            visit(number, ())
+
+
+def _check_property(library: Library | None, surface: Surface, refuse) -> None:
+    number = surface.property
+    if number and library is not None and number not in library:
+        known = ", ".join(str(entry.id) for entry in library.properties)
+        raise refuse(f"the library has no property {number}", "property", f"it has {known}")

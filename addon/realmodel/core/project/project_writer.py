@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes a project to a project file, with its library, meshes and points in files beside it.
+
+Numbers have as many digits as they need: the project that is read back is the same, bit for bit.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from ..base.atomic import Outputs
+from ..base.errors import UsageError
+from ..base.triangles import checked_triangulation
+from ..base.units import MODEL_UNIT
+from ..settings.meshers import DEFAULT_MESHER
+from ..settings.point_file import PointFile
+from ..settings.rules import DEFAULT_RULE
+from .library import Library, Property
+from .project import Project, Rock, Surface, check_project
+from .region_rings import is_several
+from .structure_entries import Body, Fault
+
+_NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
+
+
+def save_project(project: Project, path: str | Path) -> list[Path]:
+    """Writes a project whose shapes are arrays to a project file; returns all files written.
+
+    Its library goes to NAME_library.toml beside it, each mesh to an OFF and the points of each surface to a
+    CSV file, named after the project file, the rock mass and the surface; faults and bodies to OFF files. All
+    appear whole or none does.
+    Raises UsageError for another ending than .toml, InputRefused for a project that could not be built,
+    OutputFailed.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".toml":
+        raise UsageError(f"{path}: a project file ends in .toml")
+    check_project(project)
+    taken: set[str] = {path.name.lower()}
+
+    def beside(*parts: str, ending: str) -> Path:
+        """A free name beside the project file, the same for the same project."""
+        stem = "_".join(_NOT_IN_FILE_NAMES.sub("_", part).strip("._") or "x" for part in (path.stem, *parts))
+        name, number = stem + ending, 2
+        while name.lower() in taken:
+            name, number = f"{stem}_{number}{ending}", number + 1
+        taken.add(name.lower())
+        return path.parent / name
+
+    with Outputs() as outputs:
+        written = [path]
+
+        def write(target: Path, content: bytes) -> str:
+            with outputs.file(target) as file:
+                file.write(content)
+            written.append(target)
+            return target.name
+
+        lines = ["format = 1", f"name = {toml_value(project.name)}"]
+        if project.units != MODEL_UNIT:
+            lines.append(f"units = {toml_value(project.units)}")
+        if project.library is not None:
+            library = write(beside("library", ending=".toml"), library_text(project.library).encode())
+            lines.append(f"library = {toml_value(library)}")
+        for rock in project.rocks:
+            lines += ["", "[[rock]]", *_rock_lines(rock)]
+            for surface in rock.surfaces:
+                shape = _shape_file(rock, surface, beside, write)
+                lines += ["", "[[rock.surface]]", *_surface_lines(surface, shape)]
+        for kind, entries in (("fault", project.faults), ("body", project.bodies)):
+            for entry in entries:
+                lines += ["", f"[[{kind}]]", *_structure_lines(kind, entry, beside, write)]
+        with outputs.file(path) as file:
+            file.write(("\n".join(lines) + "\n").encode())
+    return written
+
+
+def save_library(library: Library, path: str | Path) -> None:
+    """Writes a library file. Raises UsageError for another ending than .toml, OutputFailed."""
+    path = Path(path)
+    if path.suffix.lower() != ".toml":
+        raise UsageError(f"{path}: a library file ends in .toml")
+    with Outputs() as outputs, outputs.file(path) as file:
+        file.write(library_text(library).encode())
+
+
+def library_text(library: Library) -> str:
+    """A library as TOML."""
+    tables = []
+    for entry in library:
+        values = {field.name: getattr(entry, field.name) for field in fields(Property)}
+        tables.append("\n".join(["[[property]]", *_lines(values)]))
+    return "\n\n".join(tables) + "\n"
+
+
+def _rock_lines(rock: Rock) -> list[str]:
+    lines = _lines(
+        {
+            "name": rock.name,
+            "edge_length": rock.edge_length,
+            "triangles": rock.triangles,
+            "size": list(rock.size) or None,
+            "mesher": rock.mesher if rock.mesher != DEFAULT_MESHER else None,
+            "base_elevation": rock.base_elevation,
+        }
+    )
+    if rock.region is not None:
+        if rock.region_file is not None or isinstance(rock.region, str):
+            raise UsageError(f"rock '{rock.name}': its region has not been read; build the model first")
+        several = is_several(rock.region)
+        lines.append(f"region = {_rings_text(rock.region) if several else _ring_text(rock.region)}")
+        if len(rock.holes):
+            lines.append(f"holes = {_rings_text(rock.holes)}")
+    if len(rock.constraints):
+        lines.append(f"constraints = {_rings_text(rock.constraints)}")
+    return lines
+
+
+def _rings_text(rings) -> str:
+    return "[\n  " + ",\n  ".join(_ring_text(ring) for ring in rings) + ",\n]"
+
+
+def _ring_text(ring) -> str:
+    corners = [_point_text(point) for point in np.asarray(ring, np.float64).tolist()]
+    rows = [", ".join(corners[start : start + 4]) for start in range(0, len(corners), 4)]
+    return "[" + ",\n  ".join(rows) + "]"
+
+
+def _point_text(point: list[float]) -> str:
+    """A point of two or three numbers; without z where there is none."""
+    return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
+
+
+def _shape_file(rock: Rock, surface: Surface, beside, write) -> tuple[str, str] | None:
+    if surface.input_file is not None:
+        raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
+    if surface.interpolated:
+        points = surface.point_array()
+        if not len(points):
+            return None
+        target = beside(rock.name, surface.name, ending=".csv")
+        return "points", write(target, points_text(points))
+    target = beside(rock.name, surface.name, ending=".off")
+    return "mesh", write(target, off_text(surface.vertices, surface.triangles))
+
+
+def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]:
+    given = surface
+    values: dict[str, object] = {"name": given.name}
+    if shape is not None:
+        values[shape[0]] = shape[1]
+    # for a ready mesh the method is only for its continuation to faults
+    values |= {"method": given.method, **given.options}
+    values |= {
+        "minimum_thickness": given.minimum_thickness,
+        "correlation": given.correlation,
+        "rule": given.rule if given.rule != DEFAULT_RULE else None,
+        "property": given.property or None,
+        "block": given.block,
+    }
+    return _lines(values)
+
+
+def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]:
+    trace = entry.trace if isinstance(entry, Fault) else None
+    if entry.input_file is not None or isinstance(trace, str):
+        raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
+    keys = ("youngest", "ends_at", "dies_out", "rocks")
+    keys = keys if kind == "fault" else ("after", "property", "void", "rock")
+    values = {key: getattr(entry, key) or None for key in keys}
+    if isinstance(entry, Fault) and trace is not None:
+        assert not isinstance(trace, (Path, PointFile))  # it has no input file
+        own = {key: getattr(entry, key) for key in ("dip", "dip_direction", "elevation")}
+        lines = _lines({"name": entry.name} | own | {"extend": entry.extend or None} | values)
+        several = len(trace) and np.ndim(trace[0]) > 1
+        return [*lines, f"trace = {_rings_text(trace) if several else _ring_text(trace)}"]
+    if entry.vertices is None:
+        raise UsageError(
+            f"{kind} '{entry.name}': no surface is fitted to its points yet; build the model first"
+        )
+    mesh = write(beside(kind, entry.name, ending=".off"), off_text(entry.vertices, entry.triangles))
+    return _lines({"name": entry.name, "mesh": mesh} | values)
+
+
+def _lines(values: Mapping) -> list[str]:
+    return [f"{key} = {toml_value(value)}" for key, value in values.items() if value is not None]
+
+
+def toml_value(value) -> str:
+    """A value as TOML in one line. Raises UsageError for what TOML has no form for."""
+    if hasattr(value, "settings"):  # a variogram found by an earlier interpolation
+        value = value.settings()
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {toml_value(part)}" for key, part in value.items()) + "}"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(toml_value(part) for part in value) + "]"
+    raise UsageError(f"{value!r} cannot be written to a project file")
+
+
+def _text(value: str) -> str:
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if ord(c) >= 32 and ord(c) != 127 else f"\\u{ord(c):04x}" for c in escaped) + '"'
+
+
+def points_text(points) -> bytes:
+    """Points (P, 3) as CSV."""
+    return b"x,y,z\n" + _rows(np.asarray(points, np.float64), ",")
+
+
+def off_text(vertices, triangles) -> bytes:
+    """A triangulation as an OFF file."""
+    vertices, triangles = checked_triangulation(vertices, triangles)
+    head = f"OFF\n{len(vertices)} {len(triangles)} 0\n".encode()
+    corners = np.column_stack([np.full(len(triangles), 3, np.int32), triangles])
+    return head + _rows(vertices, " ") + _rows(corners, " ")
+
+
+def _rows(numbers: np.ndarray, apart: str) -> bytes:
+    """One row per line, each number with the fewest digits that identify it."""
+    text = io.StringIO()
+    for row in numbers.tolist():
+        text.write(apart.join(map(repr, row)) + "\n")
+    return text.getvalue().encode()

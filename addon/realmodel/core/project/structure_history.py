@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rock masses that a fault displaces and that a body is in, and since when."""
+
+from __future__ import annotations
+
+from .structure_entries import Body, Fault
+
+
+def displaced_surfaces(project, fault: Fault) -> dict[int, int]:
+    """For each rock mass that a fault may displace, by its number: the youngest surface that it displaces."""
+    return _numbers(project, fault.rocks, fault.youngest)
+
+
+def body_times(project, body: Body) -> dict[int, int]:
+    """For each rock mass that a body may be in, by its number: the surface after which it came."""
+    return _numbers(project, () if body.rock is None else (body.rock,), body.after)
+
+
+def _numbers(project, names, surface: str | None) -> dict[int, int]:
+    found = {}
+    for number, rock in enumerate(project.rocks):
+        if names and rock.name not in names:
+            continue
+        surfaces = [each.name for each in rock.surfaces]
+        if surface is None:
+            found[number] = len(surfaces) - 1
+        elif surface in surfaces:
+            found[number] = surfaces.index(surface)
+    return found

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compares random points of a finished model with structures with the closed form."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ..base.errors import place_text
+from ..base.triangles import crossing_pairs, distances_of_pairs
+from ..base.work import Work
+from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
+from .located import OUTSIDE, Locator
+
+_ROUNDING = 64  # units in the last place of the largest coordinate: nearer points are left undecided
+_LOOKED_AT = 200  # disagreeing points that are tested for rounding
+_SHOWN = 5  # offenders of each test
+_AT_ONCE = 2000  # points between two looks at cancel()
+
+
+def closed_forms(model) -> list[ClosedForm]:
+    """The closed form of each rock mass of a model with structures; blocks have the model's numbers."""
+    structures = model.structures
+    number = {block.surface: n for n, block in enumerate(model.blocks)}
+    count = sum(len(entry.surfaces) for entry in model.rock_inputs)
+    found, first = [], 0
+    for rock, entry in enumerate(model.rock_inputs):
+        own = range(first, first + len(entry.surfaces))
+        bodies = [
+            BodyOfRock(
+                (body.vertices, body.triangles),
+                structures.times[n][rock],
+                number.get(count + len(structures.faults) + n, AIR),
+            )
+            for n, body in enumerate(structures.bodies)
+            if rock in structures.times[n]
+        ]
+        found.append(
+            ClosedForm(
+                [surface.rule for surface in entry.rock.surfaces],
+                entry.structure.faults,
+                entry.structure.compartments,
+                entry.structure.sheets,
+                [number.get(surface, AIR) for surface in own],
+                entry.rock.base_elevation,
+                bodies,
+                entry.region,
+            )
+        )
+        first += len(entry.surfaces)
+    return found
+
+
+def check_points(work: Work, model, places: int, seed: int) -> list[dict]:
+    """The tests "places" and "surfaces" of a model with structures, as the native part gives those of others:
+    about so many points spread in the model, beside its faces, and beside faults and bodies."""
+    random = np.random.default_rng(seed)
+    began = time.perf_counter()
+    points = _points(model, places, random)
+    forms = closed_forms(model)
+    locator = Locator(model)
+    wrong, undecided, looked_at = [], 0, 0
+    for start in range(0, len(points), _AT_ONCE):
+        work.step(start / max(1, len(points)))
+        some = points[start : start + _AT_ONCE]
+        cells = locator.cells(some)
+        is_block = np.where(cells == OUTSIDE, AIR, np.append(model.cell_block, AIR)[cells])
+        said = _said(forms, some)
+        off = np.flatnonzero(is_block != said)
+        near = np.zeros(len(off), bool)
+        left = max(0, _LOOKED_AT - looked_at)
+        if len(off) and left:
+            near[:left] = _are_near(model, forms, locator, some[off[:left]])
+        looked_at += len(off)
+        undecided += int(near.sum())
+        wrong += [(some[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in off[~near]]
+    offenders = [_offender(model, *each) for each in wrong[:_SHOWN]]
+    found = [_entry("places", "points", len(points), len(wrong), undecided, began, offenders)]
+    return [*found, _check_faces(model, places, random)]
+
+
+def _said(forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:
+    blocks = np.full(len(points), AIR, np.int64)
+    for form in forms:
+        own = form.blocks_at(points)
+        blocks = np.where(own != AIR, own, blocks)
+    return blocks
+
+
+def _points(model, places: int, random) -> np.ndarray:
+    """(N, 3): a third anywhere in the box of the model, a third near faces, a third near structures."""
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    margin = 0.02 * (high - low)
+    third = max(1, places // 3)
+    spread = random.uniform(low - margin, high + margin, (places - 2 * third, 3))
+    first = model.face_offsets[:-1]
+    some = random.integers(0, len(first), third)
+    corner = random.integers(0, np.diff(model.face_offsets)[some] - 1)
+    at = model.face_vertices[first[some]], *(model.face_vertices[first[some] + corner + k] for k in (0, 1))
+    beside = _in_triangles(np.stack([model.vertices[each] for each in at], axis=1), random)
+    shapes = [each.vertices[each.triangles] for each in (*model.structures.faults, *model.structures.bodies)]
+    near = np.empty((0, 3))
+    for shape in shapes:
+        rows = random.integers(0, len(shape), -(-third // len(shapes)))
+        near = np.concatenate([near, _in_triangles(shape[rows], random)])
+    away = 10.0 ** random.uniform(-6, -1, (len(beside) + len(near), 1)) * np.linalg.norm(high - low)
+    direction = random.normal(size=(len(away), 3))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return np.concatenate([spread, np.concatenate([beside, near]) + away * direction])
+
+
+def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
+    """A random point in each of (N, 3, 3)."""
+    weights = -np.log(random.uniform(1e-300, 1.0, corners.shape[:2]))
+    return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
+
+
+def _are_near(model, forms: list[ClosedForm], locator: Locator, points: np.ndarray) -> np.ndarray:
+    """(N,) bool: whether a face or surface that divides rock is nearer to a point than rounding moves it."""
+    moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
+    moved = (points[:, None] + moves).reshape(-1, 3)
+    found = [each.reshape(-1, len(moves)) for each in (_said(forms, moved), locator.cells(moved))]
+    return np.any([(each != each[:, :1]).any(axis=1) for each in found], axis=0)
+
+
+def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
+    names = [f"block '{each.name}'" for each in model.blocks]
+    text = f"the model has {names[block] if block >= 0 else 'nothing'}, the closed form "
+    text += f"{names[said] if said >= 0 else 'nothing'} at {place_text(point)}"
+    return {
+        "text": text,
+        "cell": cell,
+        "face": -1,
+        "vertex": -1,
+        "block": block,
+        "place": tuple(point.tolist()),
+    }
+
+
+def _check_faces(model, places: int, random) -> dict:
+    """Whether the middles of some faces lie on the surface, fault or body that the faces name."""
+    began = time.perf_counter()
+    faces = np.flatnonzero(model.face_surface >= 0)
+    faces = np.sort(random.choice(faces, min(len(faces), places), replace=False))
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    points = np.add.reduceat(model.vertices[corners], offsets[:-1]) / np.diff(offsets)[:, None]
+    away = np.full(len(faces), np.inf)
+    allowed = _rounding(model) * (1 + _steepness(model))
+    for number in np.unique(model.face_surface[faces]):
+        own = np.flatnonzero(model.face_surface[faces] == number)
+        vertices, triangles = model.surface(number)
+        if model.surface_kind[number] == 0:
+            for sheet in model.sheet_triangles(number):
+                off = np.abs(heights_at(points[own, :2], vertices, sheet) - points[own, 2])
+                away[own] = np.fmin(away[own], off)
+        else:
+            away[own] = _distances_within(points[own], vertices[triangles], allowed)
+    wrong = np.flatnonzero(away > allowed)
+    slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
+    wrong = wrong[~slivers]
+    names = [model.surface_names[number] for number in model.face_surface[faces]]
+    offenders = [
+        {
+            "text": f"face {faces[n]} is {away[n]:.3g} off '{names[n]}'",
+            "cell": -1,
+            "face": int(faces[n]),
+            "vertex": -1,
+            "block": -1,
+            "place": tuple(points[n].tolist()),
+        }
+        for n in wrong[:_SHOWN]
+    ]
+    return _entry("surfaces", "faces", len(faces), len(wrong), int(slivers.sum()), began, offenders)
+
+
+def _width(model, face: int) -> float:
+    """The mean width of a face: its area by its longest extent."""
+    corners = model.vertices[model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]]
+    apart = corners - corners[0]
+    area = np.linalg.norm(np.cross(apart[1:-1], apart[2:]).sum(axis=0)) / 2
+    return float(area / np.linalg.norm(apart, axis=1).max())
+
+
+def _distances_within(points: np.ndarray, triangles: np.ndarray, allowed: float) -> np.ndarray:
+    """(N,) how far points (N, 3) are from the nearest of triangles (T, 3, 3), up to rounding; of those that
+    are farther than `allowed` only some are measured, and the others infinitely far."""
+    boxes = np.stack([points - allowed, points, points + allowed], axis=1)
+    pairs = crossing_pairs(boxes, triangles)
+    found = np.full(len(points), np.inf)
+    np.minimum.at(found, pairs[:, 0], distances_of_pairs(points[pairs[:, 0]], triangles[pairs[:, 1]]))
+    for n in np.flatnonzero(found > allowed)[:_SHOWN]:
+        found[n] = distances_of_pairs(np.broadcast_to(points[n], (len(triangles), 3)), triangles).min()
+    return found
+
+
+def _rounding(model) -> float:
+    """How far rounding may move a vertex: by the coordinates of the whole, where this is a part of one."""
+    return _ROUNDING * float(np.spacing(max(np.abs(model.vertices).max(), model.structures.largest)))
+
+
+def _steepness(model) -> float:
+    """The steepest slope of a sheet: heights are off by so much more than plan coordinates."""
+    steepest = 0.0
+    for number in np.flatnonzero(model.surface_kind == 0):
+        vertices, triangles = model.surface(number)
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a)
+        level = np.abs(normal[:, 2])
+        slopes = np.linalg.norm(normal[level > 0, :2], axis=1) / level[level > 0]
+        steepest = max(steepest, float(slopes.max(initial=0.0)))
+    return steepest
+
+
+def _entry(name: str, unit: str, examined: int, failed: int, undecided: int, began: float, offenders) -> dict:
+    return {
+        "name": name,
+        "unit": unit,
+        "examined": examined,
+        "failed": failed,
+        "undecided": undecided,
+        "seconds": time.perf_counter() - began,
+        "offenders": offenders,
+    }

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layers of GeoPackages (OGC 12-128r18), by Python's sqlite3 and a reader of well-known binary."""
+
+from __future__ import annotations
+
+import sqlite3
+import struct
+from collections.abc import Iterator, Mapping
+from contextlib import closing
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.text import Step, no_step
+from ..tables.table_layout import names_shown
+from .shapes import Heights, Selection, Shapes
+
+_MAGIC = b"SQLite format 3\0"
+# Python cannot decode SQLite's message where it contains damaged text
+UNREADABLE = (sqlite3.Error, UnicodeDecodeError)
+_ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by the flags
+_POINT, _LINE, _POLYGON = 1, 2, 3
+_COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
+_CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
+_DEEPEST = 50
+_STEP = 1000  # features
+
+
+def is_geopackage(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return head.startswith(_MAGIC)
+
+
+def shapes_of_geopackage(
+    file: str | Path,
+    layer: str | None = None,
+    where: Mapping | None = None,
+    step: Step = no_step,
+    heights: Heights | None = None,
+) -> Iterator[Shapes]:
+    """The shapes of one layer, of `layer` or of the only one, after each feature; the caller may take them
+    out. Raises InputRefused naming file and layer."""
+    file = Path(file)
+    try:
+        with closing(connect(file)) as base:
+            yield from _read(file, base, layer, where or {}, step, heights)
+    except UNREADABLE as error:
+        changed = open_changes(file) is not None
+        advice = "close it in the program that has it open, so that its last changes are in it"
+        what = f"not a GeoPackage that can be read: {error}"
+        raise InputRefused(what, file=file, advice=advice if changed else None) from error
+
+
+def connect(file: Path) -> sqlite3.Connection:
+    """A connection that only reads. Raises sqlite3.Error."""
+    address = f"file:{quote(str(file.resolve()))}?mode=ro"
+    if open_changes(file) is None:
+        address += "&immutable=1"  # so that nothing is written beside it
+    return sqlite3.connect(address, uri=True)
+
+
+def open_changes(file: Path) -> Path | None:
+    """The file beside a GeoPackage with what a program that has it open changed last; None: there is none."""
+    changes = file.resolve()
+    changes = changes.with_name(changes.name + "-wal")
+    try:
+        return changes if changes.stat().st_size > 0 else None
+    except OSError:
+        return None
+
+
+def _read(
+    file: Path,
+    base: sqlite3.Connection,
+    layer: str | None,
+    where: Mapping,
+    step: Step,
+    heights: Heights | None,
+) -> Iterator[Shapes]:
+    try:
+        layers = dict(
+            base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
+        )
+    except sqlite3.OperationalError as error:  # there is no such table
+        raise InputRefused("it has no layers of features", file=file) from error
+    if not layers:
+        raise InputRefused("it has no layers of features", file=file)
+    if layer is None and len(layers) > 1:
+        advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
+        raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
+    table = layer if layer is not None else next(iter(layers))
+    if table not in layers:  # SQL ignores case
+        table = next((name for name in layers if name.lower() == table.lower()), table)
+    if table not in layers:
+        what = f"it has no layer '{layer}'"
+        raise InputRefused(what, file=file, advice=f"it has {names_shown(list(layers))}")
+    selection = Selection(file, where, table)
+    shapes = Shapes.wanted(heights)
+    rows = base.execute(f"SELECT * FROM {_quoted(table)} ORDER BY rowid")
+    names = [entry[0] for entry in rows.description]
+    if layers[table] not in names:
+        raise InputRefused(f"layer '{table}' has no column '{layers[table]}'", file=file)
+    at = names.index(layers[table])
+    for number, row in enumerate(rows, 1):
+        if number % _STEP == 0:
+            step(1 - _STEP / (number + _STEP))
+        attributes = {name: value for name, value in zip(names, row, strict=True) if name != layers[table]}
+        if not selection.takes(attributes) or row[at] is None:
+            continue
+        item, before = f"feature {number}", shapes.counts()
+        try:
+            _geometry(bytes(row[at]), item, shapes)
+        except (ValueError, struct.error, IndexError, TypeError) as error:
+            what = f"its geometry cannot be read: {error}"
+            raise InputRefused(what, file=file, item=f"layer '{table}', {item}") from error
+        if shapes.attributes is not None:
+            shapes.attributes[item] = attributes
+        if heights and heights.attribute is not None:
+            shapes.set_height(before, selection.height(attributes, heights.attribute, item))
+        yield shapes
+    selection.require_some()
+    yield shapes
+
+
+def _quoted(name: str) -> str:
+    return '"' + name.replace('"', '""') + '"'
+
+
+def _geometry(blob: bytes, item: str, shapes: Shapes) -> None:
+    """A geometry as a GeoPackage has it: a header, then well-known binary."""
+    if blob[:2] != b"GP":
+        raise ValueError("it does not begin with GP")
+    flags = blob[3]
+    envelope = flags >> 1 & 7
+    if flags & 0x20:
+        raise ValueError("an extended geometry")
+    if flags & 0x10 or envelope >= len(_ENVELOPES):  # empty, or not known
+        if flags & 0x10:
+            return
+        raise ValueError("an unknown envelope")
+    reader = _WellKnownBinary(blob, 8 + _ENVELOPES[envelope])
+    reader.geometry(item, shapes, 0)
+
+
+class _WellKnownBinary:
+    def __init__(self, blob: bytes, at: int):
+        self.blob, self.at = blob, at
+
+    def number(self, order: str) -> int:
+        (value,) = struct.unpack_from(f"{order}I", self.blob, self.at)
+        self.at += 4
+        return value
+
+    def places(self, order: str, count: int, size: int, has_z: bool, ordinates: int) -> np.ndarray:
+        """(count, ordinates) of positions of `size` numbers."""
+        if count * size * 8 > len(self.blob) - self.at:
+            raise ValueError("it is cut off")
+        numbers = np.frombuffer(self.blob, f"{order}f8", count * size, self.at)
+        self.at += 8 * count * size
+        places = np.full((count, ordinates), np.nan)
+        kept = min(ordinates, 3 if has_z else 2)
+        places[:, :kept] = numbers.reshape(count, size)[:, :kept]
+        if not np.isfinite(places[:, :2]).all():
+            raise ValueError("a position is not finite")
+        return places
+
+    def geometry(self, item: str, shapes: Shapes, depth: int) -> None:
+        if depth > _DEEPEST:
+            raise ValueError("collections nested too deep")
+        order = "<" if self.blob[self.at] else ">"
+        self.at += 1
+        code = self.number(order)
+        plain = code & 0x0FFFFFFF
+        thousands = plain // 1000 if plain // 1000 < 4 else 0  # 1: Z, 2: M, 3: both
+        has_z = bool(code & 0x80000000) or thousands in (1, 3)  # the bits are PostGIS's marks
+        has_m = bool(code & 0x40000000) or thousands in (2, 3)
+        size = 2 + has_z + has_m
+
+        def read(count: int) -> np.ndarray:
+            return self.places(order, count, size, has_z, shapes.ordinates)
+
+        kind = plain % 1000
+        if kind == _POINT:
+            numbers = np.frombuffer(self.blob, f"{order}f8", size, self.at)
+            if np.isnan(numbers[:2]).all():  # how an empty point is written
+                self.at += 8 * size
+            else:
+                shapes.points.append((item, read(1)[0]))
+        elif kind == _LINE:
+            if len(line := read(self.number(order))):
+                shapes.lines.append((item, line))
+        elif kind == _POLYGON:
+            rings = [read(self.number(order)) for _ in range(self.number(order))]
+            shapes.add_polygon(item, [ring for ring in rings if len(ring)])
+        elif kind in _COLLECTIONS:
+            for _ in range(self.number(order)):
+                self.geometry(item, shapes, depth + 1)
+        elif kind in _CURVED:
+            raise ValueError(f"a {_CURVED[kind]}, which is curved; save it with straight lines")
+        else:
+            raise ValueError(f"a geometry of kind {kind}, which is not read")

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ready triangulated surfaces from files: one registry of formats (docs/dev/extending.md). The format is
+detected from the content of the file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...base.errors import InputRefused
+from ...base.mapped_arrays import MakeRows, Rows
+from ...base.text import Step, no_step
+from .dxf_mesh import begins_as_dxf, read_dxf
+from .gmsh_mesh import begins_as_msh, read_msh
+from .landxml import begins_as_landxml, read_landxml
+from .off import begins_as_off, read_off
+from .ply_mesh import begins_as_ply, read_ply
+from .stl_mesh import begins_as_stl, read_stl
+from .surface_meshes import begins_as_obj, read_obj, read_tsurf
+from .triangle_mesh import TriangleMesh
+from .vtk_mesh import begins_as_vtk_xml, read_vtk_xml
+
+_HEAD = 4096
+
+
+@dataclass(frozen=True)
+class MeshFormat:
+    """begins(head, size): whether a file of so many bytes that begins with these is of this format.
+    read(file, step, rows) raises InputRefused naming file and line; rows: where it is kept."""
+
+    name: str
+    endings: tuple[str, ...]
+    begins: Callable[[bytes, int], bool]
+    read: Callable[[Path, Step, MakeRows], TriangleMesh]
+
+
+def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
+    return lambda head, _size: begins(head)
+
+
+MESH_FORMATS = (
+    MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off),
+    MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply),
+    MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
+    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), read_vtk_xml),
+    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
+    MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), read_landxml),
+    MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), read_dxf),
+    MeshFormat("STL", (".stl",), begins_as_stl, read_stl),
+    MeshFormat("OBJ", (".obj",), begins_as_obj, read_obj),
+)
+MESH_ENDINGS = tuple(ending for known in MESH_FORMATS for ending in known.endings)
+
+
+def is_mesh_file(file: str | Path) -> bool:
+    """Whether a file is one of a mesh, by its content or else by its ending. Raises InputRefused where it
+    cannot be read."""
+    return bool(_formats_of(Path(file)))
+
+
+def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+    """Reads a mesh in any format that is known. rows: where it is kept. Raises InputRefused naming file and
+    line."""
+    file = Path(file)
+    found = _formats_of(file)
+    if not found:
+        names = ", ".join(known.name for known in MESH_FORMATS)
+        raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
+    return found[0].read(file, step, rows)
+
+
+def _formats_of(file: Path) -> list[MeshFormat]:
+    """The formats that fit the content, then the format of the ending."""
+    try:
+        with file.open("rb") as opened:
+            head = opened.read(_HEAD)
+            size = opened.seek(0, os.SEEK_END)
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+    by_ending = [known for known in MESH_FORMATS if file.suffix.lower() in known.endings]
+    return [*(known for known in MESH_FORMATS if known.begins(head, size)), *by_ending]

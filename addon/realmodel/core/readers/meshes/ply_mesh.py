@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes in the format of Stanford's PLY, binary and as text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
+from ...base.text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
+from .damaged_mesh import UNREADABLE, Damaged, unreadable
+from .triangle_mesh import MeshRows, TriangleMesh
+
+_ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
+_TYPES = {
+    "char": "i1",
+    "uchar": "u1",
+    "short": "i2",
+    "ushort": "u2",
+    "int": "i4",
+    "uint": "u4",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "i2",
+    "uint16": "u2",
+    "int32": "i4",
+    "uint32": "u4",
+    "float": "f4",
+    "float32": "f4",
+    "double": "f8",
+    "float64": "f8",
+}
+_CORNERS = ("vertex_indices", "vertex_index")
+_END = b"end_header"
+_HEAD_BYTES = 1 << 12
+
+
+def begins_as_ply(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return head.startswith((b"ply\n", b"ply\r"))
+
+
+def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+    """Reads the vertices and faces of a PLY, binary or text. rows: where they are kept. Raises
+    InputRefused."""
+    file = Path(file)
+    raw = FileBytes(file)
+    mesh = MeshRows(file, rows)
+    begins, kind = 0, ""
+    try:
+        head, begins = _head(raw)
+        kind, elements = _header(head.decode("latin-1").splitlines())
+        if not (kind and begins) or not {"vertex", "face"} <= elements.keys():
+            raise ValueError("its header has no format, vertices or faces")
+        body = _Numbers(raw, begins, rows) if kind == "ascii" else _Bytes(raw, begins)
+        at, found = 0, set()
+        for name, (count, properties) in elements.items():
+            if name in ("vertex", "face"):
+                at = (_vertices if name == "vertex" else _faces)(body, at, count, properties, mesh, step)
+                found.add(name)
+            elif len(found) == 2:
+                break
+            else:
+                at += count * np.dtype([(key, form) for key, _, form in properties]).itemsize
+    except _Cut as error:
+        place = {"byte": begins + error.at}
+        if kind == "ascii":
+            place = {"line": line_of_word(raw, error.at // 8, begins)}
+        damage = Damaged("it is cut off, or a count is wrong", **place)
+        raise unreadable(file, "PLY", damage) from error
+    except UNREADABLE as error:
+        raise unreadable(file, "PLY", error) from error
+    return mesh.mesh()
+
+
+def _head(raw: FileBytes) -> tuple[bytes, int]:
+    """The header, and where the rest begins; 0 where it has no end."""
+    size = _HEAD_BYTES
+    while (at := raw[:size].find(_END)) < 0:
+        if size >= len(raw):
+            return raw[:size], 0
+        size *= 2
+    begin = at + len(_END)
+    return raw[:at], begin + (2 if raw[begin : begin + 2] == b"\r\n" else 1)
+
+
+class _Bytes:
+    """The bytes after the header."""
+
+    def __init__(self, raw: FileBytes, begin: int):
+        self._raw, self._begin = raw, begin
+
+    def __len__(self) -> int:
+        return max(len(self._raw) - self._begin, 0)
+
+    def some(self, begin: int, size: int) -> bytes:
+        return self._raw[self._begin + begin : self._begin + begin + size]
+
+
+class _Numbers(_Bytes):
+    """The text after the header, as numbers of one kind."""
+
+    def __init__(self, raw: FileBytes, begin: int, rows: MakeRows):
+        super().__init__(raw, begin)
+        numbers = rows(np.empty(0, "<f8"))
+        for _, piece in pieces_of(with_newlines(raw), begin):
+            numbers.add(np.array(piece.split()).astype("<f8"))
+        self._numbers = numbers.array().view(np.uint8)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def some(self, begin: int, size: int) -> bytes:
+        return self._numbers[begin : begin + size].tobytes()
+
+
+def _header(lines: list[str]):
+    """("ascii" or a kind of binary, {element: (count, [(property, type of its length or None, type)])})."""
+    kind, order = "", ""
+    elements: dict[str, tuple] = {}
+    properties: list[tuple] = []
+    for words in map(str.split, lines):
+        if words[:1] == ["format"]:
+            kind = words[1]
+            order = _ORDERS[kind]
+        elif words[:1] == ["element"]:
+            properties = []
+            elements[words[1]] = (int(words[2]), properties)
+        elif words[:1] == ["property"]:
+            *types, name = words[2 if words[1] == "list" else 1 :]
+            types = ["<f8" if kind == "ascii" else order + _TYPES[word] for word in types]
+            properties.append((name, types[0] if len(types) > 1 else None, types[-1]))
+    return kind, elements
+
+
+def _vertices(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: Step) -> int:
+    """Reads the vertices from a byte on; where they end."""
+    row = np.dtype([(name, form) for name, _, form in properties])
+    if not 0 <= count * row.itemsize <= len(body) - at:
+        raise _Cut(min(at, len(body)))
+    for begin in range(0, count, ROWS_AT_ONCE):
+        some = min(ROWS_AT_ONCE, count - begin)
+        table = np.frombuffer(body.some(at + begin * row.itemsize, some * row.itemsize), row)
+        mesh.add_vertices(np.column_stack([table[axis] for axis in "xyz"]))
+        step((at + begin * row.itemsize) / len(body))
+    return at + count * row.itemsize
+
+
+def _faces(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, step: Step) -> int:
+    """Reads the faces from a byte on; where they end."""
+    keys = [name for name, length, _ in properties if length and name in _CORNERS]
+    if len(keys) != 1:
+        raise ValueError("its faces have no list of vertices")
+    while count:
+        step(at / len(body))
+        faces, at = _some_faces(body, at, min(count, ROWS_AT_ONCE), properties, keys[0])
+        mesh.add_faces(faces)
+        count -= len(faces)
+    return at
+
+
+def _some_faces(body: _Bytes, at: int, count: int, properties, key: str):
+    """The corners of this number of faces, and their end."""
+    _, sizes, _ = _face(body, at, properties, key)
+    fields: list[tuple] = []
+    for (name, length, form), size in zip(properties, sizes, strict=True):
+        fields += [(f"{name} size", length)] if length else []
+        fields.append((name, form, (size,)))
+    row = np.dtype(fields)
+    if at + count * row.itemsize <= len(body):  # mostly all faces have as many corners
+        table = np.frombuffer(body.some(at, count * row.itemsize), row)
+        lists = [(name, size) for (name, length, _), size in zip(properties, sizes, strict=True) if length]
+        if all((table[f"{name} size"] == size).all() for name, size in lists):
+            return table[key], at + table.nbytes
+    faces = []
+    for _ in range(count):
+        corners, _, at = _face(body, at, properties, key)
+        faces.append(corners)
+    return faces, at
+
+
+def _face(body: _Bytes, at: int, properties, key: str):
+    """One face: its corners, the length of each property, and its end."""
+    corners, sizes = None, []
+    for name, length, form in properties:
+        size = 1
+        if length:
+            if at + np.dtype(length).itemsize > len(body):
+                raise _Cut(at)
+            size = int(np.frombuffer(body.some(at, np.dtype(length).itemsize), length)[0])
+            at += np.dtype(length).itemsize
+        if not 0 <= size * np.dtype(form).itemsize <= len(body) - at:
+            raise _Cut(at)
+        values = (
+            np.frombuffer(body.some(at, size * np.dtype(form).itemsize), form) if size else np.empty(0, form)
+        )
+        at += values.nbytes
+        sizes.append(size)
+        corners = values if name == key else corners
+    return corners, sizes, at
+
+
+class _Cut(ValueError):
+    """The file ends before the data that its header announces."""
+
+    def __init__(self, at: int):
+        super().__init__(f"byte {at}")
+        self.at = at

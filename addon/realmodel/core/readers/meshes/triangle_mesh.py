@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The triangulated surface of a file, whatever its format."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.fans import fanned
+from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, MakeRows, Rows, in_memory, in_pieces
+from ...settings.point_file import MeshFile
+
+_MOST_VERTICES = np.iinfo(np.int32).max
+
+
+@dataclass(frozen=True)
+class TriangleMesh:
+    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner.
+
+    face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
+    unit: of its lengths (units.METERS), where the file says one; said_unit: one that may not be meant.
+    warnings: sentences.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    face_of_triangle: np.ndarray | None = None
+    unit: str | None = None
+    said_unit: str | None = None
+    warnings: tuple[str, ...] = ()
+
+    def in_model(
+        self, given: MeshFile, model_unit: str, gather: Gather = in_memory
+    ) -> tuple[np.ndarray, list[str]]:
+        """The vertices in the model's unit, z upward, and warnings. given: the import options of the user;
+        where they have no unit, the unit of the file is used. gather: where the vertices are kept."""
+        warnings = [f"{given.file}: {text}" for text in self.warnings]
+        if given.units is None and self.unit not in (None, model_unit):
+            given = replace(given, units=self.unit)
+            warnings.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
+        if given.units is None and self.said_unit not in (None, model_unit):
+            what = f"its header says {self.said_unit}; it is read in the unit of the model, {model_unit}"
+            warnings.append(f'{given.file}: {what}: write units = "{self.said_unit}" if the header is right')
+        plan_scale, height_scale = given.scale(model_unit)
+        if (plan_scale, height_scale) == (1.0, 1.0):
+            return self.vertices, warnings
+        scale = np.array([plan_scale, plan_scale, height_scale])
+        return gather((piece * scale for piece in in_pieces(self.vertices)), np.empty((0, 3))), warnings
+
+
+class MeshRows:
+    """A mesh that comes piece by piece, in any order. rows: where it is kept. Raises InputRefused."""
+
+    def __init__(self, file: Path, rows: MakeRows = Rows):
+        self._file, self._rows = file, rows
+        self._vertices = rows(np.empty((0, 3)))
+        self._triangles = rows(np.empty((0, 3), np.int32))
+        self._owners: Rows | None = None  # of triangles, where there are larger faces
+        self._lines: Rows | None = None
+        self.vertices, self.faces = 0, 0  # how many there are
+        self._triangle_count = 0
+        self._lowest, self._highest = 0, -1  # corners
+
+    def add_vertices(self, vertices) -> None:
+        with np.errstate(invalid="ignore"):  # NaN of any kind is refused
+            vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+        bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+        if len(bad):
+            raise InputRefused(f"vertex {self.vertices + bad[0] + 1} is not finite", file=self._file)
+        self._vertices.add(vertices)
+        self.vertices += len(vertices)
+
+    def add_faces(self, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None) -> None:
+        """faces: their corners, from 0, (F, K) or a list of any lengths; these may come later than they.
+        lines: where each face stands in the file."""
+        if not len(faces):
+            return
+        if isinstance(faces, np.ndarray):
+            sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
+        else:
+            sizes = np.array([len(face) for face in faces])
+            given = np.array(list(itertools.chain.from_iterable(faces)))
+        for face in np.flatnonzero(sizes < 3)[:1]:
+            line = None if lines is None else lines[face]
+            raise InputRefused("a face of 2 corners", file=self._file, line=line)
+        with np.errstate(invalid="ignore"):
+            is_number = (given >= 0) & (given <= _MOST_VERTICES)
+            corners = np.where(is_number, given, -1).astype(np.int32)
+            corners[corners != given] = -1
+        triangles, owner = fanned(np.append(0, np.cumsum(sizes)), corners)
+        self._lowest = min(self._lowest, int(corners.min()))
+        self._highest = max(self._highest, int(corners.max()))
+        if self._owners is None and (sizes > 3).any():
+            self._owners = self._rows(np.empty(0, np.int64))
+            for begin in range(0, self._triangle_count, ROWS_AT_ONCE):
+                self._owners.add(np.arange(begin, min(begin + ROWS_AT_ONCE, self._triangle_count)))
+        if self._owners is not None:
+            self._owners.add(owner + self.faces)
+        if lines is not None:
+            self._lines = self._lines or self._rows(np.empty(0, np.int64))
+            self._lines.add(np.asarray(lines))
+        self._triangles.add(triangles)
+        self._triangle_count += len(triangles)
+        self.faces += len(sizes)
+
+    def mesh(self) -> TriangleMesh:
+        if not self.faces:
+            advice = "if it holds points, read it as points"
+            raise InputRefused("the mesh has no faces", file=self._file, advice=advice)
+        triangles = self._triangles.array()
+        owners = None if self._owners is None else self._owners.array()
+        if self._lowest < 0 or self._highest >= self.vertices:
+            bad = self._first_bad(triangles)
+            face = bad if owners is None else int(owners[bad])
+            line = None if self._lines is None else int(self._lines.array()[face])
+            raise InputRefused(f"face {face + 1} has a corner that is no vertex", file=self._file, line=line)
+        return TriangleMesh(self._vertices.array(), triangles, owners)
+
+    def _first_bad(self, triangles: np.ndarray) -> int:
+        begin = 0
+        for piece in in_pieces(triangles):
+            bad = np.flatnonzero(((piece < 0) | (piece >= self.vertices)).any(axis=1))
+            if len(bad):
+                return begin + int(bad[0])
+            begin += len(piece)
+        raise AssertionError("there is none")
+
+
+def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
+    """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
+    InputRefused."""
+    found = MeshRows(file)
+    if len(faces):  # without faces another error is reported
+        found.add_vertices(vertices)
+    found.add_faces(faces, lines)
+    return found.mesh()

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The heights of grids in text files, wherever their lines end."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.text import BYTES_AT_ONCE, Content, Step
+from ...base.work import native_module
+
+_LONGEST = 1 << 10  # bytes of a number, mostly
+_BLANK = re.compile(rb"\s")
+
+
+def grid_heights(
+    file: Path, raw: Content, body: int, line: int, count: int, shape: str, step: Step, decimal: str = "."
+) -> Iterator[np.ndarray]:
+    """The numbers from byte `body`, which stands on this line, to the end: piece by piece (N,) float64,
+    `count` in all.
+
+    shape: what says that there are so many. Raises InputRefused naming the line."""
+    native = native_module()
+    one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
+    found, at = 0, body
+    while at < len(raw):
+        piece = _to_blank(raw, at).translate(one_a_line)
+        try:
+            numbers = native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0]
+        except native.InputError as error:
+            begin, stop = error.items[2:4]
+            number = line + raw.count(b"\n", body, at + begin)
+            entry = piece[begin:stop].decode("latin-1")
+            advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
+            what = f"not a height: '{entry:.40}'"
+            raise InputRefused(what, file=file, line=number, advice=advice) from error
+        at += len(piece)
+        found += len(numbers)
+        yield numbers
+        step(at / len(raw))
+    if found != count:
+        raise InputRefused(
+            f"{shape} need {count} heights; there are {found}",
+            file=file,
+            advice="the file is cut off or its header is wrong",
+        )
+
+
+def _to_blank(raw: Content, begin: int) -> bytes:
+    """The text from a byte on, to the end of a number."""
+    piece = raw[begin : begin + BYTES_AT_ONCE]
+    at = begin + len(piece)
+    while at < len(raw):
+        more = raw[at : at + _LONGEST]
+        blank = _BLANK.search(more)
+        piece += more if blank is None else more[: blank.end()]
+        if blank is not None:
+            break
+        at += len(more)
+    return piece
+
+
+def header_numbers(file: Path, text: str, line: int, count: int, what: str) -> list[float]:
+    """The first numbers of a line of a header. Raises InputRefused."""
+    words = text.replace(",", " ").split()
+    try:
+        found = [float(word) for word in words[:count]]
+        if len(found) < count or not np.isfinite(found).all():
+            raise ValueError
+    except ValueError as error:
+        raise InputRefused(
+            f"the header needs {what} here, not '{text.strip():.60}'", file=file, line=line
+        ) from error
+    return found
+
+
+def require_count(file: Path, value: float, name: str, line: int | None = None) -> int:
+    """A number of rows or columns. Raises InputRefused."""
+    if not (1 <= value < 1e9 and value == int(value)):
+        raise InputRefused(f"{name} must be a whole number from 1, not {value:g}", file=file, line=line)
+    return int(value)
+
+
+def require_spacing(
+    file: Path, low: float, high: float, count: int, axis: str, line: int | None = None
+) -> float:
+    """The spacing of this number of grid lines between two ends. Raises InputRefused."""
+    spacing = (high - low) / (count - 1) if count > 1 else 1.0
+    if not (np.isfinite(spacing) and spacing > 0):
+        what = f"the grid must go from a lower to a higher {axis}, not from {low:g} to {high:g}"
+        raise InputRefused(what, file=file, line=line)
+    return spacing

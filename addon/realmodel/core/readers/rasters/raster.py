@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rasters: heights on a regular grid, as points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+
+
+@dataclass(frozen=True)
+class Raster:
+    """Heights z (rows, columns) float64, NaN where there are none, the first row that of the file.
+
+    z may be in a file. The height of row r and column c lies at origin + c * across + r * down in plan.
+    warnings: sentences.
+    """
+
+    z: np.ndarray
+    origin: tuple[float, float]
+    across: tuple[float, float]
+    down: tuple[float, float]
+    warnings: list[str] = field(default_factory=list)
+
+    def points(self, file: Path, gather: Gather = in_memory) -> np.ndarray:
+        """(P, 3) float64, row after row, those without a height left out.
+
+        Raises InputRefused where none is left.
+        """
+        points = gather(self._pieces(), np.empty((0, 3)))
+        if not len(points):
+            raise InputRefused("no cell of the raster has a height", file=file)
+        return points
+
+    def _pieces(self) -> Iterator[np.ndarray]:
+        height, width = self.z.shape
+        wide = min(width, ROWS_AT_ONCE)
+        high = ROWS_AT_ONCE // wide if wide == width else 1
+        for top in range(0, height, high):
+            for left in range(0, width, wide):
+                z = self.z[top : top + high, left : left + wide]
+                rows, columns = np.nonzero(np.isfinite(z))
+                points = np.empty((len(rows), 3))
+                points[:, 2] = z[rows, columns]
+                rows, columns = rows + top, columns + left
+                for axis in (0, 1):
+                    points[:, axis] = self.origin[axis] + columns * self.across[axis] + rows * self.down[axis]
+                yield points
+
+
+def without_values(
+    z: np.ndarray, values: Sequence[float], stored: np.dtype | type = np.float64
+) -> np.ndarray:
+    """Heights with NaN where one of the values stands that mean none.
+
+    What writes such a value and what writes the heights may round it differently: of floating-point heights
+    those within a few units in the last place of what was stored are meant.
+    """
+    for value in values:
+        if np.isnan(value):
+            continue
+        near = 8 * np.finfo(stored).eps * abs(value) if np.issubdtype(stored, np.floating) else 0.0
+        # -3.402823e+38 is written for the lowest 32-bit number, -3.40282347e+38
+        if stored == np.float32 and abs(value) > 1e38:
+            near = 1e-6 * abs(value)
+        z[np.abs(z - value) <= near] = np.nan
+    return z

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rows of tables of boreholes, with columns found by their usual names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.text import Step
+from ...settings.boreholes import Boreholes
+from .points import Table, open_table
+from .table_layout import fields, is_number, plain_name
+
+_HOLE = ("hole", "hole_id", "holeid", "bhid", "borehole", "well", "well_id", "name", "id")
+# In the order in which they are looked for: a column has one meaning in a table.
+PICKS = {
+    "hole": _HOLE,
+    "x": ("x", "easting", "east"),
+    "y": ("y", "northing", "north"),
+    "z": ("z", "collar", "elevation", "elev", "altitude", "rl", "kb", "height"),
+    "surface": ("surface", "horizon", "top", "marker", "formation", "unit", "pick"),
+    "depth": ("depth", "md", "tvd", "from"),
+    "elevation": ("elevation", "elev", "z", "altitude", "rl", "height"),
+}
+DIRECTIONS = {
+    "azimuth": ("azimuth", "azi", "azim", "azm", "az", "bearing", "brg"),
+    "dip": ("dip", "plunge"),
+    "inclination": ("inclination", "incl", "inc", "deviation"),
+}
+SURVEY = {
+    "hole": _HOLE,
+    "depth": ("depth", "md", "measured_depth", "at", "distance", "dist", "survey_depth"),
+    **DIRECTIONS,
+}
+COLLARS = {**PICKS, **DIRECTIONS}
+# What stands in a column where there is no value; in small letters.
+NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
+_STEP = 5000  # rows
+
+Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
+
+
+@dataclass(frozen=True)
+class Row:
+    table: Table
+    line: int
+    entries: list[str]
+    columns: dict[str, int]
+    decimal: str
+
+    def refuse(self, what: str, advice: str | None = None) -> InputRefused:
+        return InputRefused(what, file=self.table.file, line=self.line, advice=advice)
+
+    def text(self, column: str) -> str:
+        at = self.columns[column]
+        if at >= len(self.entries):
+            raise self.refuse(f"{at + 1} values are needed, there are {len(self.entries)}")
+        return self.entries[at]
+
+    def has(self, column: str) -> bool:
+        """Whether there is such a column, with a value in this row."""
+        at = self.columns.get(column, len(self.entries))
+        return at < len(self.entries) and self.entries[at].lower() not in NO_VALUE
+
+    def called(self, column: str) -> str:
+        """The name of a column in the header, in small letters; empty without a header."""
+        names, at = self.table.layout.names or (), self.columns[column]
+        return plain_name(names[at]) if at < len(names) else ""
+
+    def number(self, column: str) -> float:
+        entry = self.text(column)
+        if not is_number(entry, self.decimal):
+            raise self.refuse(f"{column} is not a number: '{entry:.40}'")
+        value = float(entry.replace(",", "."))
+        if not np.isfinite(value):
+            raise self.refuse(f"{column} is {entry}, not a finite number")
+        return value
+
+
+def rows(given: Boreholes, file: Path, known: Columns, needed: Sequence[str], step: Step):
+    """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
+    one that is needed."""
+    names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
+    names.update(alias for aliases in known.values() for alias in aliases)
+    table = open_table(file, given.separator, (), {}, names, 1, 2)
+    columns = _columns(given, table, known, needed)
+    separator = table.layout.separator
+    body = table.raw[table.layout.body :].decode(table.encoding)
+    decimal = given.decimal or "."
+    if (
+        given.decimal is None
+        and separator != ","
+        and not any("." in entry for entry in body[:20_000].split() if is_number(entry))
+    ):
+        decimal = (
+            "," if any(is_number(part, ",") and "," in part for part in _parts(body, separator)) else "."
+        )
+    total = max(body.count("\n"), 1)
+    for number, line in enumerate(body.split("\n")):
+        if number % _STEP == 0:
+            step(number / total)
+        stripped = line.strip()
+        if not stripped or stripped.startswith("#"):
+            continue
+        yield Row(
+            table, table.layout.body_line + number, table.layout.fields(line.rstrip("\r")), columns, decimal
+        )
+
+
+def _parts(body: str, separator: str):
+    """Entries of the first lines."""
+    for line in body[:20_000].split("\n"):
+        yield from fields(line, separator)
+
+
+def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
+    """The numbers of the columns of a table, by their meaning."""
+    names = [plain_name(name) for name in table.layout.names or ()]
+    as_written = [name.strip().lower() for name in table.layout.names or ()]
+    columns: dict[str, int] = {}
+    for column, aliases in known.items():
+        called = given.columns.get(column)
+        if isinstance(called, int):
+            columns[column] = called - 1
+        elif called is not None and called.strip().lower() in as_written:
+            columns[column] = table.column(called)
+        elif called is None or known is SURVEY:  # depths of picks are often called otherwise than a survey's
+            at = next((names.index(alias) for alias in aliases if alias in names), None)
+            if at is not None and at not in columns.values():
+                columns[column] = at
+    for column in needed:
+        if column not in columns:
+            called = given.columns.get(column)
+            what = f"the header has no column {called or column}"
+            advice = f'name it: columns = {{ {column} = "..." }}'
+            raise InputRefused(what, file=table.file, line=table.layout.name_line or 1, advice=advice)
+    return columns

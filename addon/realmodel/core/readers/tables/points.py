@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scattered points from tables of text: CSV and similar formats, with or without a header, and plain .xyz."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused, number_list
+from ...base.mapped_arrays import Gather, in_memory
+from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
+from ...base.work import native_module
+from ...settings.point_file import list_of
+from .table_layout import (
+    TableLayout,
+    column_number,
+    decimal_comma,
+    fields,
+    is_number,
+    names_shown,
+    plain_name,
+    table_layout,
+)
+
+TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
+_MOST_THREADS = 8
+_AXES = {
+    "x": (
+        *("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm", "point_x"),
+        *("rechtswert", "este"),
+    ),
+    "y": (
+        *("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm", "point_y"),
+        *("hochwert", "norte"),
+    ),
+    "z": (
+        *("z", "elevation", "elev", "altitude", "height", "z_coord", "zcoord", "coord_z", "point_z"),
+        *("höhe", "hoehe", "cota", "rl"),
+    ),
+}
+KNOWN = frozenset(name for names in _AXES.values() for name in names)
+
+
+@dataclass(frozen=True)
+class PointRows:
+    """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
+    hold what was asked for; the names of the columns that were taken for x, y and z although they say
+    nothing of the kind."""
+
+    points: np.ndarray
+    missing: int = 0
+    filtered: int = 0
+    taken_for_xyz: tuple[str, ...] = ()
+
+
+def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
+    """(P, 3) float64 points of a table of text: read_point_rows with default options."""
+    return read_point_rows(file, step=step).points
+
+
+def read_point_rows(
+    file: str | Path,
+    columns: Sequence[str | int] | None = None,
+    where: Mapping | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
+    nodata: Sequence = (),
+    step: Step = no_step,
+    gather: Gather = in_memory,
+) -> PointRows:
+    """The points of a table of text, as PointFile describes it, read piece by piece.
+
+    By default the separator (semicolon, tab, comma, bar or blanks) is detected from the first line of
+    numbers. Earlier lines without numbers are headers; the columns named x, y and z, or easting, northing and
+    elevation (any case, a unit in brackets behind it) are read, otherwise the first three. Decimal commas are
+    detected where commas are not the separator and cannot separate thousands. '#' begins a comment. Further
+    columns are ignored. step(fraction) is called every few milliseconds; its exceptions pass through.
+
+    Raises InputRefused naming file and line.
+    """
+    file = Path(file)
+    table = open_table(file, separator, columns or (), where or {}, KNOWN)
+    wanted = wanted_columns(table, columns)
+    filters = [
+        (table.column(name), _values(list_of(value), table.encoding)) for name, value in (where or {}).items()
+    ]
+    rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step, gather)
+    if len(rows.points):
+        guessed = () if columns is not None else _guessed_names(table)
+        return replace(rows, taken_for_xyz=guessed)
+    if rows.filtered:
+        raise _nothing_matches(table, where or {})
+    what = "none of its points has a value" if rows.missing else "there are no points in it"
+    raise InputRefused(what, file=file)
+
+
+@dataclass(frozen=True)
+class Table:
+    """An open table of text: its content and its layout."""
+
+    file: Path
+    raw: Content
+    encoding: str
+    layout: TableLayout
+
+    def column(self, name: str | int) -> int:
+        return column_number(self.file, self.layout, name)
+
+
+def open_table(
+    file: Path,
+    separator: str | None,
+    names: Sequence,
+    where: Mapping,
+    known,
+    numbers: int = 3,
+    columns: int = 3,
+) -> Table:
+    """A table that has columns of these names, and of those that `where` names."""
+    raw = text_content(file)
+    start = len(BOM) if raw[: len(BOM)] == BOM else 0
+    encoding = encoding_of(raw)
+    wanted = [name for name in (*names, *where) if isinstance(name, str)]
+    layout = table_layout(
+        file,
+        raw,
+        start,
+        encoding,
+        separator=separator,
+        wanted=wanted,
+        known=known,
+        numbers=numbers,
+        columns=columns,
+    )
+    return Table(file, raw, encoding, layout)
+
+
+def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
+    """The numbers from 0 of the columns of x, y and z. Raises InputRefused."""
+    if columns is not None:
+        return [table.column(column) for column in columns]
+    names = [plain_name(name) for name in table.layout.names or ()]
+    found = {
+        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in _AXES.items()
+    }
+    if not any(found.values()):
+        return [0, 1, 2]
+    for axis, alias in found.items():
+        count = names.count(alias) if alias else 0
+        if count != 1:
+            said = f"{count} columns named {alias}" if count else f"no column {axis}"
+            advice = 'name the columns x, y and z, or set columns = ["X", "Y", "Z"]'
+            raise InputRefused(
+                f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
+            )
+    return [names.index(alias) for alias in found.values() if alias]
+
+
+def _guessed_names(table: Table) -> tuple[str, ...]:
+    """The names of the first three columns where the header names the columns of the table, and none of them
+    as a coordinate."""
+    names = table.layout.names or ()
+    first_row = head_rows(table, 1)
+    if len(names) < 3 or not first_row or len(names) != len(first_row[0]):
+        return ()
+    if KNOWN.intersection(plain_name(name) for name in names) or any(is_number(name) for name in names):
+        return ()
+    return tuple(names[:3])
+
+
+def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
+    """The values that native code compares entries with: numbers as numbers, text as in the file."""
+    numbers = [float(value) for value in values if not isinstance(value, str)]
+    return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
+
+
+def read_rows(
+    table: Table,
+    columns: Sequence[int],
+    names: Sequence[str],
+    filters: Sequence = (),
+    decimal: str | None = None,
+    nodata: Sequence = (),
+    step: Step = no_step,
+    gather: Gather = in_memory,
+) -> PointRows:
+    """The numbers (N, len(columns)) of the rows of a table; `names` call the columns in messages."""
+    native = native_module()
+    missing = _values(nodata, table.encoding)
+    mark = decimal or "."
+    if decimal is None and table.layout.separator != ",":
+        numeric = [column for column, (numbers, _) in filters if numbers]
+        if decimal_comma(_head_entries(table, [*columns, *numeric])):
+            mark = ","
+    while True:
+        try:
+            return _pieces(native, table, columns, filters, mark, missing, step, gather)
+        except native.InputError as error:
+            undecided = decimal is None and mark == "." and table.layout.separator != ","
+            if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
+                mark = ","
+                continue
+            raise _refused(table, columns, names, mark, error) from error
+
+
+def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> PointRows:
+    """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
+    beginning of the file."""
+    begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
+
+    def read(piece: bytes):
+        separator = table.layout.separator
+        return native.read_numbers(piece, 0, len(piece), separator, decimal, columns, filters, missing, 1)
+
+    def numbers() -> Iterator[np.ndarray]:
+        nonlocal begin, line, counts
+        for end, found in _in_order(pool, read, pieces_of(table.raw, begin), 2 * threads):
+            values, lines, filtered, without = found.result()
+            counts += filtered, without
+            begin, line = end, line + lines
+            yield values
+            step(end / len(table.raw))
+
+    threads = min(os.cpu_count() or 1, _MOST_THREADS)
+    pool = ThreadPoolExecutor(threads, "realmodel reading")
+    try:
+        points = gather(numbers(), np.empty((0, len(columns))))
+    except native.InputError as error:
+        error.items = [error.items[0] + line, *error.items[1:2], *(byte + begin for byte in error.items[2:])]
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return PointRows(points, missing=int(counts[1]), filtered=int(counts[0]))
+
+
+def _in_order(
+    pool: Executor, function: Callable, pieces: Iterable[tuple[int, bytes]], most: int
+) -> Iterator[tuple[int, Future]]:
+    """For each piece its end and its result of the function, in order; at most this many are processed at a
+    time."""
+    waiting: deque[tuple[int, Future]] = deque()
+    for begin, piece in pieces:
+        waiting.append((begin + len(piece), pool.submit(function, piece)))
+        if len(waiting) > most:
+            yield waiting.popleft()
+    while waiting:
+        yield waiting.popleft()
+
+
+def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:
+    """The entries of some columns in the first rows."""
+    return [row[column] for row in head_rows(table, most) for column in columns if column < len(row)]
+
+
+def head_rows(table: Table, most: int) -> list[list[str]]:
+    """The entries of the first rows of a table."""
+    body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
+    return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
+
+
+def body_rows(table: Table) -> Iterator[list[str]]:
+    """The entries of each row of a table that is not blank."""
+    body = table.raw[table.layout.body :].decode(table.encoding, "replace")
+    return (table.layout.fields(line) for line in body.splitlines() if line.strip())
+
+
+def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
+    entry = _entry(table, error)
+    if "," not in entry:
+        return False
+    others = _head_entries(table, columns)
+    is_comma = decimal_comma([*others, entry])
+    if is_comma is None and is_number(entry, ",") and not any("." in other for other in others):
+        raise InputRefused(
+            f"'{entry}' may have a decimal comma or a thousands separator",
+            file=table.file,
+            line=error.items[0],
+            advice='set decimal = "," for decimal commas, or remove the separators',
+        ) from error
+    return bool(is_comma)
+
+
+def _entry(table: Table, error) -> str:
+    begin, end = error.items[2:4]
+    return table.raw[begin:end].decode(table.encoding, "replace").strip()
+
+
+def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
+    line = error.items[0]
+    if error.kind == "too_few":
+        needed = max(columns) + 1
+        return InputRefused(
+            f"{needed} values are needed, there are {error.items[1]}", file=table.file, line=line
+        )
+    name, entry = names[error.items[1]], _entry(table, error)
+    if error.kind == "not_finite":
+        return InputRefused(
+            f"{name} is {entry}, not a finite number",
+            file=table.file,
+            line=line,
+            advice="remove points without a value, or set nodata = nan",
+        )
+    if error.kind == "too_large":
+        return InputRefused("a number is too large", file=table.file, line=line)
+    advice: str | None = None
+    if decimal == "." and "," in entry:
+        advice = "write decimals with a point"
+    elif decimal == "," and "." in entry:
+        advice = "this file has decimal commas: use them in all numbers"
+    elif not entry:
+        advice = 'remove points without a value, or set nodata = ""'
+    return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
+
+
+def _nothing_matches(table: Table, where: Mapping) -> InputRefused:
+    """The error that no row matches `where`; it lists the values that there are."""
+    conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
+    there = []
+    for name in where:
+        seen = dict.fromkeys(_head_entries(table, [table.column(name)], 100_000))
+        there.append(f"{name} has {names_shown(list(seen))}")
+    return InputRefused(
+        f"no row has {conditions}", file=table.file, advice=f"among the first rows {number_list(there)}"
+    )

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The layout of a table of text, detected from its first lines."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...base.errors import InputRefused
+from ...base.text import NOT_FINITE, NUMBER, Content
+
+HEAD_BYTES = 1 << 18
+_SEPARATORS = (";", "\t", ",", "|", " ")  # in the order of preference
+_COMMENTS = ("#", "!", "%", ">", "//")
+_COMMA_NUMBER = re.compile(NUMBER.pattern.replace(r"\.", ","))
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+")
+_COMMENT = re.compile(r"(^|(?<=[\s,;|]))#.*$")
+_TRAILING = re.compile(r"\s#(\s.*)?$")  # of a header: "Hole #,X,Y" is one
+_NAMES_SHOWN = 12
+
+
+@dataclass(frozen=True)
+class TableLayout:
+    """separator: one character, " " for blanks and tabs. names: of the columns, where there is a header.
+    body: the byte where the rows begin; body_line: its line from 1; name_line: that of the header."""
+
+    separator: str
+    names: tuple[str, ...] | None
+    body: int
+    body_line: int
+    name_line: int | None
+
+    def fields(self, line: str) -> list[str]:
+        return fields(line, self.separator)
+
+
+def fields(line: str, separator: str) -> list[str]:
+    """The entries of a line, without blanks and quotes around them."""
+    if '"' in line:
+        given = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
+        try:
+            return [entry.strip() for entry in next(csv.reader([given], delimiter=separator))]
+        except csv.Error:  # quotes that do not fit together in a long line: they are no quotes
+            pass
+    if separator == " ":
+        return line.split()
+    return [entry.strip() for entry in line.split(separator)]
+
+
+def is_number(entry: str, decimal: str = ".") -> bool:
+    pattern = NUMBER if decimal == "." else _COMMA_NUMBER
+    return bool(pattern.fullmatch(entry) or NOT_FINITE.fullmatch(entry))
+
+
+def is_any_number(entry: str, separator: str) -> bool:
+    """Whether a text is a number, with a decimal point, or with a decimal comma where commas do not
+    separate."""
+    return is_number(entry) or (separator != "," and is_number(entry, ","))
+
+
+def table_layout(
+    file: Path,
+    raw: Content,
+    start: int,
+    encoding: str,
+    *,
+    separator: str | None = None,
+    wanted: Sequence[str] = (),
+    known: Sequence[str] = (),
+    numbers: int = 3,
+    columns: int = 3,
+) -> TableLayout:
+    """The layout of a table that begins at byte `start` of its file.
+
+    wanted: names that the header must have; known: names that make a line a header, in small letters.
+    numbers, columns: how many of them a row has at least. Raises InputRefused where there are no rows.
+    """
+    head = raw[start : start + HEAD_BYTES]
+    if start + HEAD_BYTES < len(raw):
+        head = head[: head.rfind(b"\n") + 1] or head
+    lines = head.split(b"\n")
+    texts = [line.decode(encoding, "replace").strip("\r") for line in lines]
+    content = [n for n, text in enumerate(texts) if text.strip() and not _is_comment(text)]
+    if not content:
+        raise InputRefused("there are no points in it", file=file)
+    if separator is None:
+        separator = _separator([texts[n] for n in content], numbers, columns)
+    first, headings = None, []
+    for n in content:
+        entries = fields(_TRAILING.sub("", texts[n]), separator)
+        count = sum(is_any_number(entry, separator) for entry in entries)
+        named = bool(known) and not {plain_name(entry) for entry in entries}.isdisjoint(known)
+        if count and not (named and count < numbers):
+            first = n
+            break
+        headings.append((n, entries))
+    if first is None:
+        first = len(lines)
+    commented = [
+        (n, fields(texts[n].lstrip("#!%/ \t"), separator)) for n in range(first) if _is_comment(texts[n])
+    ]
+    name_line, names = _header(headings, commented, wanted, known)
+    body = start + sum(len(line) + 1 for line in lines[:first])
+    return TableLayout(
+        separator, names, min(body, len(raw)), first + 1, None if name_line is None else name_line + 1
+    )
+
+
+def _is_comment(text: str) -> bool:
+    return text.lstrip().startswith(_COMMENTS)
+
+
+def _separator(texts: list[str], numbers: int, columns: int) -> str:
+    """The separator of the first line that has enough columns and numbers; else of the first with enough
+    columns."""
+    for text in texts:
+        for separator in _SEPARATORS:
+            entries = fields(_COMMENT.sub("", text), separator)
+            counted = sum(is_any_number(entry, separator) for entry in entries)
+            if len(entries) >= columns and counted >= numbers:
+                return separator
+    for separator in _SEPARATORS:
+        if len(fields(_COMMENT.sub("", texts[0]), separator)) >= columns:
+            return separator
+    return " "
+
+
+def _header(headings, commented, wanted, known) -> tuple[int | None, tuple[str, ...] | None]:
+    """The line with the names of the columns: the one that has the requested names, if any; a comment counts
+    only if it has all of them."""
+    asked = [name.strip().lower() for name in wanted]
+    for n, entries in [*headings, *commented]:
+        if asked and set(asked) <= {entry.lower() for entry in entries}:
+            return n, tuple(entries)
+    for n, entries in headings:
+        if {plain_name(entry) for entry in entries}.intersection(known):
+            return n, tuple(entries)
+    for n, entries in commented:
+        if {"x", "y", "z"} <= {plain_name(entry) for entry in entries}:
+            return n, tuple(entries)
+    return (headings[-1][0], tuple(headings[-1][1])) if headings else (None, None)
+
+
+def plain_name(name: str) -> str:
+    """A column's name in small letters, without the unit that stands behind it in brackets."""
+    return re.sub(r"\s*[\[(].*$", "", name).strip("\"' ").lower()
+
+
+def column_number(file: Path, layout: TableLayout, column: str | int) -> int:
+    """The number from 0 of a column given by name or by number from 1. Raises InputRefused."""
+    if isinstance(column, int):
+        return column - 1
+    names = layout.names
+    if names is None:
+        if column.strip().isdecimal():
+            return int(column) - 1
+        advice = "use column numbers, from 1: columns = [1, 2, 3]"
+        raise InputRefused(f"there is no header that names a column '{column}'", file=file, advice=advice)
+    for same in (str.strip, lambda name: name.strip().lower()):
+        found = [n for n, name in enumerate(names) if same(name) == same(column)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            what = f"the header has {len(found)} columns named {column}"
+            raise InputRefused(what, file=file, line=layout.name_line, advice="give their numbers, from 1")
+    if column.strip().isdecimal() and 1 <= int(column) <= len(names):
+        return int(column) - 1
+    raise InputRefused(
+        f"the header has no column {column}",
+        file=file,
+        line=layout.name_line,
+        advice=f"it has {names_shown(names)}",
+    )
+
+
+def names_shown(names: Sequence[str]) -> str:
+    named = [name or "(no name)" for name in names]
+    more = f" and {len(named) - _NAMES_SHOWN} more" if len(named) > _NAMES_SHOWN else ""
+    return f"{', '.join(named[:_NAMES_SHOWN])}{more}"
+
+
+def decimal_comma(entries: Sequence[str]) -> bool | None:
+    """Whether entries of a column of numbers have decimal commas; None where the commas may separate
+    thousands, or where some entries have points."""
+    with_comma = [entry for entry in entries if "," in entry]
+    if not with_comma or any("." in entry for entry in entries):
+        return None if with_comma else False
+    if not all(is_number(entry, ",") or _THOUSANDS.fullmatch(entry) for entry in with_comma):
+        return False
+    return True if any(not _THOUSANDS.fullmatch(entry) for entry in with_comma) else None

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The volume of each block that each surface eroded and each body took."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..cells.joining import build_joined
+from ..cells.native_rocks import native_rocks
+from ..settings.rules import RULES
+from ..structures.parts.parts import Structures
+
+_RELATIVE = 1e-12  # how far sums of cells may be off
+
+
+@dataclass(frozen=True, eq=False)
+class Erosion:
+    """Eroded volumes, model units cubed.
+
+    volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
+    before the surface came, less that just after. remaining: (B,) what is left, the model's own volumes.
+    taken: (N, B) float64, what body n (from 0) took of block j when it came; this is no erosion.
+    """
+
+    volume: np.ndarray
+    remaining: np.ndarray
+    taken: np.ndarray
+
+    @property
+    def by_surface(self) -> np.ndarray:
+        """(S,) the total volume that each surface eroded."""
+        return self.volume.sum(axis=1)
+
+    @property
+    def by_block(self) -> np.ndarray:
+        """(B,) the total volume of each block that was eroded."""
+        return self.volume.sum(axis=0)
+
+    @property
+    def deposited(self) -> np.ndarray:
+        """(B,) the deposited volume of each block: the remaining volume, and all that was eroded or taken
+        since."""
+        return self.remaining + self.by_block + self.taken.sum(axis=0)
+
+    @property
+    def total(self) -> float:
+        return float(self.volume.sum())
+
+
+def eroded(
+    model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+) -> Erosion:
+    """Model.eroded."""
+    return run(lambda work: _eroded(work, model, threads), progress, cancel)
+
+
+def _eroded(work: Work, model, threads: int) -> Erosion:
+    """Computes it backward in time, from the model itself to just before each surface that cuts anything."""
+    stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
+    arrivals = _arrivals_of_bodies(model)
+    names = [body.name for body in model.structures.bodies] if arrivals else []
+    remaining = np.array([block.volume for block in model.blocks], np.float64)
+    volume = np.zeros((len(model.surface_names), len(model.blocks)))
+    after, done, total = remaining, 0, sum(m + 1 for m in stages) + sum(m + 1 for m, _ in arrivals)
+    for m in reversed(stages):
+        with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
+            before = _stage_volumes(work, model, m, threads)
+        done += m + 1
+        # volumes taken by later bodies are no erosion
+        came = any(time > m for time, _ in arrivals)
+        left = _stage_volumes(work, model, m + 1, threads, (m + 1, 0)) if came else after
+        for surface, older in _cut_at(model, m + 1):
+            removed = before[older] - left[older]
+            volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
+        # back to the next stage nothing cuts, so these are also the volumes just after it
+        after = np.where(np.isnan(before), after, before)
+    taken = np.zeros((len(names), len(model.blocks)))
+    for m, group in itertools.groupby(arrivals, lambda arrival: arrival[0]):
+        bodies = [body for _, body in group]
+        states = []
+        for body in bodies:
+            with work.phase(done / total, (done + m + 1) / total, f"building without '{names[body]}'"):
+                states.append(_stage_volumes(work, model, m, threads, (m, body)))
+            done += m + 1
+        last = m == _most_surfaces(model) - 1
+        states.append(remaining if last else _stage_volumes(work, model, m, threads))
+        for body, before, left in zip(bodies, states, states[1:], strict=False):
+            gone = np.nan_to_num(before - left)
+            taken[body] += np.where(gone > _rounding(model, np.nan_to_num(before)), gone, 0.0)
+    return Erosion(volume, remaining, taken)
+
+
+def _arrivals_of_bodies(model) -> list[tuple[int, int]]:
+    """(m, body): that a body came after surface m of some rock mass, oldest first."""
+    if model.structures is None:
+        return []
+    return sorted({(m, n) for n, times in enumerate(model.structures.times) for m in times.values()})
+
+
+def _most_surfaces(model) -> int:
+    return max(len(rock.surfaces) for rock in model.project.rocks)
+
+
+def _first_surfaces(model) -> np.ndarray:
+    """(R + 1,) the global index of each rock mass's oldest surface."""
+    return np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
+
+
+def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
+    """For each rock mass whose surface k cuts older rock: its global index, and the older blocks."""
+    found = []
+    first_surfaces = _first_surfaces(model)
+    for number, (rock, first) in enumerate(zip(model.project.rocks, first_surfaces[:-1], strict=True)):
+        if k < len(rock.surfaces) and RULES[rock.surfaces[k].rule].cuts:
+            older = [b for b, block in enumerate(model.blocks) if first <= block.surface < first + k]
+            older += _bodies_before(model, number, k)
+            if older:
+                found.append((int(first + k), np.array(older)))
+    return found
+
+
+def _bodies_before(model, rock: int, k: int) -> list[int]:
+    """The blocks of bodies that were in a rock mass before its surface k."""
+    if model.structures is None:
+        return []
+    first, times = _first_surfaces(model)[-1] + len(model.structures.faults), model.structures.times
+    return [
+        b
+        for b, block in enumerate(model.blocks)
+        if block.surface >= first and block.rock == rock and times[block.surface - first].get(rock, k) < k
+    ]
+
+
+def _stage_volumes(
+    work: Work, model, m: int, threads: int, until: tuple[int, int] | None = None
+) -> np.ndarray:
+    """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
+    bodies alone that came, as (surface, body), before it; None: all until surface m."""
+    first = _first_surfaces(model)
+    bodies = None if model.structures is None else _with_bodies(model.structures, until or (m + 1, 0))
+    kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
+    first_kept = np.cumsum([0, *kept])
+    volumes = np.full(len(model.blocks), np.nan)
+    if bodies is None:
+        volume = work.native(
+            native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
+        )["volumes"]
+    else:
+        inputs = [entry.stage(m) for entry in model.rock_inputs]
+        volume = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch).volumes
+    for b, block in enumerate(model.blocks):
+        own = block.surface - first[block.rock]
+        body = block.surface - first[-1]
+        if body >= 0:
+            if bodies is not None and bodies.has_block(body):
+                volumes[b] = volume[first_kept[-1] + body]
+        elif own < kept[block.rock]:
+            volumes[b] = volume[first_kept[block.rock] + own]
+    return volumes
+
+
+def _with_bodies(structures: Structures, until: tuple[int, int]) -> Structures:
+    """The structures with those bodies alone that came, as (surface, body), before `until`."""
+    times = [
+        {rock: after for rock, after in times.items() if (after, body) < until}
+        for body, times in enumerate(structures.times)
+    ]
+    return replace(structures, times=times)
+
+
+def _rounding(model, volumes: np.ndarray) -> np.ndarray:
+    """The rounding error of volumes: of the sums, and of the coordinates of the corners, each a few units in
+    the last place."""
+    vertices = model.surface_vertices
+    bases = [rock.base_elevation for rock in model.project.rocks if rock.base_elevation is not None]
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    low[2] = min(low[2], *bases) if bases else low[2]
+    step = 16 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
+    x, y, z = high - low
+    return _RELATIVE * volumes + step[0] * y * z + step[1] * x * z + step[2] * x * y

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The geological map of a model: polygons in plan of the blocks that crop out on top, which share their
+borders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..base.algebra import dot, norm
+from ..base.errors import BuildFailed, InputRefused
+from ..base.exact import orient2d
+from ..base.work import native_module
+from ..project.region_rings import checked_region, given_rings
+from .booleans import intersect
+from .plan_rings import covers_once, net_edges, polygons_of
+
+_WALL = -1
+_ROUNDINGS = 64  # positions nearer than so many units in the last place are one
+_UPRIGHT = 2.0**-40  # the slope from which on a face is upright but for the rounding of its corners
+
+
+@dataclass(frozen=True, eq=False)
+class MapArea:
+    """The outcrop of one block, in one compartment. polygons: of each the outline (N, 2) float64,
+    counter-clockwise, then its holes, clockwise; rings are open."""
+
+    block: int
+    compartment: int
+    polygons: list[list[np.ndarray]]
+
+    @cached_property
+    def area(self) -> float:
+        """The area in plan, model units squared."""
+        return float(sum(_area(ring) for polygon in self.polygons for ring in polygon))
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """The top of a model as triangles that nothing lies above.
+
+    corners: (T, 3, 3) float64. vertices: (T, 3), numbers of places in plan. solid: (T, 3), numbers by which
+    two triangles are known to meet in space. areas: as of geological_map.
+    """
+
+    corners: np.ndarray
+    vertices: np.ndarray
+    solid: np.ndarray
+    areas: list[MapArea]
+
+
+def geological_map(model, ground: Ground | None = None) -> list[MapArea]:
+    """The areas where each block crops out, by block, then by compartment.
+
+    Their polygons are unions of the faces on top, so they share borders vertex by vertex, and together are
+    the plan of the model. Where one part of the model lies above another, as over a void, the higher one is
+    shown. ground: where `ground_of` was called before. Raises BuildFailed.
+    """
+    return (ground_of(model) if ground is None else ground).areas
+
+
+def _areas(model, plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray) -> list[MapArea]:
+    """The areas, from the edges of the ground in plan, with the ground to their left, and the cells of each
+    edge."""
+    of = np.stack([model.cell_block[cell], model.cell_compartment[cell]], axis=1)
+    keys, number = np.unique(of, axis=0, return_inverse=True)
+    found = []
+    for k, (block, compartment) in enumerate(keys.tolist()):
+        own = number.ravel() == k
+        first, second, _ = net_edges(start[own], end[own])
+        polygons = polygons_of(plan, first, second)
+        if polygons:
+            rings = [[plan[ring] for ring in polygon] for polygon in polygons]
+            found.append(MapArea(block, compartment, rings))
+    return found
+
+
+def ground_of(model) -> Ground:
+    """The top of a model. Raises BuildFailed."""
+    triangles, cell, upright = _outside(model)
+    plan, vertex = _plan_vertices(model.vertices[:, :2])
+    rises = _rises(model.vertices[triangles])
+    is_ground = rises & ~upright
+    start, end = _edges(vertex[triangles[is_ground]])
+    edges = _divided(plan, start, end, np.repeat(cell[is_ground], 3))
+    try:
+        if _is_plain(plan, *edges[:2]):
+            own = triangles[is_ground]
+            return Ground(model.vertices[own], vertex[own], own, _areas(model, plan, *edges))
+    except BuildFailed:  # an area no wider than rounding is inverted
+        pass
+    return _highest(model, triangles[rises], vertex, plan, cell[rises])
+
+
+def _plan_vertices(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions in plan that differ, and the number of each vertex's. Those that are some roundings apart are
+    one: a line would zigzag between them, which no polygon may."""
+    plan, vertex = np.unique(places + 0.0, axis=0, return_inverse=True)  # no -0.0
+    apart = _apart(plan)
+    number = np.arange(len(plan))
+    pairs = [(number, number)]
+    for shift in (
+        (0.0, 0.0),
+        (0.5, 0.0),
+        (0.0, 0.5),
+        (0.5, 0.5),
+    ):  # near ones share a cell of one of these grids
+        cells = np.floor((plan - plan[:1]) / (2 * apart) + shift)
+        _, cell = np.unique(cells, axis=0, return_inverse=True)
+        pairs.append((cell.ravel() + (pairs[-1][0].max(initial=-1) + 1), number))
+    joined = _joined(*(np.concatenate(column) for column in zip(*pairs, strict=True)))[: len(plan)]
+    kept, number = np.unique(joined, return_inverse=True)
+    return plan[kept], number.ravel()[vertex.ravel()]
+
+
+def _apart(plan: np.ndarray) -> np.ndarray:
+    """(2,) how near positions are one, in x and in y."""
+    return _ROUNDINGS * np.spacing(np.abs(plan).max(axis=0, initial=1.0))
+
+
+def _outside(model):
+    """The faces of the outside as triangles (T, 3), counter-clockwise seen from outside: the face of each
+    (T,), the corners, the cell behind it, and whether the face is upright."""
+    outside = np.flatnonzero((model.face_cells < 0).any(axis=1))
+    turned = model.face_cells[outside, 0] < 0
+    offsets, corners = model.face_corners(outside, turned)
+    triangles, begins = native_module().triangulate_faces(model.vertices, offsets, corners)
+    face = np.repeat(np.arange(len(outside)), np.diff(begins))
+    cell = model.face_cells[outside].max(axis=1)
+    a, b, c = model.vertices[triangles].transpose(1, 0, 2)
+    normals = np.zeros((len(outside), 3))
+    np.add.at(normals, face, np.cross(b - a, c - a))
+    upright = model.face_surface[outside] == _WALL
+    upright |= np.abs(normals[:, 2]) <= _UPRIGHT * np.linalg.norm(normals[:, :2], axis=1)
+    return triangles.astype(np.int64), cell[face], upright[face]
+
+
+def _rises(corners: np.ndarray) -> np.ndarray:
+    """Whether triangles (T, 3, 2 or 3) are counter-clockwise in plan."""
+    return orient2d(*corners[:, :, :2].transpose(1, 0, 2)) > 0
+
+
+def _edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+
+
+def _divided(plan: np.ndarray, start: np.ndarray, end: np.ndarray, cell: np.ndarray):
+    """Edges in plan, divided at vertices that lie on them up to rounding: above and below a step, and on two
+    sides of a border of rock masses, there may be different vertices."""
+    first, second, _ = net_edges(start, end)  # the others have the same edge beside them
+    inserted = _vertices_on_edges(plan, first, second)
+    if not inserted:
+        return start, end, cell
+    size = len(plan)
+    rows = np.flatnonzero(np.isin(start * size + end, [a * size + b for a, b in inserted]))
+    chains = [[a, *inserted[a, b], b] for a, b in zip(start[rows].tolist(), end[rows].tolist(), strict=True)]
+    cells = np.repeat(cell[rows], [len(chain) - 1 for chain in chains])
+    return (
+        np.concatenate([np.delete(start, rows), *(chain[:-1] for chain in chains)]).astype(np.int64),
+        np.concatenate([np.delete(end, rows), *(chain[1:] for chain in chains)]).astype(np.int64),
+        np.concatenate([np.delete(cell, rows), cells]),
+    )
+
+
+def _vertices_on_edges(
+    plan: np.ndarray, start: np.ndarray, end: np.ndarray
+) -> dict[tuple[int, int], list[int]]:
+    """For each edge the ends of other edges that lie on it up to rounding, in their order."""
+    among = np.unique(np.concatenate([start, end]))
+    apart = _apart(plan).max()
+    sorted_by = [among[np.argsort(plan[among, axis], kind="stable")] for axis in (0, 1)]
+    low, high = np.minimum(plan[start], plan[end]) - apart, np.maximum(plan[start], plan[end]) + apart
+    begins = [np.searchsorted(plan[sorted_by[k], k], low[:, k]) for k in (0, 1)]
+    ends = [np.searchsorted(plan[sorted_by[k], k], high[:, k], "right") for k in (0, 1)]
+    axis = (ends[1] - begins[1] < ends[0] - begins[0]).astype(np.int64)
+    found = {}
+    for edge, (a, b, k) in enumerate(zip(start.tolist(), end.tolist(), axis.tolist(), strict=True)):
+        near = sorted_by[k][begins[k][edge] : ends[k][edge]]
+        if len(near) < 3:
+            continue
+        way, to = plan[b] - plan[a], plan[near] - plan[a]
+        length = norm(way)
+        along, across = dot(to, way) / length, (to[:, 0] * way[1] - to[:, 1] * way[0]) / length
+        on = (np.abs(across) <= apart) & (along > 0) & (along < length) & (near != a) & (near != b)
+        if on.any():
+            found[a, b] = near[on][np.argsort(along[on], kind="stable")].tolist()
+    return found
+
+
+def _joined(edge: np.ndarray, face: np.ndarray) -> np.ndarray:
+    """For each (edge, face) a number that is equal for all faces that such edges connect."""
+    _, edge = np.unique(edge, return_inverse=True)
+    _, face = np.unique(face, return_inverse=True)
+    edge, face = edge.ravel(), face.ravel()
+    label = np.arange(int(face.max(initial=-1)) + 1)
+    while True:
+        least = np.full(int(edge.max(initial=-1)) + 1, len(label))
+        np.minimum.at(least, edge, label[face])
+        lower = label.copy()
+        np.minimum.at(lower, face, least[edge])
+        lower = lower[lower]
+        if (lower == label).all():
+            return label[face]
+        label = lower
+
+
+def _is_plain(plan: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
+    """Whether nothing of the ground lies above another part of it: what bounds all of it are rings that do
+    not cross, with the ground on the right side."""
+    start, end, count = net_edges(start, end)
+    if (count > 1).any():
+        return False
+    try:
+        polygons = polygons_of(plan, start, end)
+        rings = [plan[ring] for polygon in polygons for ring in polygon]
+        if rings:
+            checked_region(given_rings(rings))
+    except (BuildFailed, InputRefused):
+        return False
+    return covers_once(plan, polygons)
+
+
+def _highest(model, triangles: np.ndarray, vertex: np.ndarray, plan: np.ndarray, cell: np.ndarray) -> Ground:
+    """As ground_of, for ground with parts above one another: projected and divided along all edges; of pieces
+    at the same position the highest."""
+    rises = _rises(plan[vertex[triangles]])  # where vertices were joined some do no more
+    triangles, cell = triangles[rises], cell[rises]
+    flat = np.column_stack([plan, np.zeros(len(plan))])
+    beyond = plan.max(axis=0) + np.ptp(plan, axis=0) + 1.0
+    other = np.array([[*beyond, 0], [beyond[0] + 1, beyond[1], 0], [beyond[0], beyond[1] + 1, 0]])
+    try:
+        refined = intersect((flat, vertex[triangles].astype(np.int32)), (other, np.array([[0, 1, 2]])))
+    except InputRefused as error:
+        raise BuildFailed(f"the top of the model cannot be laid flat: {error}") from error
+    own = np.flatnonzero(refined.source == 0)
+    source, pieces = refined.source_triangle[own], refined.triangles[own].astype(np.int64)
+    plane = model.vertices[triangles[source]]
+    heights = _heights(plane, refined.vertices[pieces][:, :, :2])
+    place = np.sort(pieces, axis=1)
+    order = np.lexsort((heights.mean(axis=1), *place.T))
+    is_last = np.append((np.diff(place[order], axis=0) != 0).any(axis=1), True)
+    own = np.sort(order[is_last])
+    own = own[_rises(refined.vertices[pieces[own]])]
+    pieces, source = pieces[own], source[own]
+    corners = np.concatenate([refined.vertices[pieces][:, :, :2], heights[own][:, :, None]], axis=2)
+    start, end = _edges(pieces)
+    areas = _areas(model, refined.vertices[:, :2] + 0.0, start, end, np.repeat(cell[source], 3))
+    return Ground(corners, pieces, triangles[source], areas)
+
+
+def _heights(planes: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(N, 3) the heights of triangles (N, 3, 3) at three places (N, 3, 2) within each; at a corner its
+    own."""
+    a, b, c = planes.transpose(1, 0, 2)
+    u, v = b - a, c - a
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    w = places - a[:, None, :2]
+    along = (w[:, :, 0] * v[:, None, 1] - w[:, :, 1] * v[:, None, 0]) / area[:, None]
+    across = (u[:, None, 0] * w[:, :, 1] - u[:, None, 1] * w[:, :, 0]) / area[:, None]
+    found = a[:, None, 2] + along * u[:, None, 2] + across * v[:, None, 2]
+    found = np.clip(found, planes[:, :, 2].min(axis=1)[:, None], planes[:, :, 2].max(axis=1)[:, None])
+    for corner in (a, b, c):
+        same = (places == corner[:, None, :2]).all(axis=2)
+        found = np.where(same, corner[:, None, 2], found)
+    return found
+
+
+def _area(ring: np.ndarray) -> float:
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)

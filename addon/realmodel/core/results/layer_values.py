@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values of a built model for color scales: the thickness of layers, attributes of the vertices of
+surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.work import native_module
+
+# Cividis (Nunez, Anderton, Renslow 2018, PLoS ONE 13): even in lightness, also for the color-blind; and blue
+# over white to red (ColorBrewer's RdBu, Harrower and Brewer 2003). sRGB from 0 to 1, the lowest first.
+_RISING = [(0, 34, 78), (55, 68, 108), (106, 107, 115), (158, 148, 119), (213, 194, 102), (254, 232, 55)]
+_DIVERGING = [
+    (5, 97, 166),
+    (103, 169, 207),
+    (209, 229, 240),
+    (247, 247, 247),
+    (253, 219, 199),
+    (239, 138, 98),
+]
+RISING = np.array(_RISING) / 255.0
+DIVERGING = np.array([*_DIVERGING, (178, 24, 43)]) / 255.0
+UNKNOWN = (0.5, 0.5, 0.5)
+
+
+def colors(values: np.ndarray, limits: tuple[float, float], scale: np.ndarray = RISING) -> np.ndarray:
+    """(N, 4) float32 sRGB colors of values (N,) between limits; those that are NaN are gray."""
+    share = (np.asarray(values, np.float64) - limits[0]) / ((limits[1] - limits[0]) or 1.0)
+    found, steps = np.ones((len(share), 4), np.float32), np.linspace(0.0, 1.0, len(scale))
+    for channel in range(3):
+        given = np.interp(share, steps, scale[:, channel])
+        found[:, channel] = np.where(np.isfinite(share), given, UNKNOWN[channel])
+    return found
+
+
+def thickness(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, threads: int = 0) -> np.ndarray:
+    """(N,) float64: the vertical thickness of a layer at places in plan (N, 2), NaN where it is not there.
+
+    vertices (V, 3) float64, triangles (T, 3) int32: its closed boundary, counter-clockwise seen from outside.
+    """
+    a, b, c = (vertices[triangles[:, corner], :2] for corner in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    doubled = ux * vy - uy * vx
+    top = at_places(vertices, triangles[doubled > 0], plan, threads)
+    return top - at_places(vertices, triangles[doubled < 0], plan, threads)
+
+
+def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, threads: int = 0) -> np.ndarray:
+    """(N,) float64: the third coordinate of a triangulation (V, 3), (T, 3) at places in plan (N, 2), linear
+    within triangles; NaN where there is none."""
+    if not len(triangles):
+        return np.full(len(plan), np.nan)
+    found = native_module().surface_heights(
+        np.ascontiguousarray(vertices, np.float64),
+        np.ascontiguousarray(triangles, np.int32),
+        np.ascontiguousarray(plan, np.float64),
+        threads,
+    )
+    return np.asarray(found)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The distances of points from the surfaces that were interpolated from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.work import Work, run
+from ..cells.model_data import ModelData
+from ..structures.sheets.points_at_faults import point_sides
+from .layer_values import at_places
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Of one surface: its points (P, 3) float64 where it has an elevation, and point minus surface there,
+    (P,), model units. outside: how many points are beyond the surface."""
+
+    rock: str
+    surface: str
+    points: np.ndarray
+    values: np.ndarray
+    outside: int
+
+    @property
+    def mean(self) -> float:
+        return float(self.values.mean()) if len(self.values) else 0.0
+
+    @property
+    def root_mean_square(self) -> float:
+        return float(np.sqrt((self.values**2).mean())) if len(self.values) else 0.0
+
+    @property
+    def largest(self) -> float:
+        """The one farthest from zero."""
+        return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
+
+
+def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
+    """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
+    if model.structures is None:
+        return at_places(*model.surface(number), points[:, :2], model.threads)
+    entry = model.rock_inputs[rock]
+    structure = entry.divided()
+
+    def task(work: Work) -> np.ndarray:
+        sides = point_sides(work, points, entry, at, model.threads).sides
+        active = structure.faults.active(at)
+        found = np.full(len(points), np.nan)
+        for compartment, row in enumerate(structure.compartments):
+            own = ((sides == row) | ~active).all(axis=1)
+            if own.any():
+                vertices, triangles = structure.sheet(compartment, at)
+                found[own] = at_places(vertices, triangles, points[own, :2], model.threads)
+        return found
+
+    return run(task)
+
+
+def residuals(model: ModelData) -> list[Residuals]:
+    """The residuals of each surface of a model that was interpolated from points, in the model's order."""
+    found, number = [], 0
+    for r, rock in enumerate(model.project.rocks):
+        for at, surface in enumerate(rock.surfaces):
+            points = surface.point_array()
+            if len(points) and number < len(model.surface_names):
+                there = _heights(model, number, at, r, points)
+                known = np.isfinite(there)
+                values = points[known, 2] - there[known]
+                found.append(Residuals(rock.name, surface.name, points[known], values, int((~known).sum())))
+            number += 1
+    return found

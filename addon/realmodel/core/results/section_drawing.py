@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sections and fences as drawings: blocks in their colors at a round scale, with axes, a legend in order of
+age, and the coordinates of both ends."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from ..base.errors import UsageError
+from ..base.units import METERS
+from ..drawing.charts import Axes, legend, legend_size, tick_texts
+from ..drawing.drawing import BLACK, Drawing
+from ..drawing.glyphs import text_width
+from .section_data import FenceData, SectionData
+
+MOST_EXAGGERATION = 1000.0
+_POINT = 0.0254 / 72  # meters
+_PLOT = (560.0, 360.0)  # maximal size of the section on the page, in points
+_LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
+_SIZE = 8.0
+_FAULT_WIDTH = 1.4
+_SKY = 0.05  # of the height, left free above vertical sections
+_SAME = 1e9  # of the extent of a section: places nearer than one part are the same
+_LINE = _SIZE + 3  # height of a line of coordinates
+_LEGEND = "Block"  # title of the legend; views have the names of properties
+_UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
+
+
+def draw_section(
+    section: SectionData,
+    exaggeration: float = 1.0,
+    title: str | None = None,
+    cells: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Drawing:
+    """The section on a page, in its own coordinates at a scale of 1, 2, 2.5, or 5 times a power of ten.
+
+    exaggeration: of heights, where the section is vertical. The drawing's layers are named after the blocks.
+    cells: corners (N, 4, 2), as of `flattened`, and colors (N, 3) of what is drawn below the outlines of the
+    blocks, in place of their colors.
+    Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
+    """
+    if not 0 < exaggeration <= MOST_EXAGGERATION:
+        raise UsageError(
+            f"exaggeration must be above 0 and at most {MOST_EXAGGERATION:g}, not {exaggeration!r}"
+        )
+    if not len(section):
+        raise UsageError("there is nothing to draw: the section does not meet the model")
+    flat = flattened(section)
+    exaggeration = exaggeration if is_vertical(section) else 1.0
+    places = flat if cells is None else np.concatenate([flat, cells[0].reshape(-1, 2)])
+    low, high = places.min(axis=0), places.max(axis=0)
+    if isinstance(section, FenceData):
+        low[0], high[0] = 0.0, section.length
+    if is_vertical(section):
+        high[1] += _SKY * (high[1] - low[1])
+    extent = np.maximum(high - low, 1e-9 * max(np.abs(flat).max(), 1.0))
+    ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
+    width, height = extent * (1.0, exaggeration) * scale
+    present = [int(block) for block in np.unique(section.block)[::-1]]
+    entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
+    legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
+    subtitle = _subtitle(section, ratio, exaggeration)
+    title = title or section.name
+    ends = _end_texts(section, flat)
+    are_beside = width > sum(text_width(text, _SIZE - 1) for text in ends) + 40
+    above = _ABOVE if are_beside else _ABOVE + len(ends) * _LINE
+    page = max(
+        _LEFT + width + _GAP + legend_width,
+        *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle)),
+        *(_LEFT + 20 + text_width(text, _SIZE - 1) for text in ends),
+    )
+    plot_height = max(height, legend_height)
+    drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + above))
+    base = _BELOW + plot_height - height
+    drawing.scale, drawing.origin = (
+        float(scale),
+        (_LEFT - scale * low[0], base - scale * exaggeration * low[1]),
+    )
+    axes = Axes(drawing, (_LEFT, base, width, height), (low[0], high[0]), (low[1], high[1]), _SIZE)
+    for corners, color in zip(*(cells or ((), ())), strict=True):
+        drawing.polygon(axes.at(corners), tuple(color.tolist()), tuple(color.tolist()), 0.3, layer="Cells")
+    for block in present:
+        rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
+        color, name = tuple(section.block_colors[block]), section.block_names[block]
+        drawing.polygon(rings, color if cells is None else None, BLACK, 0.35, layer=name)
+    _draw_faults(drawing, axes, section)
+    axes.frame(*_axis_names(section), layer="Axes")
+    _draw_ends(drawing, axes, section, ends, are_beside)
+    legend(drawing, _LEFT + width + _GAP, base + height, _LEGEND, entries, _SIZE, layer="Legend")
+    top = drawing.height - 20
+    drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
+    drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")
+    return drawing
+
+
+def is_vertical(section: SectionData) -> bool:
+    """Whether heights are upright in the picture: of fences and vertical planes."""
+    return isinstance(section, FenceData) or abs(_unit_normal(section)[2]) < _UPRIGHT
+
+
+def flattened(section: SectionData) -> np.ndarray:
+    """(V, 2) float64: the vertices in the plane of the picture.
+
+    Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
+    y, of others distances along strike and up dip. Planes are seen from where their normal points.
+    """
+    return section.unrolled() if isinstance(section, FenceData) else flat_of(section, section.vertices)
+
+
+def flat_of(section: SectionData, points: np.ndarray) -> np.ndarray:
+    """(N, 2) points (N, 3) on the plane of a section as it is drawn."""
+    right, up = directions(section)
+    if right is None or up is None:
+        return points[:, :2]
+    if is_vertical(section):
+        return np.column_stack([points @ right - (section.vertices @ right).min(), points[:, 2]])
+    axes = np.column_stack([right, up])
+    point, _ = plane_of(section)
+    return (points - point) @ axes - ((section.vertices - point) @ axes).min(axis=0)
+
+
+def _draw_faults(drawing: Drawing, axes: Axes, section: SectionData) -> None:
+    """Draws faults as thick lines, with their names at the lower end, or as low as other names allow."""
+    right = axes.box[0] + axes.box[2]
+    taken: list[tuple[float, float, float]] = []  # where names are: from left to right, and the height
+    for trace in section.faults:
+        points = trace.ends.reshape(-1, 3)
+        if isinstance(section, FenceData):
+            flat = section.along_panels(points, np.repeat(trace.panel, 2))
+        else:
+            flat = flat_of(section, points)
+        lines = axes.at(flat).reshape(-1, 2, 2)
+        for line in lines:
+            drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
+        width = text_width(trace.name, _SIZE)
+        ends = lines.reshape(-1, 2)
+        places = []
+        for x, y in ends[np.argsort(ends[:, 1], kind="stable")].tolist():
+            fits = x + width + 8 < right
+            begin = x + 4 if fits else x - 4 - width
+            places.append((begin, begin + width, y + 4))
+        free = (each for each in places if not any(_overlap(each, other) for other in taken))
+        begin, end, height = next(free, places[0])
+        taken.append((begin, end, height))
+        drawing.text(begin, height, trace.name, _SIZE, layer=trace.name)
+
+
+def _overlap(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    """Whether two names, each from left to right at a height, are in each other's way."""
+    return one[0] < other[1] and other[0] < one[1] and abs(one[2] - other[2]) < 1.2 * _SIZE
+
+
+def block_outlines(section: SectionData, flat: np.ndarray, block: int) -> list[np.ndarray]:
+    """The rings (N, 2) around all polygons of a block, joined where they share an edge; holes turn the other
+    way.
+
+    flat: (V, 2), where the vertices are drawn.
+    """
+    chosen = np.flatnonzero(section.block == block)
+    counts = np.diff(section.offsets)[chosen]
+    begins = np.cumsum(counts) - counts
+    corner = np.arange(counts.sum()) + np.repeat(section.offsets[chosen] - begins, counts)
+    following = corner + 1
+    following[begins + counts - 1] = section.offsets[chosen]
+    extent = float(np.ptp(flat, axis=0).max()) or 1.0
+    places = np.rint(
+        (flat - flat.min(axis=0)) * (_SAME / extent)
+    )  # the panels of a fence share bends, not vertices
+    _, number = np.unique(places, axis=0, return_inverse=True)
+    at = number.reshape(-1)[section.polygon_vertices]
+    some = np.empty(at.max() + 1, np.int64)
+    some[at] = section.polygon_vertices
+    # Thin polygons may have an edge several times once their corners are joined: each cancels one only.
+    edges = Counter(zip(at[corner].tolist(), at[following].tolist(), strict=True))
+    onward: dict[int, list[int]] = {}
+    for (a, b), count in edges.items():
+        if a != b and count > edges.get((b, a), 0):
+            onward.setdefault(a, []).extend([b] * (count - edges.get((b, a), 0)))
+    rings = []
+    for first in sorted(onward):
+        while onward[first]:
+            ring, at = [], first
+            while onward.get(at):
+                ring.append(at)
+                at = onward[at].pop()
+            rings.append(flat[some[ring]])
+    return rings
+
+
+def plane_of(section: SectionData) -> tuple[np.ndarray, np.ndarray]:
+    """The point and the unit normal of the plane of a section. Raises UsageError where it has none."""
+    if section.plane is None:
+        raise UsageError("only sections by a plane and fences are drawn")
+    point, normal = (np.asarray(each, np.float64) for each in section.plane)
+    return point, normal / np.linalg.norm(normal)
+
+
+def _unit_normal(section: SectionData) -> np.ndarray:
+    return plane_of(section)[1]
+
+
+def directions(section: SectionData) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Unit vectors to the right and up in the picture; None for a level plane, which is drawn as a map."""
+    normal = _unit_normal(section)
+    right = np.array([-normal[1], normal[0], 0.0])
+    length = np.linalg.norm(right)
+    if length < _UPRIGHT:
+        return None, None
+    right /= length
+    return right, np.cross(normal, right)
+
+
+def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
+    """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
+    least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
+    power = 10.0 ** np.floor(np.log10(least))
+    ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
+    return ratio, float(METERS[unit]) / ratio / _POINT
+
+
+def _subtitle(section: SectionData, ratio: float, exaggeration: float) -> str:
+    denominator = f"{ratio:,.0f}" if ratio >= 10 else f"{ratio:g}"
+    text = f"Scale 1 : {denominator}"
+    if is_vertical(section):
+        return f"{text}, vertical exaggeration {exaggeration:g}"
+    normal = _unit_normal(section)
+    if abs(normal[2]) > 1 - _UPRIGHT:
+        return f"{text}, map at elevation {tick_texts(section.vertices[:1, 2])[0]} {section.unit}"
+    dip = np.degrees(np.arccos(abs(normal[2])))
+    azimuth = np.degrees(np.arctan2(*(normal[:2] * np.sign(normal[2])))) % 360
+    return f"{text}, plane that dips {dip:.1f}° to azimuth {azimuth:.0f}°"
+
+
+def _axis_names(section: SectionData) -> tuple[str, str]:
+    if is_vertical(section):
+        names = ("Distance", "Elevation")
+    elif directions(section)[0] is None:
+        names = ("East (x)", "North (y)")
+    else:
+        names = ("Distance along strike", "Distance up dip")
+    return f"{names[0]} ({section.unit})", f"{names[1]} ({section.unit})"
+
+
+def _end_texts(section: SectionData, flat: np.ndarray) -> list[str]:
+    """The plan coordinates of the left and the right end of a vertical section; none of others."""
+    if not is_vertical(section):
+        return []
+    if isinstance(section, FenceData):
+        ends = section.polyline[[0, -1]]
+    else:
+        ends = section.vertices[[np.argmin(flat[:, 0]), np.argmax(flat[:, 0])], :2]
+    return [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
+
+
+def _draw_ends(drawing: Drawing, axes: Axes, section: SectionData, ends: list[str], are_beside: bool) -> None:
+    """Letters and coordinates above the ends of a vertical section, and a line at each bend. are_beside: the
+    coordinates are on one line; else they are on lines of their own, with their letters."""
+    x, y, width, height = axes.box
+    if isinstance(section, FenceData):
+        for at in section.bends[1:-1]:
+            ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
+            drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
+    sides = ("start", "end")
+    if width < sum(text_width(letter, _SIZE + 1) for letter in "AB") + _SIZE:
+        sides = ("end", "start")  # no room for both over the section
+    corners = (x, sides[0], 12), (x + width, sides[1], -12)
+    for number, (letter, text, (at, anchor, away)) in enumerate(zip("AB", ends, corners, strict=False)):
+        drawing.text(at, y + height + 5, letter, _SIZE + 1, anchor=anchor, layer="Text")
+        if are_beside:
+            drawing.text(at + away, y + height + 5.5, text, _SIZE - 1, anchor=anchor, layer="Text")
+        else:
+            over = y + height + 5.5 + (len(ends) - number) * _LINE
+            drawing.text(x, over, letter, _SIZE - 1, layer="Text")
+            drawing.text(x + 12, over, text, _SIZE - 1, layer="Text")

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The data by which a surface of a built model is judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.work import Cancel, Progress, Work, run
+from ..heights.cross_validation import CrossValidation, distinct_points, validate
+from ..plots import smallest_angles
+from ..settings.methods import METHODS, checked_options
+from ..settings.variogram import Variogram
+
+DEFAULT_FOLDS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceQuality:
+    """variogram: that its heights were estimated with, or None. cross_validation: None where there is none,
+    then `missing` says why. angles: (T,) the smallest angles of its triangles in plan, degrees.
+    mean_deviation, most_deviation: of the standard deviation of its heights over its area, model units; None
+    where the method gives none."""
+
+    variogram: Variogram | None
+    cross_validation: CrossValidation | None
+    missing: str
+    angles: np.ndarray
+    mean_deviation: float | None
+    most_deviation: float | None
+
+
+def surface_quality(
+    model, number: int, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+) -> SurfaceQuality:
+    """The quality of a surface of a model, by its global index. Raises InputRefused, Cancelled."""
+
+    def task(work: Work) -> SurfaceQuality:
+        vertices, triangles = model.surface(number)
+        result = model.interpolations[number]
+        with work.phase(0.0, 1.0, "cross-validating"):
+            validated, missing = _cross_validation(work, model, number, threads)
+        mean, most = _deviation(vertices, triangles, model.surface_attributes(number)["variance"])
+        return SurfaceQuality(
+            result.variogram if result else None,
+            validated,
+            missing,
+            smallest_angles(vertices, triangles),
+            mean,
+            most,
+        )
+
+    return run(task, progress, cancel)
+
+
+def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[CrossValidation | None, str]:
+    """Cross-validation by the method of the heights, or the reason why there is none."""
+    result = model.interpolations[number]
+    if result is None:
+        return None, "its shape is a mesh: nothing was interpolated"
+    surface = [surface for rock in model.project.rocks for surface in rock.surfaces][number]
+    method, settings = surface.method_options()
+    if method == "auto":
+        method = result.method
+        settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
+    others = [
+        name
+        for name, option in METHODS[method].options.items()
+        if option.kind == "surface" and settings.get(name) is not None
+    ]
+    if others:
+        return None, f"its heights follow another surface ({others[0]})"
+    points = np.empty((0, 3)) if surface.points is None else surface.points
+    if len(points) < 2 or len(distinct_points(points)) < 2:
+        return None, "it takes two points or more"
+    vertices, triangles = model.surface(number)
+    mesh = (np.ascontiguousarray(vertices[:, :2]), triangles) if METHODS[method].on_mesh else None
+    try:
+        return validate(work, points, method, settings, threads, DEFAULT_FOLDS, mesh), ""
+    except InputRefused as error:
+        return None, str(error)
+
+
+def _deviation(vertices, triangles, variance) -> tuple[float | None, float | None]:
+    """The mean over the area, and the maximum, of the square root of the variances (V,)."""
+    deviation = np.sqrt(np.maximum(variance, 0.0))
+    corners = deviation[triangles]
+    known = np.isfinite(corners).all(axis=1)
+    if not known.any():
+        return None, None
+    a, b, c = (vertices[triangles[known, k], :2] for k in range(3))
+    area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    mean = (
+        float(np.average(corners[known].mean(axis=1), weights=area)) if area.any() else float(corners.mean())
+    )
+    return mean, float(np.nanmax(deviation))

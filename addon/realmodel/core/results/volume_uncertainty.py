@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The uncertainty of the volumes of blocks that follows from interpolated heights."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.work import native_module
+
+
+def volume_deviations(model) -> np.ndarray:
+    """(B,) float64: what the standard deviation of each block's volume is at most, model units cubed; NaN
+    where no surface of known variance bounds the block.
+
+    The error of a volume is the sum of the errors of heights over the block's contacts. Its standard
+    deviation is largest where all these errors are alike: then it is the integral of the standard deviation
+    over the contacts (Cauchy and Schwarz), which is what is summed here; errors that differ from place to
+    place cancel out in part. Assumed: variances are right (the variogram holds), and errors are small enough
+    that the same contacts remain. Ready meshes and walls count as exact.
+    """
+    found = np.full(len(model.blocks), np.nan)
+    if not len(model.face_vertices):
+        return found
+    area, middle = plan_areas(model), _middles(model)
+    sides = model.face_blocks
+    for number in range(len(model.surface_names)):
+        variance = model.surface_attributes(number)["variance"]
+        faces = np.flatnonzero((model.face_surface == number) & (sides[:, 0] != sides[:, 1]))
+        if not np.isfinite(variance).any() or not len(faces):
+            continue
+        vertices, _ = model.surface(number)
+        deviation = np.sqrt(np.maximum(np.nan_to_num(variance), 0.0))
+        shape = np.column_stack([vertices[:, :2], deviation])
+        places = np.ascontiguousarray(middle[faces])
+        sheets = [
+            np.nan_to_num(native_module().surface_heights(shape, triangles, places))
+            for triangles in model.sheet_triangles(number)
+        ]
+        here = np.max(sheets, axis=0)  # of the sheets of a surface that faults displace
+        for side in sides[faces].T:
+            inside = side >= 0
+            blocks = side[inside]
+            found[np.unique(blocks)] = np.nan_to_num(found[np.unique(blocks)])
+            found += np.bincount(blocks, (here * area[faces])[inside], len(found))
+    return found
+
+
+def plan_areas(model) -> np.ndarray:
+    """(F,) float64: the areas of a model's faces seen from above."""
+    if not len(model.face_vertices):
+        return np.zeros(0)
+    x, y = _plan(model)
+    first, last = model.face_offsets[:-1], model.face_offsets[1:] - 1
+    doubled = x * _next(y, first, last) - y * _next(x, first, last)
+    return np.abs(np.add.reduceat(doubled, first)) / 2
+
+
+def _middles(model) -> np.ndarray:
+    """(F, 2) float64: the mean of the corners of each face in plan."""
+    first, counts = model.face_offsets[:-1], np.diff(model.face_offsets)
+    x, y = (np.add.reduceat(values, first) / counts for values in _plan(model))
+    return np.column_stack([x, y]) + model.vertices[0, :2]
+
+
+def _plan(model) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of the corners of all faces, relative to the first vertex."""
+    plan = model.vertices[:, :2] - model.vertices[:1, :2]
+    x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
+    return x, y
+
+
+def _next(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """For each corner of polygons the value at the next corner."""
+    found = np.empty_like(values)
+    found[:-1] = values[1:]
+    found[last] = values[first]
+    return found

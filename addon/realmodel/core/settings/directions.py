@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Directions in plan: degrees clockwise from north (+y), or a point of the compass."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..base.elementary import cos, sin
+from .method_options import OptionRefused
+
+COMPASS = {name: 45.0 * number for number, name in enumerate(("N", "NE", "E", "SE", "S", "SW", "W", "NW"))}
+_QUARTERS = ((0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0))
+
+
+def checked_direction(option: str, value) -> float | str | None:
+    """A direction as it is used: degrees, or a key of COMPASS. Raises OptionRefused."""
+    if value is None:
+        return None
+    name = value.strip().upper() if isinstance(value, str) else None
+    if name in COMPASS:
+        return name
+    try:
+        degrees = math.nan if name is not None or isinstance(value, bool) else float(value)
+    except (OverflowError, TypeError, ValueError):
+        degrees = math.nan
+    if not math.isfinite(degrees):
+        raise OptionRefused(
+            f"'{option}' must be a direction, not {value!r}",
+            option=option,
+            advice=f"write degrees clockwise from north, or one of {', '.join(COMPASS)}",
+        )
+    return degrees
+
+
+def unit_vector(degrees: float) -> np.ndarray:
+    """(2,) the vector of length 1 in a direction; exact along the axes."""
+    if degrees % 90.0 == 0.0:
+        return np.array(_QUARTERS[int(degrees // 90.0) % 4])
+    return np.array([sin(math.radians(degrees)), cos(math.radians(degrees))])
+
+
+def degrees_text(vector: np.ndarray) -> str:
+    """The direction of a vector (2,) for messages, in whole degrees."""
+    return f"{round(math.degrees(math.atan2(vector[0], vector[1]))) % 360}"

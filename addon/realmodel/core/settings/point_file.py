@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A file of points with its import options: columns, filters, separators, units."""
+
+from __future__ import annotations
+
+import builtins
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..base.units import METERS, factor
+
+
+class ReadingRefused(ValueError):
+    """A wrong value of a key of PointFile: the key, what is wrong, what to do."""
+
+    def __init__(self, key: str, what: str, advice: str | None = None):
+        self.key, self.what, self.advice = key, what, advice
+        super().__init__(f"{what}; {advice}" if advice else what)
+
+
+@dataclass(frozen=True)
+class PointFile:
+    """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, or a file of shapes: GeoJSON, well-known
+    text, a shapefile or a layer of a GeoPackage.
+
+    columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
+    where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
+    separator: one character; " " means any blanks and tabs; None: detected from the content.
+    decimal: "." or ","; None: detected from the content.
+    nodata: no-data values: a number, a text or a list of them; such points are left out.
+    units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
+    z_axis: "up", or "down" where z is a depth.
+    height: the attribute of features that holds their height; None: the z of their positions.
+    layer: of a GeoPackage, needed where it has several.
+    columns, separator and decimal are for tables only, height and layer for shapes.
+    """
+
+    file: str | Path
+    columns: Sequence[str | int] | None = None
+    where: Mapping = field(default_factory=dict)
+    separator: str | None = None
+    decimal: str | None = None
+    nodata: Sequence | float | str = ()
+    units: str | Mapping | None = None
+    height: str | None = None
+    layer: str | None = None
+    z_axis: str = "up"
+
+    @builtins.property
+    def nodata_values(self) -> list:
+        return list_of(self.nodata)
+
+    @builtins.property
+    def plan_unit(self) -> str | None:
+        return self.units.get("xy") if isinstance(self.units, Mapping) else self.units
+
+    @builtins.property
+    def height_unit(self) -> str | None:
+        return self.units.get("z") if isinstance(self.units, Mapping) else self.units
+
+    @builtins.property
+    def only_for_tables(self) -> list[str]:
+        """The keys given that only a table of text can have."""
+        return [key for key in ("columns", "separator", "decimal") if getattr(self, key)]
+
+    @builtins.property
+    def only_for_shapes(self) -> list[str]:
+        """The keys given that only a file of shapes can have."""
+        return [key for key in ("height", "layer") if getattr(self, key)]
+
+    def check(self) -> None:
+        """Raises ReadingRefused for a key that makes no sense."""
+        if self.columns is not None:
+            check_columns(self.columns)
+        check_where(self.where)
+        if self.separator is not None and not (
+            isinstance(self.separator, str)
+            and len(self.separator) == 1
+            and self.separator.isascii()
+            and not self.separator.isalnum()
+            and self.separator not in '.+-"#\n\r'
+        ):
+            raise ReadingRefused("separator", f"'separator' must be one character, not {self.separator!r}")
+        if self.decimal not in (None, ".", ","):
+            raise ReadingRefused("decimal", f'\'decimal\' must be "." or ",", not {self.decimal!r}')
+        if self.decimal == "," == self.separator:
+            raise ReadingRefused("decimal", "a comma cannot be both 'separator' and 'decimal'")
+        if not all(_is_value(value) for value in self.nodata_values):
+            raise ReadingRefused("nodata", f"'nodata' must be a number or text, not {self.nodata!r}")
+        for key in ("height", "layer"):
+            name = getattr(self, key)
+            if name is not None and not (isinstance(name, str) and name.strip()):
+                raise ReadingRefused(key, f"'{key}' must be a name, not {name!r}")
+        check_units(self.units)
+        check_z_axis(self.z_axis)
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """A ready mesh with its own units and z axis, as of a PointFile; None: units of the model."""
+
+    file: str | Path
+    units: str | Mapping | None = None
+    z_axis: str = "up"
+
+    def check(self) -> None:
+        """Raises ReadingRefused for a unit or an axis that is not known."""
+        check_units(self.units)
+        check_z_axis(self.z_axis)
+
+    def scale(self, model_unit: str) -> tuple[float, float]:
+        """The factors of plan coordinates and heights."""
+        units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
+        upward = -1.0 if self.z_axis == "down" else 1.0
+        return factor(units.get("xy"), model_unit), upward * factor(units.get("z"), model_unit)
+
+
+def list_of(value) -> list:
+    """A value, or a list of values, as a list."""
+    return list(value) if isinstance(value, (list, tuple)) else [value]
+
+
+def check_columns(columns) -> None:
+    said = "'columns' must be the names or numbers of three columns"
+    advice = 'write columns = ["X", "Y", "Z"]'
+    if not isinstance(columns, (list, tuple)) or len(columns) != 3:
+        raise ReadingRefused("columns", f"{said}, not {columns!r}", advice)
+    for column in columns:
+        if isinstance(column, str) and column.strip():
+            continue
+        if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
+            raise ReadingRefused("columns", f"{said}, not {column!r}", "column numbers start at 1")
+
+
+def check_where(where) -> None:
+    advice = "write where = { val = 60 }"
+    if not isinstance(where, Mapping):
+        raise ReadingRefused("where", f"'where' must be a table of columns and values, not {where!r}", advice)
+    for column, values in where.items():
+        if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
+            what = f"'where' must give a number or text for '{column}', not {values!r}"
+            raise ReadingRefused("where", what, advice)
+
+
+def check_units(units) -> None:
+    parts = dict(units) if isinstance(units, Mapping) else {"xy": units}
+    for part, unit in parts.items():
+        if part not in ("xy", "z"):
+            what = f"'units' has a part {part!r}"
+            raise ReadingRefused("units", what, 'its parts are xy and z: units = { z = "ft" }')
+        if unit is not None and unit not in METERS:
+            raise ReadingRefused("units", f"unknown unit {unit!r}", f"there are {', '.join(METERS)}")
+
+
+def check_z_axis(axis) -> None:
+    if axis not in ("up", "down"):
+        raise ReadingRefused("z_axis", f'\'z_axis\' must be "up" or "down", not {axis!r}')
+
+
+def _is_value(value) -> bool:
+    if isinstance(value, str):
+        return True
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return isinstance(value, int) or not math.isinf(value)

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Semivariograms: the difference of heights as a function of distance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..base.units import number_text
+
+# f(t) of each model, t = h / range. The factors of the last two make f(1) = 0.95.
+_A, _B = 4.743864518390579, 5.918649346310188
+_SHAPES = {
+    "spherical": lambda t: np.where(t < 1, 1.5 * t - 0.5 * t**3, 1.0),
+    "exponential": lambda t: -np.expm1(-3 * t),
+    "gaussian": lambda t: -np.expm1(-3 * t**2),
+    "cubic": lambda t: np.where(t < 1, t**2 * (7 - 8.75 * t + 3.5 * t**3 - 0.75 * t**5), 1.0),
+    "matern32": lambda t: 1 - (1 + _A * t) * np.exp(-_A * t),
+    "matern52": lambda t: 1 - (1 + _B * t + (_B * t) ** 2 / 3) * np.exp(-_B * t),
+}
+VARIOGRAMS = {  # label and tooltip in the panel
+    "spherical": ("Spherical", "Linear at the origin, reaches the sill at the range: for rough elevations"),
+    "exponential": ("Exponential", "Linear at the origin, approaches the sill: for rough elevations"),
+    "gaussian": (
+        "Gaussian",
+        "Parabolic at the origin: for very smooth elevations; unstable with many close points",
+    ),
+    "cubic": ("Cubic", "Parabolic at the origin, reaches the sill at the range: for smooth elevations"),
+    "matern32": ("Matern 3/2", "Between exponential and Gaussian, rougher than Matern 5/2"),
+    "matern52": ("Matern 5/2", "Between exponential and Gaussian, smoother than Matern 3/2"),
+}
+NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
+
+# A fit is not significant where neighbouring points differ as much as any, or its range exceeds the data.
+_PURE_NUGGET = 0.75
+_FEW_PAIRS = 30
+_FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill
+
+
+@dataclass(frozen=True)
+class Structure:
+    """One part of a nested variogram: sill * f(h / range). anisotropy: {ratio, azimuth}, or None for that of
+    the interpolation."""
+
+    model: str
+    range: float
+    sill: float
+    anisotropy: dict | None = None
+
+    def settings(self) -> dict:
+        settings = {"model": self.model, "range": self.range, "sill": self.sill}
+        return settings if self.anisotropy is None else {**settings, "anisotropy": self.anisotropy}
+
+
+@dataclass(frozen=True)
+class Variogram:
+    """gamma(h) = nugget + (sill - nugget) f(h / range), 0 at h = 0; the sill includes the nugget.
+
+    `model` is spherical, exponential, gaussian, cubic, matern32 or matern52; `range` is the practical range
+    in model units, `sill` and `nugget` are in units of height squared. A nested variogram has `structures`,
+    whose parts are added to the nugget; then `model` is "nested", `range` the longest range and `sill` the
+    whole. `anisotropy` is {ratio, azimuth} where one was found with a fit, `range` then the one along the
+    azimuth; else None: that of the interpolation. Where it was fitted to points, `lags` (L,), `gamma` (L,)
+    and `pairs` (L,) are the experimental semivariogram, with distances under the anisotropy; else they are
+    None.
+    """
+
+    model: str
+    range: float
+    sill: float
+    nugget: float = 0.0
+    structures: tuple[Structure, ...] = ()
+    anisotropy: dict | None = None
+    lags: np.ndarray | None = field(default=None, compare=False, repr=False)
+    gamma: np.ndarray | None = field(default=None, compare=False, repr=False)
+    pairs: np.ndarray | None = field(default=None, compare=False, repr=False)
+
+    @classmethod
+    def from_settings(cls, settings: dict) -> Variogram:
+        """The variogram of the dictionary that `settings` returns."""
+        if "structures" not in settings:
+            return cls(**settings)
+        structures = tuple(Structure(**part) for part in settings["structures"])
+        nugget = settings["nugget"]
+        sill = nugget + sum(part.sill for part in structures)
+        return cls("nested", max(part.range for part in structures), sill, nugget, structures)
+
+    @classmethod
+    def from_fit(cls, fit: dict, finds_anisotropy: bool) -> Variogram:
+        """The variogram that the native fit returns; with the fitted anisotropy, if it was to be fitted."""
+        found = None
+        if finds_anisotropy and fit["anisotropy_ratio"] != 1.0:
+            found = {"ratio": fit["anisotropy_ratio"], "azimuth": fit["anisotropy_azimuth"]}
+        nugget, sill = fit["nugget"], fit["sill"]
+        experimental = {name: fit[name] for name in ("lags", "gamma", "pairs")}
+        if not fit["further"]:
+            return cls(fit["model"], fit["range"], sill, nugget, anisotropy=found, **experimental)
+        further = [Structure(model, range_, part, found) for model, range_, part, *_ in fit["further"]]
+        first = sill - nugget - sum(part.sill for part in further)
+        structures = (Structure(fit["model"], fit["range"], first, found), *further)
+        longest = max(part.range for part in structures)
+        return cls("nested", longest, sill, nugget, structures, found, **experimental)
+
+    @property
+    def fitted(self) -> bool:
+        return self.lags is not None
+
+    def experimental(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """`lags`, `gamma` and `pairs` of a fitted variogram."""
+        assert self.lags is not None and self.gamma is not None and self.pairs is not None
+        return self.lags, self.gamma, self.pairs
+
+    def semivariance(self, distance) -> np.ndarray:
+        """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
+        distance = np.asarray(distance, np.float64)
+        gamma = np.full(distance.shape, self.nugget)
+        for part in self.parts():
+            gamma = gamma + part.sill * _SHAPES[part.model](distance / part.range)
+        return np.where(distance > 0, gamma, 0.0)
+
+    def settings(self) -> dict:
+        """The settings as in a project file."""
+        if self.structures or self.anisotropy:
+            return {"nugget": self.nugget, "structures": [part.settings() for part in self.parts()]}
+        return {"model": self.model, "range": self.range, "sill": self.sill, "nugget": self.nugget}
+
+    def parts(self) -> tuple[Structure, ...]:
+        """The structures of a sum, or the only one."""
+        own = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
+        return self.structures or (own,)
+
+    def native(self, anisotropy: dict | None) -> dict:
+        """The arguments of the native kriging functions. anisotropy: of parts that have none of their own."""
+        first, *further = self.parts()
+        anisotropy = anisotropy or NO_ANISOTROPY
+        own = first.anisotropy or anisotropy
+        return {
+            "model": first.model,
+            "range": first.range,
+            "sill": self.sill,
+            "nugget": self.nugget,
+            "anisotropy_ratio": own["ratio"],
+            "anisotropy_azimuth": own["azimuth"],
+            "further": [
+                (
+                    part.model,
+                    part.range,
+                    part.sill,
+                    (part.anisotropy or anisotropy)["ratio"],
+                    (part.anisotropy or anisotropy)["azimuth"],
+                )
+                for part in further
+            ],
+        }
+
+
+def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
+    """Warnings about a fitted variogram of little significance, as sentences. has_trend: heights far from
+    points follow a trend."""
+    warnings = []
+    lags, _, counts = variogram.experimental()
+    pairs = int(counts.sum())
+    if pairs < _FEW_PAIRS:
+        number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
+        warnings.append(
+            f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
+            "hand, or use the method 'plane' or 'tin'"
+        )
+    elif variogram.semivariance(lags[0]) > _PURE_NUGGET * variogram.sill:
+        warnings.append(
+            "the fitted variogram is nearly pure nugget: neighboring points differ almost as much as "
+            "distant ones, so kriging gives hardly more than local means; check the points for errors"
+        )
+    extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
+    if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
+        warnings.append(
+            f"the range of the fitted variogram, {number_text(variogram.range)}, far exceeds the extent of "
+            f"the points, {number_text(extent)}: its sill, and variances far from points, are extrapolated; "
+            "the heights may follow a trend: try universal kriging"
+        )
+    return warnings

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The parts into which faults and bodies divide the space of a project, and the compartments of its rock
+masses."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...base.work import Work, native_module
+from ...project.structure_entries import Body, Fault
+from ...project.structure_history import body_times, displaced_surfaces
+from ...surfaces.rock_structure import RockStructure, Triangulation
+from ...surfaces.sides import FaultShape, RockFaults
+from .refusals import refused_structure
+
+_BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
+
+
+@dataclass
+class Structures:
+    """faults, bodies: of a project, with arrays; structures are numbered through both. displaced: of each
+    fault its youngest displaced surface, by rock mass; times: of each body the surface after which it came.
+    sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
+    branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided.
+
+    For the structures around one tile (tiles/faulted_windows.py): continued, as from the native continued_structures; ends:
+    heights below and above all rock. None: both are found from the structures and sheets themselves."""
+
+    faults: list[Fault]
+    bodies: list[Body]
+    displaced: list[dict[int, int]]
+    times: list[dict[int, int]]
+    sides: np.ndarray = field(default_factory=lambda: np.zeros((1, 0), np.int8))
+    low: np.ndarray | None = None
+    high: np.ndarray | None = None
+    box: np.ndarray | None = None
+    continued: list[tuple] | None = None
+    ends: tuple[float, float] | None = None
+
+    def __len__(self) -> int:
+        return len(self.faults) + len(self.bodies)
+
+    @property
+    def largest(self) -> float:
+        """The largest coordinate of the whole that a window is a part of; 0 for a whole itself."""
+        if self.continued is None:
+            return 0.0
+        assert self.ends is not None  # as there are continued structures
+        return float(max(np.abs(self.divided_box()).max(), *map(abs, self.ends)))
+
+    def divided_box(self) -> np.ndarray:
+        """(2, 3) corners of what was divided."""
+        assert self.box is not None
+        return self.box
+
+    def boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """(P, 3) low and high: a box around each part, once they are found."""
+        assert self.low is not None and self.high is not None
+        return self.low, self.high
+
+    @property
+    def names(self) -> list[str]:
+        return [each.name for each in (*self.faults, *self.bodies)]
+
+    @property
+    def shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Vertices (V, 3) and triangles (T, 3) of each."""
+        return [each.triangulation() for each in (*self.faults, *self.bodies)]
+
+    @property
+    def kinds(self) -> list[int]:
+        """The number of each structure in `surface_kind`."""
+        return [1] * len(self.faults) + [2] * len(self.bodies)
+
+    def native(self) -> list[tuple]:
+        """The arguments of the native module."""
+        number = {fault.name: n for n, fault in enumerate(self.faults)}
+        given = [
+            (*fault.triangulation(), False, [number[name] for name in fault.ends_at], fault.dies_out)
+            for fault in self.faults
+        ]
+        return given + [(*body.triangulation(), True, [], False) for body in self.bodies]
+
+    def fault_shapes(self) -> list[FaultShape]:
+        """The shape of each fault."""
+        alone = {f.name: FaultShape(*f.triangulation(), f.dies_out) for f in self.faults}
+        return [alone[f.name]._replace(ends=tuple(alone[name] for name in f.ends_at)) for f in self.faults]
+
+    def of_rock(self, rock: int) -> RockFaults:
+        """The faults that act in a rock mass; those that end at others as the parts have it."""
+        numbers = [n for n, displaced in enumerate(self.displaced) if rock in displaced]
+        here = {self.faults[number].name: at for at, number in enumerate(numbers)}
+        ends = []
+        for number in numbers:
+            kept = self._kept_sides(number)
+            ends.append([(here[name], side) for name, side in kept.items() if name in here])
+        faults, shapes = [self.faults[number] for number in numbers], self.fault_shapes()
+        return RockFaults(
+            [fault.name for fault in faults],
+            [shapes[number] for number in numbers],
+            [self.displaced[number][rock] for number in numbers],
+            [fault.dies_out for fault in faults],
+            numbers,
+            ends,
+        )
+
+    def _kept_sides(self, number: int) -> dict[str, int]:
+        """For each fault at which a fault ends, by name: the side on which it remains. So it is only in parts
+        on these sides."""
+        names = list(self.faults[number].ends_at)
+        all_names = self.names
+        others = self.sides[:, [all_names.index(name) for name in names]]
+        for kept in itertools.product((-1, 1), repeat=len(names)):
+            is_beyond = (others == -np.array(kept, np.int8)).any(axis=1)
+            if np.array_equal(is_beyond, self.sides[:, number] == 0):
+                return dict(zip(names, kept, strict=True))
+        raise AssertionError(f"the sides of {all_names[number]} and of the faults at which it ends disagree")
+
+    def has_block(self, number: int) -> bool:
+        """Whether a structure has a block: a body that is not void and exists in some rock mass."""
+        body = number - len(self.faults)
+        return body >= 0 and not self.bodies[body].void and bool(self.times[body])
+
+    def blocks_of_bodies(self) -> list[tuple[int, Body, int]]:
+        """For each block of a body: the number of its structure, the body, its first rock mass."""
+        count = len(self.faults)
+        return [
+            (count + number, body, min(self.times[number]))
+            for number, body in enumerate(self.bodies)
+            if self.has_block(count + number)
+        ]
+
+    def stage(self, m: int) -> Structures:
+        """The structures at stage m: with the bodies that are there just after surface m."""
+        times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
+        return replace(self, times=times)
+
+    def there(self) -> list[int]:
+        """The numbers of the faults, and of the bodies that are there."""
+        count = len(self.faults)
+        return [*range(count), *(count + body for body, times in enumerate(self.times) if times)]
+
+    def only(self, numbers: list[int]) -> tuple[Structures, np.ndarray]:
+        """All faults and some bodies, by their numbers; and (P,) int32 a part of these structures for each
+        part that those leave."""
+        kept = [number - len(self.faults) for number in numbers[len(self.faults) :]]
+        sides, first, part = np.unique(self.sides[:, numbers], axis=0, return_index=True, return_inverse=True)
+        low, high = np.full((len(sides), 3), np.inf), np.full((len(sides), 3), -np.inf)
+        own_low, own_high = self.boxes()
+        np.minimum.at(low, part.ravel(), own_low)
+        np.maximum.at(high, part.ravel(), own_high)
+        few = replace(
+            self,
+            bodies=[self.bodies[body] for body in kept],
+            times=[self.times[body] for body in kept],
+            sides=np.ascontiguousarray(sides),
+            low=low,
+            high=high,
+            continued=self.continued and [self.continued[number] for number in numbers],
+        )
+        return few, first.astype(np.int32)
+
+
+def structures_of(project, faults: list[Fault], bodies: list[Body]) -> Structures:
+    """faults, bodies: those of the project, with arrays."""
+    displaced = [displaced_surfaces(project, fault) for fault in faults]
+    return Structures(faults, bodies, displaced, [body_times(project, body) for body in bodies])
+
+
+def divide(work: Work, structures: Structures, box: np.ndarray, threads: int) -> Structures:
+    """The parts of a box, (2, 3). Raises InputRefused."""
+    native = native_module()
+    try:
+        sides, low, high = work.native(
+            native.structure_parts, _box_complex(*box), structures.native(), threads=threads
+        )
+    except native.InputError as error:
+        raise refused_structure(error, structures) from error
+    return replace(structures, sides=sides, low=low, high=high, box=box)
+
+
+def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
+    """One cell, as an argument of the native module."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.float64)
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    return {
+        "vertices": np.where(corners == 0, low, high),
+        "face_offsets": np.arange(0, 25, 4, dtype=np.int64),
+        "face_vertices": np.array(faces, np.int32).ravel(),
+        "face_cells": np.array([[0, -1]] * 6, np.int32),
+        "face_surface": np.full(6, -1, np.int32),
+        "cell_block": np.zeros(1, np.int32),
+        "blocks": 1,
+        "surfaces": 0,
+        "cell_kind": "blocks",
+    }
+
+
+def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -> np.ndarray:
+    """(2, 3) corners of a box around all rock that there may be: around RockInputs, or their sheets where
+    these are made, and bodies, with a margin for what is not interpolated yet."""
+    x, y, z = [], [], [body.triangulation()[0][:, 2] for body in structures.bodies]
+    is_known = True
+    for entry in inputs:
+        if entry.region is not None:
+            x.append(entry.region[0][:, 0])
+            y.append(entry.region[0][:, 1])
+        for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
+            has_made = has_sheets and entry.structure.is_made(number)  # not younger than the stage
+            shapes = entry.structure.distinct(number) if has_made else [shape]
+            is_known &= None not in shapes
+            for given in (surface.points if shape is None else shape[0] for shape in shapes):
+                places = np.asarray(given, np.float64).reshape(-1, 3)
+                z.append(places[:, 2])
+                if entry.region is None:
+                    x.append(places[:, 0])
+                    y.append(places[:, 1])
+        if entry.rock.base_elevation is not None:
+            z.append(np.array([entry.rock.base_elevation]))
+    if not any(map(len, z)):
+        z = [fault.triangulation()[0][:, 2] for fault in structures.faults]
+    low, high = (
+        np.array([corner([corner(each) for each in axis if len(each)]) for axis in (x, y, z)])
+        for corner in (np.min, np.max)
+    )
+    margin = np.array([0.0, 0.0, 0.0 if is_known else _BEYOND * (high[2] - low[2])])
+    margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
+    box = np.array([low - margin, high + margin])
+    bases = [entry.rock.base_elevation for entry in inputs]
+    if None not in bases:  # no rock is lower
+        box[0, 2] = min(bases)
+    return box
+
+
+def add_compartments(structures: Structures, inputs: list) -> None:
+    """Sets the compartments of each rock mass (RockInput): the parts, by their sides of the faults that act
+    in it."""
+    for number, entry in enumerate(inputs):
+        faults = structures.of_rock(number)
+        rows = np.unique(structures.sides[:, faults.numbers], axis=0)
+        sheets: list[list[Triangulation | None]] = [[None] * len(entry.surfaces) for _ in rows]
+        entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
+
+
+def compartment_of(structures: Structures, entry, part: int) -> int:
+    """The compartment of a RockInput that a part lies in."""
+    row = structures.sides[part, entry.structure.faults.numbers]
+    return int(np.flatnonzero((entry.structure.compartments == row).all(axis=1))[0])
+
+
+def compartment_names(names: list[str], rows: np.ndarray) -> list[str]:
+    """A name for each row of sides: "above F1, below F2"; "" for one without."""
+    words = {1: "above", -1: "below"}
+    return [
+        ", ".join(f"{words[side]} {name}" for name, side in zip(names, row, strict=True) if side)
+        for row in rows.tolist()
+    ]

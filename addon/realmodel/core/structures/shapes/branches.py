@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults that end at other faults, and the check that they meet them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...base.algebra import norm
+from ...base.errors import InputRefused, place_text
+from ...base.triangles import distances, meet, open_edges
+from ...project.structure_entries import Fault, fault_item
+
+_TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault reaches it
+
+
+def require_meeting(fault: Fault, ends: list[Fault]) -> None:
+    """Refuses a fault that does not meet those at which it ends. All have arrays. Raises InputRefused."""
+    for other in ends:
+        both = np.concatenate([fault.triangulation()[0], other.triangulation()[0]])
+        _require_meeting(fault, other, _TOUCHES * float(norm(np.ptp(both, axis=0))))
+
+
+def _require_meeting(branch: Fault, other: Fault, near: float) -> None:
+    (vertices, triangles), (of_other, others) = branch.triangulation(), other.triangulation()
+    if meet(vertices[triangles], of_other[others]).any():
+        return
+    border = np.unique(open_edges(vertices, triangles))
+    places = vertices[border] if len(border) else vertices
+    away = distances(places, of_other, others)
+    if away.min() <= near:
+        return
+    place = places[int(away.argmin())]
+    source = branch.source
+    raise InputRefused(
+        f"it ends at fault '{other.name}', but does not meet it: the nearest it comes is {away.min():.6g} at "
+        f"{place_text(place)}",
+        file=source.document.file if source else branch.shape_file,
+        line=source.line("ends_at") if source else None,
+        item=fault_item(branch),
+        advice="extend it to that fault, or take it out of 'ends_at'",
+        place=tuple(place.tolist()),
+    )

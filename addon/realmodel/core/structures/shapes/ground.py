@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is known of the surfaces of rock masses before they are interpolated: their extent, and elevations on
+their data."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.work import Work, native_module
+from ...heights import heights
+from ...project.project import Surface, surface_item
+from ...settings.methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
+
+_MANY = 10_000  # points: these are enough for the elevations of a line
+_LIFTS = ("thickness", "minimum_thickness")  # by which a surface may lie above another one's data
+
+
+def plan_of(tops: list[tuple]) -> np.ndarray:
+    """(2, 2) corners around rock masses in plan. tops: of each a RockInput that is read, and the number of a
+    surface, or None."""
+    found = []
+    for entry, _ in tops:
+        if entry.rock.region is not None:
+            found += entry.rock.rings()
+        else:
+            found += [data[:, :2] for data in _every_data(entry)]
+    every = np.concatenate([np.empty((0, 2)), *found])
+    return np.array([every.min(axis=0), every.max(axis=0)])
+
+
+def levels_of(tops: list[tuple], others: np.ndarray) -> tuple[float, float]:
+    """The lowest and the highest elevation of the data of rock masses, and of `others` (NaN: none)."""
+    found, lift = [others[~np.isnan(others)]], 0.0
+    for entry, _ in tops:
+        found += [data[:, 2] for data in _every_data(entry)]
+        found += [np.array([base]) for base in [entry.rock.base_elevation] if base is not None]
+        for surface in entry.rock.surfaces:
+            found += [np.array([value]) for value in [_constant(surface)] if value is not None]
+            lift += sum(abs(value) for value in map(_number(surface), _LIFTS))
+    every = np.concatenate(found)
+    low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 0.0)
+    return low - lift, high + lift
+
+
+def heights_on(work: Work, plan: np.ndarray, tops: list[tuple], threads: int) -> np.ndarray:
+    """(N,) elevations of surfaces at places (N, 2): on the triangles of ready meshes; else by natural
+    neighbors between their points, and beyond these as at the nearest. Raises InputRefused."""
+    found, points = np.full(len(plan), np.nan), []
+    tops = [(entry, number) for entry, number in tops if number is not None]
+    for entry, number in tops:
+        shape = entry.surfaces[number]
+        if shape is not None:
+            own = work.native(native_module().surface_heights, *shape, plan, threads=threads)
+            found = np.where(np.isnan(found), own, found)
+        value = _constant(entry.rock.surfaces[number])
+        if value is not None and not len(_data(entry, number)):
+            found[np.isnan(found)] = value
+        points.append(_data(entry, number))
+    rest = np.isnan(found)
+    if not rest.any():
+        return found
+    known = np.concatenate(points)
+    if not len(known):
+        entry, number = tops[0]
+        named = surface_item(entry.rock, entry.rock.surfaces[number])
+        what = f"the elevation of its trace is not known: {named} has no points or mesh"
+        raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
+    options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
+    near = np.ascontiguousarray(np.unique(_near(known, plan[rest]), axis=0))
+    found[rest] = heights(work, near, plan[rest], CONTINUATION, options, threads).z
+    return found
+
+
+def _near(points: np.ndarray, plan: np.ndarray) -> np.ndarray:
+    """Of very many points those around places, as far as these reach; all, if there are few."""
+    low, high = plan.min(axis=0), plan.max(axis=0)
+    margin = (high - low).max()
+    inside = ((points[:, :2] >= low - margin) & (points[:, :2] <= high + margin)).all(axis=1)
+    return points[inside] if np.count_nonzero(inside) >= _MANY else points
+
+
+def _every_data(entry) -> list[np.ndarray]:
+    return [_data(entry, number) for number in range(len(entry.surfaces))]
+
+
+def _data(entry, number: int) -> np.ndarray:
+    """(P, 3) the points of a surface, or the vertices of its mesh."""
+    shape, points = entry.surfaces[number], entry.rock.surfaces[number].points
+    if shape is not None:
+        used = np.zeros(len(shape[0]), bool)
+        used[shape[1].ravel()] = True
+        return shape[0][used]
+    return np.empty((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
+
+
+def _number(surface: Surface):
+    """number(key): what a surface says of it; 0 where that is no number."""
+
+    def number(key: str) -> float:
+        value = surface.options.get(key, getattr(surface, key, None))
+        return float(value) if isinstance(value, (int, float)) else 0.0
+
+    return number
+
+
+def _constant(surface: Surface) -> float | None:
+    """The elevation that the options of a surface set everywhere."""
+    value = surface.options.get("value")
+    return float(value) if surface.method == "constant" and isinstance(value, (int, float)) else None

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads faults and bodies: arrays in the place of files and points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.build_warning import BuildWarning
+from ...base.errors import InputRefused, place_text
+from ...base.triangles import NoTwoSides, checked_triangulation, open_edges, oriented, without_flat
+from ...base.work import Work
+from ...heights.interpolate import checked_points
+from ...project.structure_entries import Body, Fault, body_item, fault_item
+from ...project.structure_history import displaced_surfaces
+from ...readers import read_mesh
+from ...readers.fault_sticks import read_fault_points
+from ...surfaces.wrong_sides import Triangulation
+from .continued import extended
+from .fitted import fit_points, fit_sticks
+from .traces import read_trace, trace_surface
+
+
+def read_structures(work: Work, project, threads: int = 0, inputs=None):
+    """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
+    only; and the warnings of reading and fitting. inputs: the rock masses, read (RockInput), which faults
+    given by a trace go through; None: these keep their traces, read. Raises InputRefused."""
+    warnings: list[BuildWarning] = []
+    total = len(project.faults) + len(project.bodies) or 1
+    faults, bodies = [], []
+    for number, fault in enumerate(project.faults):
+        work.step(number / total)
+        if fault.trace is not None:
+            faults.append(_read_traced(work, fault, project, inputs, threads, warnings))
+        else:
+            faults.append(_read_fault(work, fault, project.units, threads, warnings))
+    for number, body in enumerate(project.bodies, len(faults)):
+        work.step(number / total)
+        bodies.append(_read_body(body, project.units, warnings))
+    return faults, bodies, warnings
+
+
+def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: list[BuildWarning]) -> Fault:
+    shape_file = fault.input_file or fault.shape_file
+    try:
+        if fault.points is not None:
+            points: object = fault.points
+            texts: list[str] = []
+            if fault.point_file is not None:
+                points, texts = read_fault_points(fault.point_file, fault.stick, units)
+            warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in texts]
+            vertices, triangles = _fitted(work, fault, points, threads)
+        else:
+            vertices, triangles = _mesh_of(fault, units, warnings, fault_item(fault))
+        triangles = _two_sided(vertices, triangles)
+        if fault.points is None and fault.extend > 0:
+            vertices, triangles = extended(vertices, triangles, fault.extend, not fault.dies_out)
+    except InputRefused as error:
+        raise _within(error, fault, fault_item(fault)) from error
+    return replace(
+        fault,
+        vertices=vertices,
+        triangles=triangles,
+        points=None,
+        stick=None,
+        extend=0.0,
+        mesh=None,
+        shape_file=shape_file,
+    )
+
+
+def _read_traced(
+    work: Work, fault: Fault, project, inputs, threads: int, warnings: list[BuildWarning]
+) -> Fault:
+    item = fault_item(fault)
+    fault = replace(fault, shape_file=fault.input_file or fault.shape_file)
+    try:
+        traced, texts = read_trace(fault, project.units)
+        if inputs is None:
+            return traced
+        (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault), threads)
+    except InputRefused as error:
+        raise _within(error, fault, item) from error
+    warnings += [BuildWarning(f"{item}: {text}", "trace") for text in (*texts, *more)]
+    return replace(
+        traced,
+        vertices=vertices,
+        triangles=triangles,
+        trace=None,
+        dip=None,
+        dip_direction=None,
+        elevation=None,
+        extend=0.0,
+        traced=traced,
+    )
+
+
+def _tops(project, inputs, fault: Fault) -> list[tuple]:
+    """Of each rock mass that a fault displaces its RockInput, and the number of the surface that the trace is
+    on: of the named one (None where there is none), else of the youngest."""
+    tops = []
+    for rock in displaced_surfaces(project, fault):
+        names = [surface.name for surface in inputs[rock].rock.surfaces]
+        named = fault.elevation if isinstance(fault.elevation, str) else names[-1]
+        tops.append((inputs[rock], names.index(named) if named in names else None))
+    return tops
+
+
+def _fitted(work: Work, fault: Fault, points, threads: int) -> Triangulation:
+    sideways = not fault.dies_out
+    if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
+        return fit_points(work, checked_points(points), fault.extend, sideways, threads)
+    sticks = [checked_points(stick, f"stick {number}") for number, stick in enumerate(points, 1)]
+    return fit_sticks(sticks, fault.extend, sideways)
+
+
+def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    try:
+        return oriented(vertices, triangles)
+    except NoTwoSides as error:
+        place = error.edge.mean(axis=0)
+        what = f"it has no two sides: it returns to itself the other way round at {place_text(place)}"
+        raise InputRefused(what, advice="cut it open there", place=tuple(place.tolist())) from error
+
+
+def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
+    shape_file = body.input_file or body.shape_file
+    try:
+        vertices, triangles = _mesh_of(body, units, warnings, body_item(body))
+        edges = open_edges(vertices, triangles)
+        if len(edges):
+            place = vertices[edges[0]].mean(axis=0)
+            count = "an open edge" if len(edges) == 1 else f"{len(edges)} open edges"
+            raise InputRefused(
+                f"it is not closed: it has {count}, one at {place_text(place)}",
+                advice="close its surface: each edge must belong to two triangles",
+                place=tuple(place.tolist()),
+            )
+        triangles = _two_sided(vertices, triangles)
+    except InputRefused as error:
+        raise _within(error, body, body_item(body)) from error
+    return replace(body, vertices=vertices, triangles=triangles, mesh=None, shape_file=shape_file)
+
+
+def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Triangulation:
+    if entry.mesh_file is None:
+        vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
+    else:
+        mesh = read_mesh(entry.input_file)
+        vertices, texts = mesh.in_model(entry.mesh_file, units)
+        warnings += [BuildWarning(text, "mesh_file") for text in texts]
+        triangles = mesh.triangles
+    kept = without_flat(vertices, triangles)
+    if len(kept) < len(triangles):
+        left_out = len(triangles) - len(kept)
+        text = f"{item}: {left_out} triangle{'s' if left_out > 1 else ''} without area left out"
+        warnings.append(BuildWarning(text, "left_out"))
+    if not len(kept):
+        raise InputRefused("its triangles have no area")
+    return vertices, kept
+
+
+def _within(error: InputRefused, entry, item: str) -> InputRefused:
+    file, line = entry.shape_source()
+    return error.within(item, file=file, line=line)

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults given by their trace, the line in which they cut the ground, and their dip: the line moved along the
+dip, from below all rock that the fault displaces to above it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.algebra import dot, norm
+from ...base.elementary import cos, sin
+from ...base.errors import InputRefused, number_list, place_text
+from ...base.exact import orient2d
+from ...base.triangles import crossing_pairs
+from ...base.work import Work
+from ...project.structure_entries import Fault
+from ...readers.fault_trace import FaultLines, read_fault_trace
+from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
+from ...surfaces.wrong_sides import Triangulation
+from .ground import heights_on, levels_of, plan_of
+
+VERTICAL = 90.0
+_ALONG = math.sin(math.radians(15.0))  # of the angle between trace and dip direction: less is along the trace
+_OBLIQUE = math.cos(math.radians(30.0))  # of the angle to the normal of the trace: beyond, a warning
+_END = 0.1  # of the length of a line: so much of it at an end gives the direction of its continuation
+_PIECES = 256  # of the extent of the rock in plan: so long are the pieces of a line that is put on the ground
+_STRAIGHT = 1e-5  # of the same extent: what leaves a straight line by less needs no vertex
+_MOST_LINES = 1000
+
+
+def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
+    """The fault with its trace as one line (N, 3), z NaN where it has none, and with the dip of the file's
+    attributes where it has none of its own; and warnings. Raises InputRefused."""
+    text_or_file = fault.trace_file or (fault.trace if isinstance(fault.trace, str) else None)
+    found = (
+        FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
+    )
+    line, warnings = _joined([_without_repeats(line) for line in found.lines])
+    if (line[0, :2] == line[-1, :2]).all():
+        raise InputRefused(
+            f"its trace returns to where it begins, {place_text(line[0, :2])}",
+            advice="cut it open, or give the fault as a mesh",
+            place=tuple(line[0, :2].tolist()),
+        )
+    if fault.elevation is None and (line[:, 2] == 0.0).all() and fault.trace_file is not None:
+        text = "its line has elevation 0 everywhere; if that is no elevation, set elevation = ..."
+        warnings.append(text)
+    dip = found.dip() if fault.dip is None else fault.dip
+    direction = checked_direction("dip_direction", fault.dip_direction)
+    if direction is None and dip != VERTICAL:
+        direction = found.dip_direction()
+    if dip is None:
+        what = "it has no dip, and its file has no attribute 'dip'"
+        raise InputRefused(what, advice="set dip = ... (90 where the fault is vertical)")
+    if dip != VERTICAL and direction is None:
+        one, other = (degrees_text(side) for side in _sides(line))
+        raise InputRefused(
+            "it has a dip, but no dip direction",
+            advice=f"set dip_direction = {one} or {other}, the two sides of its trace",
+        )
+    level = fault.elevation
+    level = level if level is None or isinstance(level, str) else float(level)
+    return replace(fault, trace=line, dip=float(dip), dip_direction=direction, elevation=level), warnings
+
+
+def trace_surface(
+    work: Work, fault: Fault, tops: list[tuple], threads: int
+) -> tuple[Triangulation, list[str]]:
+    """The surface through the trace of a fault that read_trace returned, vertices (V, 3) float64 and
+    triangles (T, 3) int32; and warnings.
+
+    tops: of each rock mass that it displaces, the RockInput, and the number of the surface that the line is
+    on where it has no elevation, or None. A number as direction is that of the dip, and all rulings are
+    parallel to it; a point of the compass says the side to which the plane through both ends dips. Raises
+    InputRefused.
+    """
+    plan, (low, high) = plan_of(tops), levels_of(tops, fault.trace_line()[:, 2])
+    extent = float(norm(plan[1] - plan[0]))
+    margin = (high - low) + extent / 4
+    low, high = low - margin, high + margin
+    line, given = _with_heights(work, fault, tops, extent, threads)
+    run, toward = _dip_of(fault, line)
+    # where the surface cuts the level `high`: a line along its strike
+    top = (
+        line[:, :2] if fault.dip == VERTICAL else line[:, :2] - (run * (high - line[:, 2]))[:, None] * toward
+    )
+    top, given = _once_each(top, given)
+    top = top[given | _bends(top, given, _STRAIGHT * extent)]
+    warnings = [] if fault.dip in (None, VERTICAL) else _compare(top, toward, fault.dip)
+    down = run * (high - low) * toward
+    if fault.extend > 0:
+        top = _continued(top, fault.extend, fault.extend)
+    elif not fault.dies_out:
+        # the rulings at its ends are beside the rock then, whatever the direction
+        far = [max(_farthest(plan, end), _farthest(plan, end + down)) + extent for end in top[[0, -1]]]
+        top = _continued(top, *far)
+    _refuse_crossing(top)
+    count = len(top)
+    vertices = np.concatenate(
+        [np.column_stack([top, np.full(count, high)]), np.column_stack([top + down, np.full(count, low)])]
+    )
+    first = np.arange(count - 1)
+    triangles = np.concatenate(
+        [
+            np.column_stack([count + first, count + first + 1, first + 1]),
+            np.column_stack([count + first, first + 1, first]),
+        ]
+    )
+    return (vertices, triangles.astype(np.int32)), warnings
+
+
+def _farthest(plan: np.ndarray, place: np.ndarray) -> float:
+    """The distance of a place (2,) from the farthest point of a box (2, 2)."""
+    return float(norm(np.abs(plan - place).max(axis=0)))
+
+
+def _lines_of(given) -> list[np.ndarray]:
+    """The lines (N, 3) of arrays (N, 2) or (N, 3)."""
+    several = len(given) and np.ndim(given[0]) > 1
+    found = []
+    for number, points in enumerate(given if several else [given], 1):
+        name = f"line {number} of the trace" if several else "the trace"
+        try:
+            line = np.array(points, np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputRefused(f"{name} must be an array (N, 2) or (N, 3)") from error
+        if line.ndim != 2 or line.shape[1] not in (2, 3):
+            raise InputRefused(f"{name} must be an array (N, 2) or (N, 3), not {line.shape}")
+        if line.shape[1] == 2:
+            line = np.column_stack([line, np.full(len(line), np.nan)])
+        bad = np.flatnonzero(~np.isfinite(line[:, :2]).all(axis=1) | np.isinf(line[:, 2]))
+        if len(bad):
+            raise InputRefused(f"point {bad[0]} of {name} is {place_text(line[bad[0]])}, not finite")
+        found.append(line)
+    return found
+
+
+def _without_repeats(line: np.ndarray) -> np.ndarray:
+    new = np.ones(len(line), bool)
+    new[1:] = (line[1:, :2] != line[:-1, :2]).any(axis=1)
+    return line[new]
+
+
+def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
+    """The pieces of a trace as one line: ends that are nearest to one another are joined, first those with
+    the smallest gap. Refuses pieces that do not go on from one another."""
+    lines = [line for line in lines if len(line) > 1]
+    if not lines:
+        raise InputRefused("its trace has no length in plan", advice="give two points or more")
+    if len(lines) > _MOST_LINES:
+        what = f"its trace has {len(lines)} lines"
+        raise InputRefused(what, advice="choose the lines of one fault with where = { ... }")
+    ends = np.array([line[at, :2] for line in lines for at in (0, -1)])
+    one, other = np.triu_indices(len(ends), 1)
+    one, other = one[one // 2 != other // 2], other[one // 2 != other // 2]
+    gaps = norm(ends[one] - ends[other])
+    joins: dict[int, int] = {}
+    chain = np.arange(len(lines))
+    for pair in np.argsort(gaps, kind="stable").tolist():
+        a, b = int(one[pair]), int(other[pair])
+        if a in joins or b in joins or chain[a // 2] == chain[b // 2]:
+            continue
+        joins[a], joins[b] = b, a
+        chain[chain == chain[a // 2]] = chain[b // 2]
+        if len(joins) == 2 * len(lines) - 2:
+            break
+    at = next(end for end in range(len(ends)) if end not in joins)
+    order, bridged = [lines[at // 2][:: -1 if at % 2 else 1]], []
+    while (before := at ^ 1) in joins:
+        at = joins[before]
+        piece = lines[at // 2][:: -1 if at % 2 else 1]
+        _refuse_turning_back(order[-1], piece)
+        bridged.append(float(norm(piece[0, :2] - order[-1][-1, :2])))
+        order.append(piece)
+    line = _without_repeats(np.concatenate(order))
+    open_gaps = [gap for gap in bridged if gap > 0]
+    if not open_gaps:
+        return line, []
+    text = f"gaps of {number_list(f'{gap:.6g}' for gap in open_gaps)} between the {len(lines)} lines of its "
+    return line, [text + "trace are bridged by straight lines"]
+
+
+def _refuse_turning_back(before: np.ndarray, after: np.ndarray) -> None:
+    """Refuses two pieces of a trace of which the second does not go on from the first."""
+    gap = after[0, :2] - before[-1, :2]
+    steps = [before[-1, :2] - before[0, :2], gap, after[-1, :2] - after[0, :2]]
+    steps = [step for step in steps if step.any()]
+    turns_back = any(dot(a, b) < 0 for a, b in itertools.combinations(steps, 2))
+    if turns_back or norm(gap) > max(norm(steps[0]), norm(steps[-1])):
+        raise InputRefused(
+            f"the lines of its trace do not go on from one another at {place_text(before[-1, :2])}",
+            advice="give the lines of one fault only: choose them with where = { ... }",
+            place=tuple(before[-1, :2].tolist()),
+        )
+
+
+def _sides(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The two directions (2,) at right angles to the line through the ends of a trace."""
+    along = line[-1, :2] - line[0, :2]
+    right = np.array([along[1], -along[0]]) / norm(along)
+    return right, -right
+
+
+def _dip_of(fault: Fault, line: np.ndarray) -> tuple[float, np.ndarray]:
+    """How far the surface goes sideways for each unit down, and the direction (2,) of that."""
+    if fault.dip == VERTICAL:
+        return 0.0, np.zeros(2)
+    direction = fault.dip_direction
+    assert fault.dip is not None and direction is not None  # of read_trace
+    angle = math.radians(fault.dip)
+    run = float(cos(angle) / sin(angle))
+    if not isinstance(direction, str):
+        return run, unit_vector(direction)
+    right, left = _sides(line)
+    side = float(dot(right, unit_vector(COMPASS[direction])))
+    if abs(side) < _ALONG:
+        raise _along(f"its dip direction, {direction},", right)
+    # of the two planes with this dip through both ends the one that dips to this side
+    ends = line[[0, -1]]
+    share = run * float(ends[0, 2] - ends[1, 2]) / float(norm(ends[1, :2] - ends[0, :2]))
+    if abs(share) >= _OBLIQUE:
+        raise InputRefused(
+            f"the line between the ends of its trace is about as steep as its dip, {fault.dip:g} degrees",
+            advice="give the dip direction in degrees, or correct the dip or the elevations",
+            place=tuple(ends[0].tolist()),
+        )
+    along = (ends[1, :2] - ends[0, :2]) / norm(ends[1, :2] - ends[0, :2])
+    return run, math.sqrt(1.0 - share * share) * (right if side > 0 else left) + share * along
+
+
+def _along(what: str, across: np.ndarray) -> InputRefused:
+    one, other = degrees_text(across), degrees_text(-across)
+    return InputRefused(
+        f"{what} is along its trace, which runs at right angles to {one} and {other}",
+        advice=f"the two sides of the trace are dip_direction = {one} and {other}",
+    )
+
+
+def _with_heights(
+    work: Work, fault: Fault, tops: list[tuple], extent: float, threads: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The trace with all its elevations, and (N,) bool: the points that were given. Between these it gets
+    more where it is put on a surface."""
+    line = fault.trace_line().copy()
+    given = np.ones(len(line), bool)
+    if isinstance(fault.elevation, float):
+        line[:, 2] = fault.elevation
+    elif fault.elevation is not None:
+        line[:, 2] = np.nan
+    unknown = np.isnan(line[:, 2])
+    if fault.dip == VERTICAL or not unknown.any():
+        return line, given
+    if unknown.all():
+        line, given = _divided(line, extent / _PIECES)
+        unknown = np.ones(len(line), bool)
+    line[unknown, 2] = heights_on(work, np.ascontiguousarray(line[unknown, :2]), tops, threads)
+    return line, given
+
+
+def _divided(line: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """A line in pieces that are not longer, and (N,) bool: its own points."""
+    found, given = [], []
+    for begin, end in itertools.pairwise(line):
+        count = max(1, math.ceil(float(norm(end[:2] - begin[:2])) / longest))
+        shares = np.arange(count)[:, None] / count
+        found.append(begin + shares * (end - begin))
+        given.append(np.arange(count) == 0)
+    return np.concatenate([*found, line[-1:]]), np.concatenate([*given, [True]])
+
+
+def _once_each(top: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points without those that are where the one before is."""
+    new = np.ones(len(top), bool)
+    new[1:] = (top[1:] != top[:-1]).any(axis=1)
+    top, given = top[new], given[new]
+    if (top[0] == top[-1]).all():
+        raise InputRefused(
+            "its trace runs down its dip: it shows no surface",
+            advice="correct the dip direction, or give a longer trace",
+            place=tuple(top[0].tolist()),
+        )
+    given[[0, -1]] = True
+    return top, given
+
+
+def _bends(top: np.ndarray, given: np.ndarray, near: float) -> np.ndarray:
+    """(N,) bool: of the points between given ones those that a line with a straight piece in their place
+    would miss by more (Douglas and Peucker 1973)."""
+    kept = np.zeros(len(top), bool)
+    waiting = list(itertools.pairwise(np.flatnonzero(given).tolist()))
+    while waiting:
+        begin, end = waiting.pop()
+        if end - begin < 2:
+            continue
+        along = top[end] - top[begin]
+        apart = top[begin + 1 : end] - top[begin]
+        share = np.clip(dot(apart, along) / max(float(dot(along, along)), 1e-300), 0.0, 1.0)
+        away = norm(apart - share[:, None] * along)
+        worst = int(away.argmax())
+        if away[worst] > near:
+            middle = begin + 1 + worst
+            kept[middle] = True
+            waiting += [(begin, middle), (middle, end)]
+    return kept
+
+
+def _compare(top: np.ndarray, toward: np.ndarray, dip: float) -> list[str]:
+    """A warning where the dip direction is oblique to the strike of the surface, a line from end to end of
+    `top`. Refuses one along it."""
+    along = top[-1] - top[0]
+    across = np.array([along[1], -along[0]]) / norm(along)
+    share = float(dot(across, toward))
+    across, share = (across, share) if share >= 0 else (-across, -share)
+    if share < _ALONG:
+        raise _along("its dip direction", across)
+    if share >= _OBLIQUE:
+        return []
+    angle = math.degrees(math.atan(math.tan(math.radians(dip)) / share))
+    return [
+        f"its dip direction is oblique to its trace, so that it dips {angle:.0f} degrees toward "
+        f"{degrees_text(across)}, not {dip:g}; check the dip direction"
+    ]
+
+
+def _continued(top: np.ndarray, before: float, after: float) -> np.ndarray:
+    """A line that goes on straight at both ends, in the mean direction of its last tenth there."""
+    ends = []
+    for line, by in ((top[::-1], before), (top, after)):
+        way = norm(np.diff(line, axis=0))[::-1].cumsum()  # from the end
+        inner = line[-2 - int(np.searchsorted(way, _END * way[-1]))]
+        ends.append(line[-1] + by * (line[-1] - inner) / norm(line[-1] - inner))
+    return np.concatenate([ends[0][None], top, ends[1][None]])
+
+
+def _refuse_crossing(top: np.ndarray) -> None:
+    """Refuses a line that crosses or touches itself (exact)."""
+    begin, end = top[:-1], top[1:]
+    pieces = np.stack([begin, end, end], axis=1)
+    pairs = crossing_pairs(pieces, pieces)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    next_to = pairs[:, 1] == pairs[:, 0] + 1
+    one, other = pairs[~next_to].T
+    a, b, c, d = begin[one], end[one], begin[other], end[other]
+    meets = (orient2d(a, b, c) * orient2d(a, b, d) <= 0) & (orient2d(c, d, a) * orient2d(c, d, b) <= 0)
+    turn = pairs[next_to][:, 0]
+    a, b, d = begin[turn], end[turn], end[turn + 1]
+    back = (orient2d(a, b, d) == 0) & (dot(b - a, d - b) < 0)
+    places = np.concatenate([begin[other[meets]], end[turn[back]]])
+    if len(places):
+        raise InputRefused(
+            f"its surface crosses itself: seen along the dip its trace, continued at both ends, crosses or "
+            f"touches itself near {place_text(places[0])}",
+            advice="correct the trace, its elevation or its dip, limit `extend`, or give the fault as a mesh",
+            place=tuple(places[0].tolist()),
+        )

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picks of one side of a fault that lie beyond it, detected where the other side has picks, too."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...heights.mis_ties import LARGEST_SHARE, heights_apart
+
+_LOOKED_AT = 16  # nearest points, whose sides are considered
+_COUNTED = 4  # points of each side, whose mean height is the expected one
+_FAR = 8.0  # mean distances between points: so near the nearest ones are looked for first
+_BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
+
+
+def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(P,) bool: of points (P, 3) at places with several heights those that are on the wrong side of a fault,
+    and those beside them that are.
+
+    rows: (P, F) their sides. A point is on the wrong side where its height is nearer to that of its neighbors
+    on other sides than to that of those on its own. Neighbors are points that are alone at their place.
+    """
+    found = np.zeros(len(points), bool)
+    several = heights_apart(points) > 0
+    if not several.any() or several.all():
+        return found
+    _, row = np.unique(rows, axis=0, return_inverse=True)
+    row = row.ravel()
+    tolerated = LARGEST_SHARE * np.ptp(points[:, 2])
+    tried = np.flatnonzero(several).tolist()
+    while tried:
+        known = np.flatnonzero(~several & ~found)
+        known = known[np.argsort(points[known, 0], kind="stable")]
+        near_by = _FAR * np.sqrt(np.ptp(points[:, 0]) * np.ptp(points[:, 1]) / len(points))
+        along = points[known, 0]
+        wrong, beside = [], set()
+        for number in tried:
+            near = _nearest(points, known, along, number, near_by)
+            own, other = _off(points, row, near, number)
+            if own > (other if several[number] else max(tolerated, _BETTER * other)):
+                wrong.append(number)
+                beside.update(near.tolist())
+        found[wrong] = True
+        tried = sorted(number for number in beside if not found[number])
+    return found
+
+
+def _nearest(
+    points: np.ndarray, known: np.ndarray, along: np.ndarray, number: int, near_by: float
+) -> np.ndarray:
+    """(K,) of some points, ordered by x, `along`, the 16 nearest in plan to another one, nearest first.
+    near_by: a distance within which they mostly are."""
+    place = points[number, :2]
+    begin, end = np.searchsorted(along, (place[0] - near_by, place[0] + near_by))
+    for some in (known[begin:end], known):
+        away = ((points[some, :2] - place) ** 2).sum(axis=1)
+        away[some == number] = np.inf
+        order = np.lexsort((some, away))[:_LOOKED_AT]
+        if len(order) == _LOOKED_AT and away[order[-1]] <= near_by**2:
+            break
+    return some[order]
+
+
+def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:
+    """The difference of a point's height from its neighbors on its own side, and from those on the other side
+    that fits best; 0 and infinite where there are none."""
+    off = {
+        int(side): abs(float(points[near[row[near] == side][:_COUNTED], 2].mean() - points[number, 2]))
+        for side in np.unique(row[near])
+    }
+    own = off.pop(int(row[number]), 0.0)
+    return own, min(off.values(), default=np.inf)

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sheets of a surface in all compartments: from its own data where these are enough, else from the sheet
+of a neighbor, shifted by the throw of the fault between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.build_warning import BuildWarning
+from ...base.errors import InputRefused
+from ...project.project import Rock, surface_item
+from ...surfaces.surface_heights import named_surfaces, needed_surfaces
+from .borrowed import between_faults
+from .families import Family, around_tips, families
+from .interpolated_sheets import InterpolatedSurface
+from .ready_sheets import ReadyMesh
+from .throws import FEW, OWN, TAKEN, UNKNOWN, Sheets, Shift, Throws
+
+
+class CompartmentSheets:
+    """The sheets of surface `number` of a RockInput with faults, family by family. surface: its data.
+
+    Raises InputRefused for a surface that has data in no compartment."""
+
+    def __init__(self, entry, number: int, surface: InterpolatedSurface | ReadyMesh):
+        self.entry, self.number, self.surface = entry, number, surface
+        self.every = families(entry.structure, number)
+        self.with_data = [family for family in self.every if surface.has_data(family)]
+        if not self.with_data:
+            raise InputRefused(
+                f"its {surface.data} lie in no compartment of the rock mass",
+                advice="check the coordinates of the surface and of the faults",
+            )
+        few: list[Family] = []
+        if len(self.every) > 1:
+            few = [family for family in self.with_data if surface.has_few_data(family)]
+        self.few = {family.key for family in few}
+        # where no other compartment shows more, few are enough
+        self.own = [f for f in self.with_data if f.key not in self.few] or self.with_data
+        self.made: dict[tuple[int, ...], Sheets] = {}
+        self.told: set[tuple[int, ...]] = set()
+        self.waited: set[tuple[int, ...]] = set()
+
+    @property
+    def waiting(self) -> list[Family]:
+        return [family for family in self.every if family.key not in self.made]
+
+    def make_own(self) -> bool:
+        """Makes the sheets that its own data are enough for, once the surfaces that it needs are finished.
+        Returns whether there were any."""
+        own = [family for family in self.own if family.key not in self.made]
+        if not own or not self._is_ready():
+            return False
+        with named(self.entry.rock, self.number):
+            self.made |= {family.key: self.surface.sheets(family) for family in own}
+        return True
+
+    def tell(self, throws: Throws) -> None:
+        """Tells of all its sheets, and of those that only wait for the older surface from which they are to
+        keep a minimum thickness: without it."""
+        for family in self.every:
+            if family.key in self.made and family.key not in self.told:
+                self._tell(family, self.made[family.key], throws)
+        rock = self.entry.rock
+        if not self._is_ready() and self._is_ready(named_surfaces(rock, self.number).values()):
+            assert isinstance(self.surface, InterpolatedSurface)  # a ready mesh waits for no surface
+            free = self.surface.without_thickness()
+            for family in self.own:
+                if family.key not in self.waited:
+                    self.waited.add(family.key)
+                    throws.tell(self.number, family, free.sheets(family), self._rank(family))
+
+    def neighbors(self, family: Family, throws: Throws) -> list[Source]:
+        """From which families across one fault one without enough data may take its sheets now: those where
+        the throw is known best; where it is not known the one with most data."""
+        if family in self.own or not self._is_ready():
+            return []
+        found = []
+        for source in sorted(self.every, key=self._amount, reverse=True):
+            fault = throws.fault_between(source, family) if source.key in self.made else None
+            if fault is not None:
+                found.append(Source(source, fault, throws.shift(self.number, fault, source, family)))
+        best = min((source.rank for source in found), default=UNKNOWN)
+        return [source for source in found if source.rank == best][: 1 if best == UNKNOWN else None]
+
+    def borrow(self, family: Family, sources: list[Source], throws: Throws) -> None:
+        """Makes the sheets of a family from those of others, the first of which has most data."""
+        taken = [self._from(source, family, throws) for source in sources]
+        trends = taken[0]
+        if len(taken) > 1:
+            shapes = self.entry.structure.faults.shapes
+            faults = []
+            for source in sources:  # several are taken over only by their throws
+                assert source.shift is not None and source.fault is not None
+                side = source.family.key[source.fault]
+                faults.append((source.shift.places, shapes[source.fault], side))
+            trends = {
+                sides: between_faults(throws.work, [each[sides] for each in taken], faults, throws.threads)
+                for sides in trends
+            }
+            self.surface.adopt(trends, taken[0])
+        with named(self.entry.rock, self.number):
+            trends = _drawn_together(self.surface, family, trends)
+            self.made[family.key] = self.surface.sheets(family, trends)
+        self.entry.structure.warnings.append((list(family.members), self._warning(family, sources)))
+
+    def _from(self, source: Source, family: Family, throws: Throws) -> Sheets:
+        """The sheets of another family by the sides of this one, whose faults that die out may differ."""
+        sheets = self.made[source.family.key]
+        first = next(iter(sheets.values()))
+        taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
+        if source.shift is not None and source.fault is not None:
+            found = throws.by_thickness(self.number, source.shift, source.fault, source.family, family, taken)
+        elif source.fault is not None:
+            found = self.surface.continued(taken, family, source.family, source.fault)
+        else:
+            return taken
+        self.surface.adopt(found, taken)
+        return found
+
+    def make_last(self, throws: Throws) -> None:
+        """Makes the sheets of families that are across one fault from none with sheets: from the few points,
+        or as the family with most data."""
+        if not self._is_ready():
+            return
+        most = max((family for family in self.every if family.key in self.made), key=self._amount)
+        for family in self.waiting:
+            if family.key in self.few:
+                self.made[family.key] = self.surface.sheets(family)
+            else:
+                self.borrow(family, [Source(most)], throws)
+
+    def _amount(self, family: Family) -> tuple:
+        """By which families are compared: how many data they have."""
+        return self.surface.count(family), family.key
+
+    def finish(self) -> None:
+        """Gives the compartments the sheets, once all are made; those beyond tips are drawn together."""
+        structure, number = self.entry.structure, self.number
+        for family in self.every:
+            for compartment, sides in family.members.items():
+                structure.sheets[compartment][number] = self.made[family.key][sides]
+        for together in around_tips(structure, number, self.every):
+            sheets = {sides: structure.sheets[each][number] for each, sides in together.members.items()}
+            drawn = _drawn_together(self.surface, together, sheets)
+            for compartment, sides in together.members.items():
+                structure.sheets[compartment][number] = drawn[sides]
+        self.surface.finish(structure.distinct(number))
+
+    def _is_ready(self, others: Iterable[int] | None = None) -> bool:
+        """Whether the surfaces that this one needs, or some others, are finished."""
+        rock = self.entry.rock
+        if not rock.surfaces[self.number].interpolated:
+            return True
+        needed = needed_surfaces(rock, self.number) if others is None else others
+        return all(self.entry.structure.sheets[0][other] is not None for other in needed)
+
+    def _tell(self, family: Family, sheets: Sheets, throws: Throws) -> None:
+        self.told.add(family.key)
+        throws.tell(self.number, family, sheets, self._rank(family))
+
+    def _rank(self, family: Family) -> int:
+        if family.key in self.few:
+            return FEW
+        return OWN if family in self.own else TAKEN
+
+    def _warning(self, family: Family, sources: list[Source]) -> BuildWarning:
+        structure, rock = self.entry.structure, self.entry.rock
+        names = [structure.names[next(iter(each.members))] for each in (family, *(s.family for s in sources))]
+        here, *there = (f"'{name}'" for name in names)
+        if family.key in self.few:
+            count = self.surface.count(family)
+            text = (
+                f"its {count} point{'s' if count > 1 else ''} in compartment {here}, too few or on one line, "
+            )
+            text += f"are interpolated on the sheet of compartment {' and '.join(there)}"
+        else:
+            text = f"it has no {self.surface.data} in compartment {here}: there it goes on as in compartment "
+            text += " and ".join(there)
+        for source in sources:
+            fault = "" if source.fault is None else f"fault '{structure.faults.names[source.fault]}'"
+            if source.shift is not None:
+                others = " and ".join(f"'{rock.surfaces[each].name}'" for each in source.shift.surfaces)
+                text += f", shifted {_moved(source.shift)}, the throw of {fault} in {others}"
+            elif fault:
+                text += f", shifted by 0, as no other surface shows the throw of {fault} there"
+            else:
+                text += ", shifted by 0, as no single fault is between them"
+        return BuildWarning(text, "compartment", rock.name, rock.surfaces[self.number].name)
+
+
+@dataclass(frozen=True)
+class Source:
+    """A family whose sheets another one takes over, across a fault; shift: by its throw, None where that is
+    not known."""
+
+    family: Family
+    fault: int | None = None
+    shift: Shift | None = None
+
+    @property
+    def rank(self) -> int:
+        return UNKNOWN if self.shift is None else self.shift.rank
+
+
+def make_borrowed(
+    unfinished: list[CompartmentSheets], throws: Throws, finish: Callable[[CompartmentSheets], None]
+) -> None:
+    """Makes the sheets of all families without enough data: first those of which the throw is known best. A
+    family may be reached through others. finish: is called with each surface whose sheets are all made."""
+    while unfinished:
+        own = [each for each in unfinished if each.make_own()]
+        for each in unfinished:
+            each.tell(throws)
+        if not own:
+            found = [
+                (each, family, each.neighbors(family, throws))
+                for each in unfinished
+                for family in each.waiting
+            ]
+            found = [(each, family, sources) for each, family, sources in found if sources]
+            best = min((sources[0].rank for _, _, sources in found), default=UNKNOWN)
+            for each, family, sources in found:
+                if sources[0].rank == best:
+                    each.borrow(family, sources, throws)
+            if not found:
+                for each in unfinished:
+                    each.make_last(throws)
+        for each in unfinished:
+            if not each.waiting:
+                each.tell(throws)
+                finish(each)
+        unfinished = [each for each in unfinished if each.waiting]
+
+
+@contextmanager
+def named(rock: Rock, number: int):
+    """Within it errors name a surface of a rock mass."""
+    try:
+        yield
+    except InputRefused as error:
+        if error.item is not None and error.item.startswith("rock '"):
+            raise
+        surface = rock.surfaces[number]
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
+
+
+def _moved(shift: Shift) -> str:
+    """By how much a sheet is shifted along a fault."""
+    along = shift.at(shift.middles) + 0.0  # no -0
+    low, high = float(along.min()), float(along.max())
+    if low == high == 0:
+        return "by 0"
+    if low < 0 < high:
+        return f"by {low:.4g} to {high:.4g}"
+    way, low, high = ("up", low, high) if high > 0 else ("down", abs(high), -low)
+    amounts = dict.fromkeys((f"{low:.4g}", f"{high:.4g}"))
+    return f"{way} by {' to '.join(amounts)}"
+
+
+def _drawn_together(surface, family: Family, sheets: Sheets) -> Sheets:
+    """Sheets by sides, equal beyond the tips; the same ones where they were."""
+    drawn = surface.drawn_together(family, sheets)
+    return {
+        sides: sheet if np.array_equal(drawn[sides][0], sheet[0]) else drawn[sides]
+        for sides, sheet in sheets.items()
+    }

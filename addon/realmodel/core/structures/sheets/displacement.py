@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Throw and heave: the displacement of surfaces along each fault."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...base.algebra import dot, norm
+from ...base.triangles import nearest_triangles, unit_normals
+from ...base.work import Work, run
+from ...surfaces.rock_structure import RockStructure
+from ...surfaces.sides import FaultShape, fault_sides
+from .cutoffs import Cutoff, cutoff_of
+from .tips import precision_of
+from .within import box_of, parts_of_lines, walls_of
+
+_LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
+_NOTHING = np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0)
+_AT_ONCE = 1 << 21  # pairs of a place and a segment
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Of one surface along one fault, at places (N, 3) on the cutoff line of its sheet below the fault: throw
+    and heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault,
+    negative at a reverse one. Heave is how far its edge is from that of the lower side in plan. Both are
+    measured across the fault: in the vertical plane through the place and the direction in which the fault
+    dips there. length: (N,) of the part of the cutoff line that each place is the middle of."""
+
+    fault: str
+    rock: str
+    surface: str
+    places: np.ndarray
+    throw: np.ndarray
+    heave: np.ndarray
+    length: np.ndarray
+
+    @property
+    def mean_throw(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.throw, self.length)
+
+    @property
+    def mean_heave(self) -> float:
+        """Along the cutoff line."""
+        return _mean(self.heave, self.length)
+
+
+def _mean(values: np.ndarray, length: np.ndarray) -> float:
+    return float((values * length).sum() / length.sum())
+
+
+def displacements(model) -> list[Displacement]:
+    """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
+    if model.structures is None:
+        return []
+    return run(lambda work: _displacements(work, model))
+
+
+def _displacements(work: Work, model) -> list[Displacement]:
+    found = []
+    for number, fault in enumerate(model.structures.faults):
+        for entry in model.rock_inputs:
+            structure = entry.structure
+            if number not in structure.faults.numbers:
+                continue
+            at = structure.faults.numbers.index(number)
+            for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
+                measured = _Measured(work, structure, at, k, model.threads).everywhere()
+                if len(measured[0]):
+                    name = entry.rock.surfaces[k].name
+                    found.append(Displacement(fault.name, entry.rock.name, name, *measured))
+    return found
+
+
+class _Places:
+    """The middles of the parts of a cutoff line that other faults leave.
+
+    points: (N, 3); sides: (N, F) int8, of those faults; inward: (N, 2), as of the cutoff; length: (N,);
+    across: (N, 2), the level direction in which the fault dips, of length 1."""
+
+    def __init__(self, cutoff: Cutoff, shape: FaultShape, walls: np.ndarray, sides_of: Callable):
+        begin, end = cutoff.ends.transpose(1, 0, 2)
+        line, shares = parts_of_lines(begin, end, walls)
+        along = (end - begin)[line]
+        points = begin[line] + shares.mean(axis=1)[:, None] * along
+        length = (shares[:, 1] - shares[:, 0]) * norm(along)
+        corners = shape.vertices[shape.triangles]
+        reach = norm(along) + 2 * precision_of(shape)  # the ends of each segment are on the fault
+        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)[0]]
+        level = norm(normals[:, :2])
+        steep = level > _LEVEL
+        self.points, self.length = points[steep], length[steep]
+        self.inward = cutoff.inward[line][steep]
+        self.across = normals[steep, :2] / level[steep, None]
+        self.sides = sides_of(self.points)
+
+
+def throws_between(
+    work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int, threads: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
+    return _Measured(work, structure, fault, surface, threads).between(below, above)[:2]
+
+
+class _Measured:
+    """Measures the displacement of one surface by one fault."""
+
+    def __init__(self, work: Work, structure: RockStructure, fault: int, surface: int, threads: int):
+        self.work, self.structure, self.fault, self.threads = work, structure, fault, threads
+        active = structure.faults.active(surface)
+        self.others = [other for other in np.flatnonzero(active) if other != fault]
+        self.rows = np.where(active, structure.compartments, 0)
+        self.sheets = [sheets[surface] for sheets in structure.sheets]
+        self.cutoffs: dict[tuple[int, int], Cutoff] = {}
+        self.lower: dict[int, _Places] = {}
+
+    def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """places (N, 3), throw, heave and length (N,)."""
+        parts = [_NOTHING, *(self.between(*pair) for pair in self._pairs())]
+        places, throw, heave, length = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return places, throw, heave, length
+
+    def _pairs(self) -> list[tuple[int, int]]:
+        """Compartments on the two sides of the fault, and on one side of each other that is on both sides of
+        it; one of those that only faults part which do not displace the surface."""
+        rows = self.rows
+        pairs: dict[tuple[int, ...], tuple[int, int]] = {}
+        for below in np.flatnonzero(rows[:, self.fault] < 0).tolist():
+            for above in np.flatnonzero(rows[:, self.fault] > 0).tolist():
+                same = (rows[below] == rows[above]) | (rows[below] == 0) | (rows[above] == 0)
+                same[self.fault] = True
+                if same.all():
+                    pairs.setdefault((*rows[below].tolist(), *rows[above].tolist()), (below, above))
+        return list(pairs.values())
+
+    def between(self, below: int, above: int):
+        """As everywhere, of two compartments."""
+        upper = self._cutoff(above, 1)
+        if not (len(upper.ends) and len(self._cutoff(below, -1).ends)):
+            return _NOTHING
+        places = self._places(below)
+        place, points = _across(places, self._are_within(below, places.sides), upper)
+        inside = self._are_within(above, self._sides(points))
+        place, points = place[inside], points[inside]
+        away = points - places.points[place]
+        order = np.lexsort((dot(away, away), place))
+        place, away = place[order], away[order]
+        is_nearest = np.diff(place, prepend=-1) != 0
+        place, away = place[is_nearest], away[is_nearest]
+        heave = np.abs(dot(away[:, :2], places.across[place]))
+        return places.points[place], -away[:, 2], heave, places.length[place]
+
+    def _cutoff(self, compartment: int, side: int) -> Cutoff:
+        sheet, shape = self.sheets[compartment], self.structure.faults.shapes[self.fault]
+        key = id(sheet), side
+        if key not in self.cutoffs:
+            assert sheet is not None  # displacements are asked for of sheets that are made
+            self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side, self.threads)
+        return self.cutoffs[key]
+
+    def _places(self, compartment: int) -> _Places:
+        """On the cutoff line of a sheet below the fault."""
+        key = id(self.sheets[compartment])
+        if key not in self.lower:
+            shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
+            walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))
+            self.lower[key] = _Places(cutoff, shapes[self.fault], walls, self._sides)
+        return self.lower[key]
+
+    def _sides(self, points: np.ndarray) -> np.ndarray:
+        """(N, F) int8 of the other faults."""
+        shapes = self.structure.faults.shapes
+        sides = [fault_sides(self.work, points, shapes[other], self.threads) for other in self.others]
+        return np.array(sides, np.int8).reshape(len(self.others), len(points)).T
+
+    def _are_within(self, compartment: int, sides: np.ndarray) -> np.ndarray:
+        """(N,) bool of points with these sides of the other faults."""
+        wanted = self.rows[compartment, self.others]
+        return ((sides == wanted) | (wanted == 0)).all(axis=1)
+
+
+def _across(places: _Places, some: np.ndarray, upper: Cutoff) -> tuple[np.ndarray, np.ndarray]:
+    """Where the vertical planes across the fault, through some places (N,) bool, meet the cutoff line above
+    it: the places' numbers (K,) and points (K, 3).
+
+    The sheets on both sides lie on opposite sides of their cutoff lines. So where a fold or a low dip makes
+    them meet the fault more than once, these are not taken for one another.
+    """
+    begin, end = upper.ends.transpose(1, 0, 2)
+    numbers, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
+    given, count = np.flatnonzero(some), max(1, _AT_ONCE // max(1, len(begin)))
+    for start in range(0, len(given), count):
+        part = given[start : start + count]
+        across = places.across[part]
+        along = np.column_stack([-across[:, 1], across[:, 0]])
+        own = dot(along, places.points[part, :2])[:, None]
+        first, last = (_products(along, each) - own for each in (begin, end))
+        inward = dot(across, places.inward[part])[:, None] * _products(across, upper.inward)
+        row, segment = np.nonzero((first * last <= 0) & (first != last) & (inward < 0))
+        share = first[row, segment] / (first[row, segment] - last[row, segment])
+        numbers.append(part[row])
+        points.append(begin[segment] + share[:, None] * (end - begin)[segment])
+    return np.concatenate(numbers), np.concatenate(points)
+
+
+def _products(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(N, M) of vectors in plan, (N, 2) and (M, 2 or 3)."""
+    return one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1]

@@ -1,0 +1,434 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sheets of a surface that is interpolated from points, on the planar mesh of its rock mass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.build_warning import BuildWarning
+from ...base.errors import place_text
+from ...base.triangles import median_edge
+from ...base.work import Work
+from ...heights.mis_ties import contradictions, mean_heights
+from ...heights.on_mesh import BOUNDS
+from ...heights.run import few_points, runs_away
+from ...settings.methods import METHODS
+from ...surfaces.local_heights import is_local
+from ...surfaces.rock_structure import Triangulation
+from ...surfaces.sides import fault_sides, sides_of
+from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
+from ...surfaces.wrong_sides import heights_at
+from .beyond_faults import beyond_faults
+from .borrowed import as_at_fault, sheet_runs_away
+from .families import Family, keys_of
+from .few_points import are_few, of_residuals
+from .lips import Lip, beyond_lips
+from .near_rows import near_rows
+from .points_at_faults import placed_warning, point_sides
+from .throws import Sheets
+from .tips import shared, trace_of, with_equal_ends
+from .within import Within
+
+_RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
+
+
+class InterpolatedSurface:
+    """One surface of a RockInput whose points lie in compartments. `data`: what its sheets are made of."""
+
+    data = "points"
+
+    def __init__(self, work: Work, entry, number: int, threads: int):
+        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+        self.surface = entry.rock.surfaces[number]
+        self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
+        structure = entry.structure
+        self.placed = point_sides(work, self.points, entry, number, threads)
+        structure.points[number] = self.placed.sides
+        names = structure.faults.names
+        warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
+        if warning is not None:
+            structure.warnings.append((list(range(len(structure.compartments))), warning))
+        self._leave_out_contradictions()
+        self.counts = self._that_count()
+        self.keys = keys_of(entry.structure, number, self.placed.sides)
+        self.made: dict[
+            int, tuple
+        ] = {}  # the interpolation and the diagnostics of its vertices, by the id of a sheet
+        self.most = (-1, None)
+
+    def _leave_out_contradictions(self) -> None:
+        """Leaves out points that others at their place in plan contradict, with a warning."""
+        faults = self.entry.structure.faults
+        rows = np.where(faults.active(self.number), self.placed.sides, 0)
+        beyond = beyond_faults(self.points, rows)
+        wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
+        left_out = beyond.copy()
+        left_out[np.flatnonzero(~beyond)[wrong]] = True
+        if left_out.all() or not left_out.any():
+            return
+        first = self.points[np.flatnonzero(left_out)[0]]
+        text = (
+            f"{int(left_out.sum())} of its {len(left_out)} points are left out, one at {place_text(first)}: "
+            "others straight above or below them fit this side of the faults better; mostly picks of the "
+            "other side reach beyond a fault there"
+        )
+        warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+        every = list(range(len(self.entry.structure.compartments)))
+        self.entry.structure.warnings.append((every, warning))
+        self.points, self.placed = self.points[~left_out], self.placed.some(~left_out)
+
+    def _that_count(self) -> np.ndarray:
+        """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
+        if METHODS[self.surface.method_options()[0]].on_mesh:
+            nodes, triangles = self.entry.region
+            level = np.column_stack([nodes, np.zeros(len(nodes))])
+            over = np.isfinite(heights_at(self.work, (level, triangles), self.points[:, :2], self.threads))
+            if over.any():
+                self.data = "points on the mesh"
+                return over
+        return np.ones(len(self.points), bool)
+
+    def own(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points in its compartments."""
+        return (self.keys == family.key).all(axis=1)
+
+    def count(self, family: Family) -> int:
+        return int(self._certain(family).sum())
+
+    def has_data(self, family: Family) -> bool:
+        return not self.surface.needs_points or bool((self.own(family) & self.counts).any())
+
+    def has_few_data(self, family: Family) -> bool:
+        """Whether its points do not show its shape there."""
+        if not self.surface.needs_points:
+            return False
+        points = self.points[self._certain(family)]
+        return len(points) == 0 or are_few(self.surface, points, self.entry.region[0], self._within(family))
+
+    def _certain(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
+        points of the other side are theirs."""
+        return self.own(family) & self.counts & ~self.placed.moved.any(axis=1)
+
+    def without_thickness(self) -> InterpolatedSurface:
+        """The same surface without its minimum thickness, for which the older one need not be known."""
+        other = copy(self)
+        other.surface = replace(self.surface, minimum_thickness=None)
+        surfaces = list(self.entry.rock.surfaces)
+        surfaces[self.number] = other.surface
+        other.entry = replace(self.entry, rock=replace(self.entry.rock, surfaces=surfaces))
+        return other
+
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family, across a fault, for this one: as its method continues them, or with the
+        heights that they have at the fault, where they would run away, or the points of this family agree
+        better with that."""
+        shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
+        within, points = self._within(family), self.points[self._certain(family)]
+        found: dict[int, Triangulation] = {}
+        for sheet in sheets.values():
+            if id(sheet) in found:
+                continue
+            found[id(sheet)] = sheet
+            level = as_at_fault(self.work, sheet, shape, side, self.threads)
+            if level is None:
+                continue
+            if len(points):
+                is_level = self._spread(points, level) < self._spread(points, sheet)
+            else:
+                known = fault_sides(self.work, sheet[0], shape, self.threads) == side
+                is_level = sheet_runs_away(sheet, known, within)
+            if is_level:
+                found[id(sheet)] = level
+        return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
+
+    def _spread(self, points: np.ndarray, sheet: Triangulation) -> float:
+        """How different the heights of points (P, 3) above a sheet are."""
+        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
+        off = off[np.isfinite(off)]
+        return float(off.std()) if len(off) else 0.0
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own, for which what is known of these holds, too."""
+        for sides, sheet in sheets.items():
+            self.made[id(sheet)] = (*self.made[id(others[sides])][:2], sheet)
+
+    def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
+        points are few or none."""
+        own = self.own(family) if trends is None else self._certain(family)
+        if trends is not None and not own.any():
+            return self._within_bounds(family, trends)
+        first = next(iter(family.members.values()))
+        trend = None if trends is None else trends[first]
+        common = self._interpolated(family, first, own, trend=trend)
+        if not own.any() and not needed_surfaces(self.entry.rock, self.number):
+            return dict.fromkeys(family.members.values(), common)
+        faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
+        nodes, triangles = self.entry.region
+        z = self._on_nodes(common)
+        known = np.isfinite(z)
+        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        flat = np.column_stack([nodes, np.where(known, z, 0.0)])
+        traces = [
+            trace_of(self.work, (flat, meshed), fault, self._within(family), self.threads) for fault in faults
+        ]
+        met = [number for number, trace in enumerate(traces) if len(trace.points)]
+        if not met:
+            return dict.fromkeys(family.members.values(), common)
+        met = family.with_ends(met, self.entry.structure.faults)
+        hidden = {
+            (number, side): own
+            & (self.placed.sides[:, family.dying[number]] == -side)
+            & traces[number].beside(self.points[:, :2])
+            for number in met
+            for side in (-1, 1)
+        }
+        of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
+        settled = _settled(self.surface, self.made[id(common)][0])
+        counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
+        whole_of: dict[tuple[int, ...], np.ndarray] = {}
+
+        def values_of(sides: tuple[int, ...], some: np.ndarray) -> np.ndarray:
+            away = np.zeros(len(own), bool)
+            for number, side in zip(met, sides, strict=True):
+                if side:
+                    away |= hidden[number, side]
+            visible = own & ~away
+            visible = visible if (visible & self.counts).any() else own
+            lips = [
+                Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
+                for number, side in zip(met, sides, strict=True)
+                if side
+            ]
+            if counts_by_node:
+                return self._values_at(family, self._points(family, visible, lips), settled, nodes[some])
+            if sides not in whole_of:
+                whole = list(first)
+                for number, side in zip(met, sides, strict=True):
+                    whole[number] = side
+                trend = None if trends is None else trends[of_members[sides]]
+                sheet = self._interpolated(family, tuple(whole), visible, settled, trend, lips)
+                whole_of[sides] = self._values_on_nodes(sheet)
+            return whole_of[sides][some]
+
+        values = near_rows(
+            self.work,
+            nodes,
+            meshed,
+            self._values_on_nodes(common),
+            [faults[number] for number in met],
+            sorted(of_members),
+            values_of,
+            self.threads,
+        )
+        found = self._with_equal_ends(family, met, values, meshed, self.made[id(common)][0])
+        return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
+
+    def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
+        """Sheets without points, within the bounds of the surface."""
+        settings = self.surface.method_options()[1]
+        is_bounded = any(settings.get(option) is not None for option in BOUNDS)
+        if self.surface.minimum_thickness is None and not is_bounded:
+            return trends
+        none = np.zeros(len(self.points), bool)
+        return shared({s: self._interpolated(family, s, none, trend=trend) for s, trend in trends.items()})
+
+    def drawn_together(self, family: Family, sheets: dict) -> Sheets:
+        """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
+        if len({id(sheet) for sheet in sheets.values()}) == 1:
+            return sheets
+        _, triangles = self.entry.region
+        values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
+        known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
+        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        result = self.made[id(next(iter(sheets.values())))][0]
+        return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
+
+    def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
+        """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
+        of some of the faults that die out. result: the interpolation that is known of them."""
+        nodes, triangles = self.entry.region
+        shapes = self.entry.structure.faults.shapes
+        faults = [family.dying[number] for number in some]
+        ramp = _RAMP * median_edge(nodes, triangles)
+        equal = with_equal_ends(
+            self.work,
+            nodes,
+            meshed,
+            {sides: np.ascontiguousarray(of[:, 0]) for sides, of in values.items()},
+            [shapes[fault] for fault in faults],
+            self._within(family),
+            [0.0 if fault in family.settled else ramp for fault in faults],
+            self.threads,
+        )
+        found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
+        for sides, sheet in found.items():
+            known = np.isfinite(equal[sides])[triangles].all(axis=1)
+            its = values[sides][used_vertices(nodes, triangles[known])]
+            self.made[id(sheet)] = (result, {"variance": its[:, 1], "distance": its[:, 2]}, sheet)
+        return found
+
+    def _interpolated(
+        self,
+        family: Family,
+        sides: tuple[int, ...],
+        own: np.ndarray,
+        surface=None,
+        trend: Triangulation | None = None,
+        lips: Sequence[Lip] = (),
+    ) -> Triangulation:
+        """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
+        other options. trend: a sheet that was made here, on which the points are interpolated. lips: at
+        faults that die out here, of these points."""
+        points = self._points(family, own, None if trend is not None else lips)
+        one = self._from_points(family, sides, points, surface or self.surface, self.entry.region, trend)
+        sheet = one.surfaces[self.number]
+        result = one.interpolations[self.number]
+        # the sheet itself is kept, too: so no other gets its id
+        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
+        if trend is None and own.sum() > self.most[0]:
+            self.most = (int(own.sum()), result)
+        for warning in one.warnings:
+            self.entry.structure.warn(list(family.members), warning)
+        return sheet
+
+    def _points(self, family: Family, own: np.ndarray, lips: Sequence[Lip] | None) -> np.ndarray:
+        """(P, 3) some points as they count: the mean of heights on several sides of faults that die out, at
+        one place; and others beyond the faults at which the sheet ends, for a method that needs them. lips:
+        as of _interpolated; None: without those beyond."""
+        points = mean_heights(self.points[own]) if family.dying else self.points[own]
+        return points if lips is None else np.concatenate([points, self._beyond(family, own, lips)])
+
+    def _from_points(self, family: Family, sides, points: np.ndarray, surface, region, trend=None):
+        """The RockInput with the surface from points (P, 3) on the mesh of a region, and warnings."""
+        entry = self.entry
+        surfaces = list(entry.rock.surfaces)
+        surfaces[self.number] = replace(surface, points=points)
+        if self.surface.minimum_thickness is not None:
+            surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
+        shapes: list[Triangulation | None] = [None] * len(surfaces)
+        for other in needed_surfaces(entry.rock, self.number):
+            shapes[other] = self._as_seen(family, sides, other)
+        one = replace(
+            entry,
+            rock=replace(entry.rock, surfaces=surfaces),
+            region=region,
+            surfaces=shapes,
+            interpolations=[None] * len(surfaces),
+            warnings=[],
+            attributes={},
+            structure=None,
+        )
+        give_heights(self.work, one, self.number, self.threads, trend and self._trend(trend))
+        return one
+
+    def _counts_by_node(self, surface) -> bool:
+        """Whether heights at some nodes do not depend on others, so that these need not be found."""
+        settings = surface.method_options()[1]
+        return (
+            is_local(surface)
+            and self.entry.draws is None
+            and settings.get("extrapolate") != "none"
+            and settings.get("neighbours") != 0  # all points are one system, whatever the nodes
+            and not needed_surfaces(self.entry.rock, self.number)
+        )
+
+    def _values_at(self, family: Family, points: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
+        """As _values_on_nodes, at some nodes alone, from points (P, 3), of a surface that counts by node."""
+        region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
+        one = self._from_points(family, (), points, surface, region)
+        result = one.interpolations[self.number]
+        for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
+            warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+            self.entry.structure.warn(list(family.members), warning)
+        return np.column_stack([result.z, *one.attributes[self.number].values()])
+
+    def _values_on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
+        none."""
+        z = self._on_nodes(sheet)
+        found = np.full((len(z), 3), np.nan)
+        found[:, 0] = z
+        attributes = self.made[id(sheet)][1]
+        found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
+        return found
+
+    def _trend(self, sheet: Triangulation) -> Trend:
+        interpolation, attributes, _ = self.made[id(sheet)]
+        by = of_residuals(self.surface)
+        return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
+
+    def _beyond(self, family: Family, own: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
+        """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
+        points, shapes = self.points[own], self.entry.structure.faults.shapes
+        whole = np.ones(len(points), bool)
+        parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
+        lips, options = [*parting, *lips], self.surface.method_options()
+        return beyond_lips(self.work, points, lips, self.placed.reach, *options)
+
+    def _with_own_points(self, family: Family, surface):
+        """Another surface with only its points in the family's compartments."""
+        if surface.points is None:
+            return surface
+        points = np.asarray(surface.points, np.float64).reshape(-1, 3)
+        placed = point_sides(self.work, points, self.entry, self.number, self.threads)
+        return replace(surface, points=points[self._within(family).has(placed.sides)])
+
+    def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
+        """Another surface in some compartments. Where faults displace it that this one ignores, each node of
+        the planar mesh gets the height of the compartment in which the other surface lies there."""
+        structure = self.entry.structure
+        members = [each for each, its in family.members.items() if its == sides] or list(family.members)
+        different = {id(structure.sheets[each][other]): structure.sheets[each][other] for each in members}
+        if len(different) == 1:
+            return next(iter(different.values()))
+        nodes, triangles = self.entry.region
+        chosen = np.full(len(nodes), np.nan)
+        total, known = np.zeros(len(nodes)), np.zeros(len(nodes))
+        for number, sheet in different.items():
+            z = self._on_nodes(sheet)
+            there = np.isfinite(z)
+            total[there] += z[there]
+            known += there
+            at = np.column_stack([nodes, np.where(there, z, 0.0)])
+            rows = sides_of(self.work, at, structure.faults, self.threads)
+            its = [each for each in members if id(structure.sheets[each][other]) == number]
+            inside = (rows[:, None] == structure.compartments[its]).all(axis=2).any(axis=1)
+            chosen = np.where(there & inside & np.isnan(chosen), z, chosen)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            heights = np.where(np.isnan(chosen), total / known, chosen)
+        return where_known(nodes, triangles, heights)
+
+    def _on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N,) heights of a sheet at the nodes of the planar mesh; NaN where it has none."""
+        nodes, _ = self.entry.region
+        if len(sheet[0]) == len(nodes) and np.array_equal(sheet[0][:, :2], nodes):
+            return sheet[0][:, 2]
+        return heights_at(self.work, sheet, nodes, self.threads)
+
+    def _within(self, family: Family) -> Within:
+        return Within(self.work, self.entry.structure, self.number, family, self.threads)
+
+    def finish(self, sheets: list[Triangulation]) -> None:
+        """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex
+        attributes, to those of all sheets."""
+        found = [self.made[id(sheet)][1] for sheet in sheets]
+        self.entry.interpolations[self.number] = self.most[1]
+        self.entry.attributes[self.number] = {
+            name: np.concatenate([each[name] for each in found]) for name in ("variance", "distance")
+        }
+
+
+def _settled(surface, found):
+    """The surface with the variogram that was found once: so the two sides of a fault have the same."""
+    variogram = found.variogram
+    if variogram is None or not variogram.fitted:
+        return surface
+    options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
+    options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
+    return replace(surface, method=found.method, options=options)

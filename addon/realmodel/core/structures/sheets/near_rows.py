@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of sides of faults that die out, each with the heights that count near its compartment alone.
+
+Twelve faults that overlap in plan leave some hundred rows, but at one node few of them are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ...base.work import Work, native_module
+from ...surfaces.sides import FaultShape, fault_sides
+
+_RINGS = 2  # of triangles around those in which a compartment is
+
+
+def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """(N,) bool: some nodes, and those that share a triangle with one of them."""
+    found = nodes.copy()
+    found[triangles[nodes[triangles].any(axis=1)]] = True
+    return found
+
+
+def triangles_met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
+    """(T,) uint8: the triangles that a fault touches, 1, or passes, 2, beyond its ends, between two
+    heights."""
+    triangles = np.ascontiguousarray(triangles)
+    return work.native(
+        native_module().structure_beyond, fault.native(), low, high, triangles, threads=threads
+    )
+
+
+def near_rows(
+    work: Work,
+    plan: np.ndarray,
+    triangles: np.ndarray,
+    common: np.ndarray,
+    faults: Sequence[FaultShape],
+    rows: Sequence[tuple[int, ...]],
+    values_of: Callable[[tuple[int, ...], np.ndarray], np.ndarray],
+    threads: int = 0,
+) -> dict[tuple[int, ...], np.ndarray]:
+    """Values (N, C) at nodes (N, 2), first of all heights, of each row of sides: its own where its
+    compartment may be at some height that a row has there, those in `common` elsewhere.
+
+    common: (N, C), what is seen without regard to the faults; NaN where it has no height. rows: the sides of
+    each fault, 0 where it is not. values_of: (K, C) of one row at some nodes, (N,) bool, K of them; it is
+    asked for no node twice.
+    """
+    found = {sides: common.copy() for sides in rows}
+    asked = {sides: np.zeros(len(plan), bool) for sides in rows}
+    on = {(number, side): np.zeros(len(plan), bool) for number in range(len(faults)) for side in (-1, 1)}
+    low, high = common[:, 0].copy(), common[:, 0].copy()
+    wider = np.isfinite(low)
+    while wider.any():
+        _add_sides(work, plan, triangles, wider, (low, high), faults, on, threads)
+        corner_on = {key: own[triangles].any(axis=1) for key, own in on.items()}
+        wider = np.zeros(len(plan), bool)
+        for sides in rows:
+            is_there = np.ones(len(triangles), bool)
+            for number, side in enumerate(sides):
+                if side:
+                    is_there &= corner_on[number, side]
+            near = np.zeros(len(plan), bool)
+            near[triangles[is_there]] = True
+            for _ in range(_RINGS):
+                near = with_neighbors(triangles, near)
+            some = near & ~asked[sides]
+            if some.any():
+                asked[sides] |= some
+                found[sides][some] = values_of(sides, some)
+                z = found[sides][:, 0]
+                wider |= some & ((z < low) | (z > high))
+                low, high = np.fmin(low, z), np.fmax(high, z)
+    return found
+
+
+def _add_sides(
+    work: Work, plan, triangles, some: np.ndarray, heights, faults, on: dict, threads: int
+) -> None:
+    """Adds to `on`, by fault and side, those of some nodes at which a height is on that side, and those of
+    triangles that the fault passes between the heights, beyond its ends."""
+    places = np.unique(
+        np.concatenate([np.column_stack([np.flatnonzero(some), z[some]]) for z in heights]), axis=0
+    )
+    node = places[:, 0].astype(np.int64)
+    places = np.column_stack([plan[node], places[:, 1]])
+    low, high = (np.column_stack([plan, np.nan_to_num(z)]) for z in heights)
+    changed = triangles[some[triangles].any(axis=1)]
+    for number, fault in enumerate(faults):
+        side = fault_sides(work, places, fault, threads)
+        is_passed = triangles_met(work, fault, low, high, changed, threads) > 0
+        for its in (-1, 1):
+            on[number, its][node[side == its]] = True
+            on[number, its][changed[is_passed]] = True

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sides of points that lie on a fault or near it: those whose other points they agree with.
+
+Horizons come with points where faults cut them off, on the fault up to the digits of a file. Their side by
+position is that of the last bit, and a point on the wrong side bends the sheet there by the throw.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.build_warning import BuildWarning
+from ...base.errors import place_text
+from ...base.triangles import median_edge, nearest_triangles
+from ...base.work import Work, native_module
+from ...heights.mis_ties import mean_heights
+from ...surfaces.sides import FaultShape, sides_of
+
+_NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
+_EXPECTED_BY = 16  # points: so many let expect a height
+_PLANE = 1e6  # a spline so smooth is a plane
+_LEAST = 1e-3  # of the range of heights: nearer to what is expected, a point agrees
+_SURE = 0.25  # of the distance from what another side lets expect: so near, a point counts for its side
+_PASSES = 40  # times that points which count let expect more
+_FEW = 0.01  # of the points: so few let expect nothing more
+_SHIFTS = np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
+
+
+class PointSides(NamedTuple):
+    """Of points and faults: sides (P, F) int8, to which the points belong; moved (P, F) bool, where these are
+    not the sides on which they lie; reach: as distances gives it."""
+
+    sides: np.ndarray
+    moved: np.ndarray
+    reach: float
+
+    def some(self, chosen: np.ndarray) -> PointSides:
+        """Of some of the points, (P,) bool."""
+        return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
+
+
+def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
+    """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
+
+    A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
+    no fault, that let expect a height nearest to its own. Where only one side has such points, its position
+    decides, unless some of the points near the fault agree with them and others do not: these are of the
+    other side.
+    """
+    structure = entry.structure
+    faults = structure.faults
+    sides = sides_of(work, points, faults, threads)
+    active = faults.active(number)
+    away = np.full(sides.shape, np.inf)
+    shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
+    reach, away[:, active] = distances(points, median_edge(*entry.region), shapes)
+    near, beside = away < reach, np.isfinite(away)
+    agreement = _Agreement(
+        work=work,
+        points=points,
+        rows=np.where(active, sides, 0),
+        compartments=np.unique(np.where(active, structure.compartments, 0), axis=0),
+        # far from one that dies out its sides are one
+        matters=active & (beside | ~np.array(faults.dies_out, bool)),
+        counts=~beside.any(axis=1),
+        reach=reach,
+        threads=threads,
+    )
+    agreement.place(near, beside)
+    placed = np.where(active, agreement.rows, sides)
+    return PointSides(placed, placed != sides, reach)
+
+
+class _Choice(NamedTuple):
+    """Of some points (N,), by number, for which the same faults matter, (F,) bool: rows (C, F) of sides that
+    compartments have, 0 for other faults; possible (N, C) bool, those that each may belong to; own (N, C)
+    bool, where it lies. reach: how far they may be from their place on a fault."""
+
+    points: np.ndarray
+    matters: np.ndarray
+    rows: np.ndarray
+    possible: np.ndarray
+    own: np.ndarray
+    reach: float
+
+
+@dataclass
+class _Agreement:
+    """Points (P, 3), and the sides of faults that they agree with.
+
+    rows: (P, F) int8, their sides, changed; matters: (P, F) bool, of which faults these count; compartments:
+    (C, F), the rows that there are; counts: (P,) bool, the points whose sides are known, changed.
+    """
+
+    work: Work
+    points: np.ndarray
+    rows: np.ndarray
+    compartments: np.ndarray
+    matters: np.ndarray
+    counts: np.ndarray
+    reach: float
+    threads: int
+
+    def place(self, near: np.ndarray, beside: np.ndarray) -> None:
+        """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
+        not count where they agree with another: a horizon may reach beyond its fault. near, beside: (P, F)
+        bool. Points that clearly agree with a side count from then on, for what the others may expect."""
+        is_near = near.any(axis=1)
+        places = self._choices(np.flatnonzero(is_near), near, self.reach)
+        others = self._choices(np.flatnonzero(beside.any(axis=1) & ~is_near), beside, 0.0)
+        for _ in range(_PASSES):
+            if not (self._count_some(others) or self._place_some(places) or self._count_some(others, True)):
+                break
+        for choice in places:
+            left = ~self.counts[choice.points]
+            best = _best(choice, *self._off(choice))
+            self._give(choice, left & (best >= 0), best)
+
+    def _place_some(self, choices: list[_Choice]) -> bool:
+        """Places those that clearly agree with one side; whether there were any."""
+        new = 0
+        for choice in choices:
+            off, tolerated = self._off(choice)
+            sure = _are_sure(off, tolerated)
+            self._give(choice, sure, off.argmin(axis=1))
+            self.counts[choice.points[sure]] = True
+            new += int(sure.sum())
+        return new > _FEW * sum(len(choice.points) for choice in choices)
+
+    def _count_some(self, choices: list[_Choice], doubtful: bool = False) -> bool:
+        """Lets those count that clearly agree with their own side; doubtful: those that agree with it at all,
+        or of whose own side nothing is known. Whether there were any."""
+        new = 0
+        for choice in choices:
+            off, tolerated = self._off(choice)
+            own = np.where(choice.own, off, np.inf).min(axis=1)
+            other = np.where(choice.own, np.inf, off).min(axis=1)
+            agree = (own <= other) | np.isinf(own) if doubtful else _are_sure(off, tolerated) & (own < other)
+            agree &= ~self.counts[choice.points]
+            self.counts[choice.points[agree]] = True
+            new += int(agree.sum())
+        return new > _FEW * sum(len(choice.points) for choice in choices)
+
+    def _give(self, choice: _Choice, some: np.ndarray, best: np.ndarray) -> None:
+        given = choice.points[some]
+        self.rows[given] = np.where(choice.matters, choice.rows[best[some]], self.rows[given])
+
+    def _choices(self, some: np.ndarray, unclear: np.ndarray, reach: float) -> list[_Choice]:
+        """unclear: (P, F) bool, the faults whose sides are to be chosen."""
+        found = []
+        patterns, which = np.unique(self.matters[some], axis=0, return_inverse=True)
+        for number, matters in enumerate(patterns):
+            points = some[which.ravel() == number]
+            rows = np.unique(np.where(matters, self.compartments, 0), axis=0)
+            own = np.where(matters, self.rows[points], 0)[:, None]
+            alike = (rows == own) | (rows == 0) | (own == 0) | unclear[points, None]
+            is_own = (rows == own).all(axis=2)
+            found.append(_Choice(points, matters, rows, alike.all(axis=2), is_own, reach))
+        return found
+
+    def _off(self, choice: _Choice) -> tuple[np.ndarray, np.ndarray]:
+        """(N, C) how far the points are from what those that count let expect, infinite where these say
+        nothing and for points that count themselves; and how far they may be and agree: what a place within
+        reach would change, or a plane instead of a spline."""
+        off, tolerated = np.full(choice.possible.shape, np.inf), np.zeros(choice.possible.shape)
+        least = _LEAST * float(np.ptp(self.points[:, 2]))
+        asked = choice.possible & ~self.counts[choice.points, None]
+        rows = np.where(choice.matters, self.rows, 0)
+        for number in np.flatnonzero(asked.any(axis=0)):
+            group = mean_heights(self.points[self.counts & (rows == choice.rows[number]).all(axis=1)])
+            if len(group):
+                some = asked[:, number]
+                plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
+                expected = expected_heights(self.work, group, plan, threads=self.threads)
+                around = (plan + choice.reach * _SHIFTS[: 3 if choice.reach else 1]).reshape(-1, 2)
+                planes = expected_heights(self.work, group, around, _PLANE, self.threads)
+                planes = planes.reshape(-1, len(plan))
+                rise = np.abs(planes[1:] - planes[0]).sum(axis=0)
+                off[some, number] = np.abs(expected - z)
+                tolerated[some, number] = np.abs(expected - planes[0]) + rise + least
+        return off, tolerated
+
+
+def _are_sure(off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
+    """(N,) bool: the points that clearly agree with one side: they are far from others, farther than it is
+    known what to expect."""
+    if off.shape[1] < 2:
+        return np.zeros(len(off), bool)
+    order = np.argsort(off, axis=1)[:, :2]
+    (best, second), known = (np.take_along_axis(each, order, axis=1).T for each in (off, tolerated))
+    return np.isfinite(second) & (best <= _SURE * second) & (second > known.sum(axis=0))
+
+
+def _best(choice: _Choice, off: np.ndarray, tolerated: np.ndarray) -> np.ndarray:
+    """(N,) the row of sides that each point belongs to; -1 where it stays where it is."""
+    best = off.argmin(axis=1)
+    is_known = np.isfinite(off.min(axis=1))
+    of_own = np.where(choice.own, off, np.inf).min(axis=1)
+    placed = np.where(is_known & (np.isfinite(of_own) | ~choice.own.any(axis=1)), best, -1)
+    agrees = is_known & (off <= tolerated).any(axis=1)
+    for other in np.flatnonzero(np.isinf(off).all(axis=0)):  # no points that count
+        strange = choice.possible[:, other] & is_known & ~agrees
+        if strange.any():
+            placed[strange & (choice.own[:, other] | np.isfinite(of_own))] = other
+            placed[agrees & choice.own[:, other]] = best[agrees & choice.own[:, other]]
+    return placed
+
+
+def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock: str, surface: str):
+    """The warning about points that are not on the side on which they lie; None where there are none."""
+    count = int(moved.any(axis=1).sum())
+    if not count:
+        return None
+    of = [f"'{names[fault]}'" for fault in np.flatnonzero(moved.any(axis=0))]
+    first = points[int(moved.any(axis=1).argmax())]
+    text = (
+        f"{count} of its {len(points)} points, one at {place_text(first)}, lie on or just beyond fault"
+        f"{'s' if len(of) > 1 else ''} {', '.join(of)}, and are taken for the side whose other points they "
+        "agree with"
+    )
+    return BuildWarning(text, "points", rock, surface)
+
+
+def expected_heights(
+    work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0, threads: int = 0
+) -> np.ndarray:
+    """(N,) the heights at plan points (N, 2) of splines through the nearest of points (P, 3), no two of which
+    are at one place."""
+    spline, plan = native_module().spline, np.ascontiguousarray(plan)
+    return work.native(spline, points, plan, smoothing=smoothing, neighbours=_EXPECTED_BY, threads=threads)
+
+
+def distances(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+    """How near to a fault points (P, 3) may be on its cutoff line, and (P, F) how far they are from faults,
+    if less than an edge length; else infinite.
+
+    That near is a quarter of an edge length, or of the mean spacing of the points farther away, where it is
+    less. Cutoff lines may have many points, and say nothing of that spacing.
+    """
+    away = np.full((len(points), len(shapes)), np.inf)
+    for fault, shape in enumerate(shapes):
+        corners = shape.vertices[shape.triangles]
+        away[:, fault] = nearest_triangles(points, np.full(len(points), length), corners)[1]
+    ordinary = points[(away >= _NEAR * length).all(axis=1)]
+    spacing = _spacing(ordinary) if len(ordinary) > 1 else np.inf
+    return _NEAR * min(length, spacing), away
+
+
+def _spacing(points: np.ndarray) -> float:
+    """The mean spacing in plan; of points on a line that along it."""
+    along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)
+    return max(float(native_module().mean_spacing(np.ascontiguousarray(points), are_apart=True)), along)

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sheets of a surface that is a ready mesh: its triangles in the compartments, continued to the faults."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...base.errors import InputRefused, place_text
+from ...base.triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
+from ...base.work import Work
+from ...heights import heights
+from ...settings.methods import CONTINUATION
+from ...surfaces.rock_structure import Triangulation
+from ...surfaces.sides import FaultShape, fault_sides
+from .between_sheets import common_lines
+from .families import Family, around_tips, families
+from .lips import Lip, beyond_lips
+from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
+from .points_at_faults import distances
+from .throws import Sheets
+from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
+from .within import Within
+
+
+class ReadyMesh:
+    """One surface of a RockInput that is a ready mesh, divided along the faults by its triangles."""
+
+    data = "triangles"
+
+    def __init__(self, work: Work, entry, number: int, threads: int):
+        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+        surface = entry.rock.surfaces[number]
+        self.vertices, self.triangles = surface.vertices, surface.triangles
+        self.method, self.settings = surface.method_options()
+        faults = entry.structure.faults
+        self.active = faults.active(number)
+        self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
+        self.reach, near = self._near(faults.shapes)
+        for fault in np.flatnonzero(self.active):
+            self._divide(int(fault), faults.shapes[fault], near[:, fault])
+        self.tiling: PlanTiling | None = None
+        self.same_places: np.ndarray | None = None  # of the tiling's nodes, as welded gives it
+
+    def _near(self, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:
+        """How near to a fault a border of the mesh counts as its cutoff line, and (V, F) bool, the vertices
+        on borders that are so near to each fault that displaces it."""
+        near = np.zeros((len(self.vertices), len(shapes)), bool)
+        length = median_edge(self.vertices[:, :2], self.triangles)
+        some = [shapes[fault] for fault in np.flatnonzero(self.active)]
+        reach, away = distances(self.vertices, length, some)
+        near[:, self.active] = away < reach
+        is_border = np.zeros(len(self.vertices), bool)
+        is_border[open_edges(self.vertices, self.triangles)] = True
+        return reach, near & is_border[welded(self.vertices), None]
+
+    def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray) -> None:
+        """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
+        cutoff line, wherever it lies up to rounding."""
+        side = fault_sides(self.work, self.vertices, shape, self.threads)
+        side[on_fault(self.vertices, shape) | is_lip] = 0
+        corners = side[self.triangles.T]
+        mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
+        clear = np.flatnonzero((corners != 0).all(axis=0) & (mask != (LEFT | RIGHT)))
+        crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
+        mask[clear[crossed]] = LEFT | RIGHT
+        along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault
+        middles = self.vertices[self.triangles[along]].mean(axis=1)
+        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
+        self.masks[:, fault] = mask
+
+    def own(self, family: Family) -> np.ndarray:
+        """(T,) bool: the triangles with a part in its compartments."""
+        found = np.ones(len(self.triangles), bool)
+        for fault, side in enumerate(family.key):
+            if side in (-1, 1):
+                found &= (self.masks[:, fault] & (RIGHT if side > 0 else LEFT)) > 0
+        return found
+
+    def count(self, family: Family) -> int:
+        return int(self.own(family).sum())
+
+    def has_data(self, family: Family) -> bool:
+        return bool(self.own(family).any())
+
+    def has_few_data(self, family: Family) -> bool:
+        """Never: triangles show a slope."""
+        return False
+
+    def continued(self, sheets: Sheets, family: Family, source: Family, fault: int) -> Sheets:
+        """Sheets of another family as they are: they go on by heights of their vertices."""
+        return sheets
+
+    def adopt(self, sheets: Sheets, others: Sheets) -> None:
+        """Takes sheets that were made of its own; nothing more is known of these."""
+
+    def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
+        """The sheet on each side of the faults that die out here, by sides. trends: of each side, where there
+        are no triangles."""
+        if trends is not None:
+            return trends
+        own = self.own(family)
+        if not self.active.any():
+            whole = self.vertices, self.triangles
+            return dict.fromkeys(family.members.values(), whole)
+        if self.tiling is None:
+            self.tiling = plan_tiling(
+                self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
+            )
+        plan, triangles, known = self.tiling.around(own)
+        shapes = self.entry.structure.faults.shapes
+        cut: list[tuple[FaultShape, int, Trace | None]] = [
+            (shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
+        ]
+        common = self._continued(plan, known, triangles, cut)
+        faults = [shapes[fault] for fault in family.dying]
+        within = self._within(family)
+
+        def traces_on(sheet: Triangulation) -> list:
+            return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
+
+        traces = traces_on((np.column_stack([plan, common]), triangles))
+        over = [np.zeros(len(own), bool) for _ in faults]
+        for number, trace in enumerate(traces):
+            if not len(trace.points) and not self.tiling.is_mesh:
+                over[number] = self._over_others(own, family.dying[number])
+        met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
+        if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
+            sheet = np.column_stack([plan, common]), triangles
+            return dict.fromkeys(family.members.values(), sheet)
+        met = family.with_ends(met, self.entry.structure.faults)
+        self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
+        if not self.tiling.is_mesh:
+            plan, triangles = self.tiling.nodes, self.tiling.tiles
+            common = self._continued(plan, self.tiling.heights(own), triangles, cut)
+            traces = traces_on((np.column_stack([plan, common]), triangles))
+        beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
+        seen = {}
+        for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
+            hidden = np.zeros(len(self.triangles), bool)
+            for number, side in zip(met, given, strict=True):
+                if not side:
+                    continue
+                other = LEFT if side > 0 else RIGHT
+                hidden |= (self.masks[:, family.dying[number]] == other) & (beside[number] | over[number])
+            left = own & ~hidden if (own & ~hidden).any() else own  # if all are hidden, none are
+            dying = [(faults[n], side, traces[n]) for n, side in zip(met, given, strict=True) if side]
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles, [*cut, *dying])
+        found = self._with_equal_ends(family, met, seen, plan, triangles)
+        return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    def _is_drawn_together(self) -> bool:
+        """Whether sheets of several families are, so that they need one plan."""
+        structure = self.entry.structure
+        return bool(around_tips(structure, self.number, families(structure, self.number)))
+
+    def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
+        """(T,) bool: the own triangles on one side of a fault that lie over or under some on its other side,
+        as at a fault that is nearly level; none where it does not pass between all of these. Such a place is
+        noted: should the triangles meet in one sheet, this is why."""
+        found = np.zeros(len(self.triangles), bool)
+        left, right = (np.flatnonzero(own & (self.masks[:, fault] == side)) for side in (LEFT, RIGHT))
+        corners = [self.vertices[self.triangles[some]] for some in (left, right)]
+        pairs = overlapping_pairs(*(each[:, :, :2] for each in corners))
+        if not len(pairs):
+            return found
+        begin, end = common_lines(corners[0][pairs[:, 0]], corners[1][pairs[:, 1]])
+        faults = self.entry.structure.faults
+        is_missed = np.isnan(hit_shares(begin, end, faults.shapes[fault]))
+        if is_missed.any():
+            first = int(is_missed.argmax())
+            place = (begin[first] + end[first]) / 2
+            self.entry.torn[self.number] = _two_heights_beyond(faults.names[fault], place)
+        else:
+            found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
+        return found
+
+    def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Triangulation) -> None:
+        faults = self.entry.structure.faults
+        for number in met:
+            fault, within = family.dying[number], self._within(family)
+            place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
+            if place is not None:
+                raise _two_heights_beyond(faults.names[fault], place)
+
+    def drawn_together(self, family: Family, sheets: dict) -> Sheets:
+        """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
+        if len({id(sheet) for sheet in sheets.values()}) == 1:
+            return sheets
+        vertices, triangles = next(iter(sheets.values()))
+        heights = {sides: sheet[0][:, 2] for sides, sheet in sheets.items()}
+        plan = np.ascontiguousarray(vertices[:, :2])
+        return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)
+
+    def _with_equal_ends(self, family: Family, some, heights: dict, plan: np.ndarray, triangles: np.ndarray):
+        """Sheets with some heights, by sides, drawn together beyond the ends of some of the faults that die
+        out."""
+        shapes = self.entry.structure.faults.shapes
+        faults = [shapes[family.dying[number]] for number in some]
+        within = self._within(family)
+        ramps = [0.0] * len(faults)
+        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps, self.threads)
+        return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
+
+    def _within(self, family: Family) -> Within:
+        return Within(self.work, self.entry.structure, self.number, family, self.threads)
+
+    def _continued(
+        self,
+        plan: np.ndarray,
+        known: np.ndarray,
+        triangles: np.ndarray,
+        cut: list[tuple[FaultShape, int, Trace | None]],
+    ) -> np.ndarray:
+        """(N,) heights: the known ones, and where they are NaN those of the method. cut: the faults that cut
+        the sheet off, its side, and where one dies out its trace."""
+        if self.tiling is None or self.tiling.nodes is not plan:
+            same = welded(plan)
+        elif self.same_places is None:
+            same = self.same_places = welded(plan)
+        else:
+            same = self.same_places
+        order = np.flatnonzero(~np.isnan(known))[::-1]
+        of_place = np.full(len(plan), np.nan)
+        of_place[same[order]] = known[order]  # the first of several at one position
+        z = np.where(np.isnan(known), of_place[same], known)
+        missing = np.flatnonzero(np.isnan(z) & (same == np.arange(len(plan))))
+        if len(missing):
+            given = np.flatnonzero(~np.isnan(of_place))
+            points = np.column_stack([plan[given], of_place[given]])
+            is_by_node = self.method == CONTINUATION  # it finds each node by itself
+            nodes, tiles = (plan[missing], None) if is_by_node else (plan, triangles)
+            nodes = np.ascontiguousarray(nodes)
+            lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
+            beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
+            points = np.concatenate([points, beyond])
+            found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
+            of_place[missing] = found.z if is_by_node else found.z[missing]
+            z = np.where(np.isnan(z), of_place[same], z)
+        return z
+
+    def finish(self, sheets: list[Triangulation]) -> None:
+        """The triangles of the sheets are no longer those of the file."""
+        if len(sheets) > 1 or sheets[0][1] is not self.triangles:
+            self.entry.file_faces[self.number] = None
+
+
+def _as_beside(vertices: np.ndarray, triangles: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """The mask (T,) of triangles, changed: those that have none get that of a triangle beside them."""
+    lacking = np.flatnonzero(mask == 0)
+    if not len(lacking):
+        return mask
+    edges = edge_numbers(edges_of(welded(vertices)[triangles]), len(vertices)).reshape(3, -1).T
+    while True:
+        order = np.argsort(edges[mask > 0].ravel(), kind="stable")
+        known, of_edge = edges[mask > 0].ravel()[order], np.repeat(mask[mask > 0], 3)[order]
+        lacking = lacking[mask[lacking] == 0]
+        if not len(known) or not len(lacking):
+            return mask
+        at = np.minimum(np.searchsorted(known, edges[lacking]), len(known) - 1)
+        found = np.where(known[at] == edges[lacking], of_edge[at], 0).max(axis=1)
+        if not found.any():
+            return mask
+        mask[lacking] = found
+
+
+def _beside(trace: Trace | None, points: np.ndarray) -> np.ndarray:
+    """(P,) bool: the points beside a fault, all where it does not die out."""
+    return np.ones(len(points), bool) if trace is None else trace.beside(points[:, :2])
+
+
+def _two_heights_beyond(fault: str, place: np.ndarray) -> InputRefused:
+    return InputRefused(
+        f"it has two heights beyond the tip of fault '{fault}' near {place_text(place)}",
+        advice="extend the fault, or give data beyond the tip that agree",
+        place=tuple(place.tolist()),
+    )

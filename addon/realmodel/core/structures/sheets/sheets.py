@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sheets of a rock mass's surfaces: each surface once for each combination of sides of the faults that
+displace it, from the data in these compartments."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.mapped_arrays import Keep, as_it_is
+from ...base.work import Work
+from ...surfaces.doubtful_heights import Compartment, doubtful_heights
+from ...surfaces.sides import sides_of
+from ...surfaces.surface_heights import interpolation_order
+from ...surfaces.wrong_sides import Triangulation, points_too_low
+from .compartment_sheets import CompartmentSheets, make_borrowed, named
+from .interpolated_sheets import InterpolatedSurface
+from .ready_sheets import ReadyMesh
+from .throws import Throws
+
+
+def make_sheets(
+    work: Work,
+    entry,
+    start: float,
+    end: float,
+    threads: int,
+    stage: int | None = None,
+    keep: Keep = as_it_is,
+    numbers: Collection[int] | None = None,
+) -> None:
+    """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
+    Progress goes from `start` to `end`. keep: where a surface's arrays are kept once its sheets are made.
+    numbers: of the surfaces, with those that they need; None: of all that have no sheets yet.
+
+    Surfaces without enough data in a compartment come last, for the throw of others is needed there: also
+    that of those younger than `stage`, so that a stage is as in the whole. Raises InputRefused for a surface
+    that has data in no compartment.
+    """
+    rock = entry.rock
+    interpolated, ready = (
+        [
+            number
+            for number in each
+            if (numbers is None or number in numbers) and not entry.structure.is_made(number)
+        ]
+        for each in _by_kind(rock, stage)
+    )
+    steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
+
+    def begin(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
+        """The sheets of a surface that are not all made yet."""
+        kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
+        with named(rock, number):
+            sheets = CompartmentSheets(entry, number, kind(part, entry, number, own_threads))
+        sheets.make_own()
+        if sheets.waiting:
+            return [sheets]
+        if sheets.few:
+            few.append(number)
+        finish(sheets)
+        return []
+
+    def begin_ready(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
+        with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
+            return begin(part, number, own_threads)
+
+    def finish(sheets: CompartmentSheets) -> None:
+        with named(rock, sheets.number):
+            sheets.finish()
+        _keep(entry, sheets.number, keep)
+
+    few = entry.structure.few
+    # ready meshes need no others
+    with work.phase(start, steps[0], "interpolating surfaces"):
+        unfinished = list(itertools.chain(*work.each(begin_ready, ready, threads)))
+    for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
+        with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
+            unfinished += begin(work, number, threads)
+    if unfinished:
+        with work.phase(end, end, "interpolating surfaces"):
+            begun = {*ready, *interpolated}
+            for number in itertools.chain(*reversed(_by_kind(rock, None))):
+                if number not in begun and not entry.structure.is_made(number):
+                    unfinished += begin(work, number, threads)
+            for sheets in unfinished:
+                sheets.surface.work = work
+            make_borrowed(unfinished, Throws(work, entry.structure, few, threads), finish)
+        younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
+        warnings = entry.structure.warnings
+        entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
+
+
+def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
+    """The surfaces that are interpolated, each after those that it needs, and the others."""
+    interpolated = interpolation_order(rock, stage)
+    return interpolated, [number for number in range(_count(rock, stage)) if number not in interpolated]
+
+
+def _count(rock, stage: int | None) -> int:
+    """The number of surfaces up to a stage."""
+    return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
+
+
+def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Keep) -> None:
+    """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
+    for number in sorted(interpolation_order(entry.rock, stage)):
+        _warn_of_doubts(work, entry, number, threads, keep)
+
+
+def _keep(entry, number: int, keep: Keep) -> None:
+    """Keeps the arrays of a surface elsewhere. Sheets and arrays that are the same object stay so."""
+    arrays: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    made: dict[int, tuple[Triangulation, Triangulation]] = {}
+
+    def kept(array: np.ndarray) -> np.ndarray:
+        if id(array) not in arrays:
+            arrays[id(array)] = array, keep(array)
+        return arrays[id(array)][1]
+
+    for sheets in entry.structure.sheets:
+        sheet = sheets[number]
+        if id(sheet) not in made:
+            made[id(sheet)] = sheet, (kept(sheet[0]), kept(sheet[1]))
+        sheets[number] = made[id(sheet)][1]
+    if number in entry.attributes:
+        entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
+
+
+def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) -> None:
+    """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
+    compartment."""
+    structure, surfaces = entry.structure, entry.rock.surfaces
+    points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
+    sides = structure.points[number]
+    for compartment, row in enumerate(structure.compartments):
+        own = (sides == row).all(axis=1)
+        its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
+        one = replace(
+            entry,
+            rock=replace(entry.rock, surfaces=its),
+            surfaces=structure.sheets[compartment],
+            warnings=[],
+            structure=None,
+        )
+
+        def holds(places: np.ndarray, row=row) -> np.ndarray:
+            return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
+
+        found = points_too_low(work, one, [number], threads)
+        if keep is as_it_is:
+            of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
+            found += doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds))
+        for warning in found:
+            structure.warn([compartment], warning)

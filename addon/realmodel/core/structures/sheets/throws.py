@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The throw of a fault as the surfaces show it that are known on both sides, by which the sheet of another
+one is shifted from one side to the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...base.algebra import dot, principal_axes
+from ...base.work import Work
+from ...surfaces.rock_structure import RockStructure
+from ...surfaces.wrong_sides import Triangulation, heights_at
+from .displacement import throws_between
+from .families import Family
+from .tips import shared
+from .within import Within
+
+OWN, FEW, TAKEN, UNKNOWN = range(4)  # what a sheet is made of: enough points, few, or no data; the worse last
+_STRETCHES = 8  # of a fault along its strike at most, in each of which the median counts
+_IN_EACH = 5  # places at least
+_OUTLIERS = 0.05  # of values, at either end, that do not count
+
+Sheets = dict[tuple[int, ...], Triangulation]  # of a family, by the sides of faults that die out
+
+
+class Profile:
+    """Values along a fault: between the middles of its stretches linear, beyond them constant."""
+
+    def __init__(self, plan: np.ndarray, values: np.ndarray):
+        """plan: (N, 2), values: (N,)."""
+        self.plan = plan
+        self.origin, self.axis = plan.mean(axis=0), principal_axes(plan)[1][0]
+        along = self._along(plan)
+        order = np.argsort(along, kind="stable")
+        parts = np.array_split(order, min(max(len(plan) // _IN_EACH, 1), _STRETCHES))
+        self.along = np.array([along[part].mean() for part in parts])
+        self.middles = np.array([plan[part].mean(axis=0) for part in parts])
+        self.values = np.array([np.median(values[part]) for part in parts])
+
+    def _along(self, plan: np.ndarray) -> np.ndarray:
+        return dot(plan - self.origin, self.axis)
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        """(N,) at places (N, 2): the same bytes on every system, as those of np.interp are not."""
+        along = np.clip(self._along(plan), self.along[0], self.along[-1])
+        after = np.clip(np.searchsorted(self.along, along), 1, max(len(self.along) - 1, 1))
+        if len(self.along) == 1:
+            return np.full(len(plan), self.values[0])
+        low, high = self.along[after - 1], self.along[after]
+        share = (along - low) / np.where(high > low, high - low, 1.0)
+        return (1.0 - share) * self.values[after - 1] + share * self.values[after]
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A sum of profiles, each with a factor: heights to be added to a sheet. surfaces: the numbers of those
+    whose throw it is; rank: what their sheets are made of."""
+
+    terms: tuple[tuple[float, Profile], ...]
+    surfaces: tuple[int, ...]
+    rank: int
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        total = np.zeros(len(plan))
+        for factor, profile in self.terms:
+            total = total + factor * profile.at(plan)
+        return total
+
+    @property
+    def places(self) -> np.ndarray:
+        """(N, 2) along the fault, at which it was measured."""
+        return np.concatenate([profile.plan for _, profile in self.terms])
+
+    @property
+    def middles(self) -> np.ndarray:
+        """(N, 2) of the stretches in which it was measured."""
+        return np.concatenate([profile.middles for _, profile in self.terms])
+
+
+class Throws:
+    """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
+    to it. few: the surfaces of those that are there which few points show."""
+
+    def __init__(self, work: Work, structure: RockStructure, few: list[int], threads: int):
+        self.work, self.threads = work, threads
+        self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
+        known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
+        self.rank = np.where(known, OWN, UNKNOWN)
+        self.rank[:, few] = FEW
+        self._known: dict[tuple, tuple[np.ndarray, np.ndarray] | None] = {}
+
+    def tell(self, number: int, family: Family, sheets: Sheets, rank: int) -> None:
+        """The sheets of a surface in a family."""
+        for compartment, sides in family.members.items():
+            self.structure.sheets[compartment][number] = sheets[sides]
+            self.rank[compartment, number] = rank
+
+    @staticmethod
+    def fault_between(one: Family, other: Family) -> int | None:
+        """The fault on whose two sides two families are, each on one side of every other fault that is on
+        both sides of it; None where there is none, or several."""
+        apart = [fault for fault, (a, b) in enumerate(zip(one.key, other.key, strict=True)) if a * b == -1]
+        return apart[0] if len(apart) == 1 else None
+
+    def shift(self, number: int, fault: int, source: Family, family: Family) -> Shift | None:
+        """The shift of a surface from one family to another one across a fault, by the throw of the surfaces
+        next in age, older and younger, on which it is known. Between these two it is as the surface lies
+        between them, by thickness. None where it is known on none."""
+        pairs = self._pairs(fault, source, family)
+        for limit in (OWN, FEW, TAKEN):
+            youngest = self.structure.faults.youngest[fault]
+            older = self._first(range(number - 1, -1, -1), fault, pairs, limit)
+            younger = self._first(range(number + 1, youngest + 1), fault, pairs, limit)
+            if older is not None or younger is not None:
+                break
+        else:
+            return None
+        down = float(source.key[fault])  # throw is how much lower the upper side lies
+        found = [each for each in (older, younger) if each is not None]
+        shares = [1.0]
+        if len(found) == 2:
+            share = self._share(source, number, *found)
+            shares = [1.0 - share, share]
+        profiles = [Profile(places[:, :2], throw) for _, places, throw in found]
+        terms = tuple((down * share, each) for share, each in zip(shares, profiles, strict=True))
+        return Shift(terms, tuple(each[0] for each in found), limit)
+
+    def by_thickness(
+        self, number: int, shift: Shift, fault: int, source: Family, family: Family, sheets: Sheets
+    ) -> Sheets:
+        """Sheets of a surface, as they are in `source`, shifted to be those of a family across a fault: by
+        what the surfaces of the shift differ in height on its two sides, everywhere.
+
+        So its thickness from one of these is that of the source; between two it is the share of theirs.
+        """
+        within = Within(self.work, self.structure, number, source, self.threads)
+        pairs = [
+            pair if pair[0] in family.members else pair[::-1] for pair in self._pairs(fault, source, family)
+        ]
+        pairs = [pair for pair in pairs if all(self._has(pair, other) for other in shift.surfaces)]
+        laid: Sheets = {}
+        for compartment, sides in family.members.items():
+            if sides not in laid:
+                vertices, triangles = sheets[sides]
+                z = vertices[:, 2] + shift.at(vertices[:, :2])
+                if pairs:
+                    here, there = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
+                    laid_on = self._laid(vertices, within(vertices), shift.surfaces, here, there)
+                    z = np.where(np.isfinite(laid_on), laid_on, z)
+                laid[sides] = np.column_stack([vertices[:, :2], z]), triangles
+        return shared(laid)
+
+    def _has(self, pair: tuple[int, int], number: int) -> bool:
+        """Whether a surface has sheets in two compartments."""
+        return all(self.structure.sheets[each][number] is not None for each in pair)
+
+    def _laid(
+        self, vertices: np.ndarray, known: np.ndarray, surfaces: tuple[int, ...], here: int, there: int
+    ) -> np.ndarray:
+        """(V,) the heights of a sheet of compartment `there`, with vertices (V, 3) that are known, (V,) bool,
+        in compartment `here`, where it lies likewise on or between others; NaN where these have none."""
+        plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
+        from_there, own = (
+            [heights_at(self.work, self.structure.sheet(each, n), plan, self.threads) for n in surfaces]
+            for each in (there, here)
+        )
+        if len(own) == 1:
+            return own[0] + _tamed(z - from_there[0], known)
+        thickness = from_there[1] - from_there[0]
+        share = (z - from_there[0]) / np.where(thickness > 0, thickness, np.nan)
+        return own[0] + np.clip(_tamed(share, known), 0.0, 1.0) * (own[1] - own[0])
+
+    def _pairs(self, fault: int, one: Family, other: Family) -> list[tuple[int, int]]:
+        """Compartments of two families below and above a fault, and on one side of each other that is on both
+        sides of it."""
+        rows, pairs = self.structure.compartments, []
+        for pair in ((a, b) for a in one.members for b in other.members):
+            a, b = rows[list(pair)]
+            same = (a == b) | (a == 0) | (b == 0)
+            same[fault] = a[fault] * b[fault] < 0
+            if same.all():
+                pairs.append(pair if a[fault] < 0 else pair[::-1])
+        return pairs
+
+    def _first(self, numbers: Iterable[int], fault: int, pairs, limit: int):
+        """The number of the first of some surfaces on which a throw is known, and that: places (N, 3) and
+        throw (N,). At most one of the two sheets is taken over."""
+        for number in numbers:
+            usable = []
+            for below, above in pairs:
+                ranks = sorted(self.rank[[below, above], number].tolist())
+                if ranks[1] <= limit and ranks != [TAKEN, TAKEN]:
+                    usable.append((below, above))
+            key = number, fault, tuple(usable)
+            if key not in self._known:
+                self._known[key] = self._measured(number, fault, usable)
+            known = self._known[key]
+            if known is not None:
+                return number, *known
+        return None
+
+    def _measured(self, number: int, fault: int, pairs) -> tuple[np.ndarray, np.ndarray] | None:
+        """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
+        different: dict[tuple[int, ...], tuple[int, int]] = {}
+        for pair in pairs:
+            different.setdefault(tuple(id(self.structure.sheets[each][number]) for each in pair), pair)
+        parts = [
+            throws_between(self.work, self.structure, fault, number, below, above, self.threads)
+            for below, above in different.values()
+        ]
+        parts = [part for part in parts if len(part[0])]
+        if not parts:
+            return None
+        places, throw = (np.concatenate(each) for each in zip(*parts, strict=True))
+        return places, throw
+
+    def _share(self, family: Family, number: int, older, younger) -> float:
+        """Where a surface lies between two others along a fault in a family, by thickness: 0 at the older
+        one, 1 at the younger one."""
+        plan = np.concatenate([older[1], younger[1]])[:, :2]
+        for compartment in family.members:
+            sheets = [self.structure.sheets[compartment][each] for each in (older[0], number, younger[0])]
+            made = [sheet for sheet in sheets if sheet is not None]
+            if len(made) == len(sheets):
+                low, own, high = (heights_at(self.work, sheet, plan, self.threads) for sheet in made)
+                there = (high > low) & np.isfinite(own)  # not where one of them has no height
+                if there.any():
+                    share = (own[there] - low[there]) / (high[there] - low[there])
+                    return float(np.clip(np.median(share), 0.0, 1.0))
+        return 0.5
+
+
+def _tamed(values: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """(V,) values, no farther beyond those that most have where they are known, (V,) bool, than these are
+    apart: methods may run away beyond their points."""
+    order = np.sort(values[known & np.isfinite(values)])
+    if not len(order):
+        return values
+    low, high = order[int(_OUTLIERS * len(order))], order[-1 - int(_OUTLIERS * len(order))]
+    values = np.where(np.isfinite(values), values, order[len(order) // 2])
+    return np.clip(values, low - (high - low), high + (high - low))

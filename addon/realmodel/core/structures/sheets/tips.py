@@ -1,0 +1,589 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults that die out: where a sheet meets them, what counts on their two sides, and one sheet beyond.
+
+A fault that dies out is a barrier: on each side only what is not hidden behind it counts. That gives two
+sheets which differ beside the fault; beyond its ends they are made equal, so that nothing is displaced there.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.algebra import norm
+from ...base.triangles import (
+    crossing_pairs,
+    distances_of_pairs,
+    edges_of,
+    open_edges,
+    pairs_at_planes,
+    segments_hit,
+    shares_hit,
+)
+from ...base.work import Work, native_module
+from ...surfaces.rock_structure import Triangulation
+from ...surfaces.sides import FaultShape, fault_sides
+from .between_sheets import places_between
+from .near_rows import triangles_met, with_neighbors
+from .within import Within, box_of, middles_of_parts, parts_of_lines
+
+_ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
+_AT_ONCE = 1 << 21
+_HALVINGS = 30  # a billionth of an edge
+_TOUCHES, _PASSES = 1, 2
+
+
+@dataclass(frozen=True)
+class Trace:
+    """The trace of a fault in a sheet. points: (M, 2) in plan, heights: (M,); is_end: (M,) bool, where it
+    dies out. beyond: (N,) bool, the nodes of triangles that the fault's continuation beyond its ends passes
+    through."""
+
+    points: np.ndarray
+    heights: np.ndarray
+    is_end: np.ndarray
+    beyond: np.ndarray
+
+    def beside(self, plan: np.ndarray) -> np.ndarray:
+        """(P,) bool: the plan points that are nearer to the trace than to its ends."""
+        if not len(self.points):
+            return np.zeros(len(plan), bool)
+        return ~self.is_end[nearest(plan, self.points)[0]]
+
+
+def trace_of(
+    work: Work,
+    sheet: Triangulation,
+    fault: FaultShape,
+    within: Callable[[np.ndarray], np.ndarray],
+    threads: int = 0,
+) -> Trace:
+    """The trace of a fault in a sheet, edge by edge. within: whether points (K, 3) lie in the compartment; a
+    fault that ends elsewhere does not die out."""
+    vertices, triangles = sheet
+    crossed = crossed_edges(work, sheet, fault, threads)
+    on = crossed.side == 0
+    begin, end = vertices[crossed.edges[crossed.changing]].transpose(1, 0, 2)
+    share = crossed.share[crossed.changing]
+    hits = np.isfinite(share)
+    passed = _where_sides_change(work, begin[~hits], end[~hits], fault, threads)
+    missed = np.zeros(len(crossed.edges), bool)
+    missed[crossed.changing[~hits][within(passed)]] = True
+    goes_on = missed[crossed.of_triangle].any(axis=1)
+    beyond = np.zeros(len(vertices), bool)
+    beyond[triangles[goes_on]] = True
+    at_end = np.zeros(len(crossed.edges), bool)
+    at_end[crossed.of_triangle[goes_on]] = True
+    places = np.concatenate([begin[hits] + share[hits, None] * (end - begin)[hits], vertices[on]])
+    is_end = np.concatenate([at_end[crossed.changing[hits]], beyond[on]])
+    return Trace(places[:, :2], places[:, 2], is_end, beyond)
+
+
+class CrossedEdges(NamedTuple):
+    """The edges of a sheet at a fault. side: (V,) int8 of its vertices, 0 on the fault. edges: (E, 2), and
+    of_triangle: (T, 3) int64, those from corner 0 to 1 of each triangle, 1 to 2, 2 to 0. changing: (K,) the
+    edges with ends on both sides. share: (E,) where the fault meets these, from the first end to the second;
+    NaN where it does not."""
+
+    side: np.ndarray
+    edges: np.ndarray
+    of_triangle: np.ndarray
+    changing: np.ndarray
+    share: np.ndarray
+
+
+def crossed_edges(work: Work, sheet: Triangulation, fault: FaultShape, threads: int = 0) -> CrossedEdges:
+    """Where a fault meets the edges of a sheet."""
+    vertices, triangles = sheet
+    side = fault_sides(work, vertices, fault, threads)
+    side[on_fault(vertices, fault)] = 0
+    edges = np.sort(edges_of(triangles), axis=1)
+    edges, number = np.unique(edges, axis=0, return_inverse=True)
+    changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
+    share = np.full(len(edges), np.nan)
+    begin, end = vertices[edges[changing]].transpose(1, 0, 2)
+    share[changing] = hit_shares(begin, end, fault)
+    return CrossedEdges(side, edges, number.reshape(3, -1).T, changing, share)
+
+
+def _where_sides_change(
+    work: Work, begin: np.ndarray, end: np.ndarray, fault: FaultShape, threads: int
+) -> np.ndarray:
+    """(K, 3) a point on each segment at which the side of a fault changes, by bisection."""
+    low, high = np.zeros(len(begin)), np.ones(len(begin))
+    first = fault_sides(work, begin, fault, threads)
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        same = fault_sides(work, begin + middle[:, None] * (end - begin), fault, threads) == first
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return begin + high[:, None] * (end - begin)
+
+
+def precision_of(fault: FaultShape) -> float:
+    """How near to a fault points count as on it."""
+    return _ON * float(norm(np.ptp(fault.vertices[np.unique(fault.triangles)], axis=0)))
+
+
+def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
+    """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
+    vertices, triangles = fault.vertices, fault.triangles
+    near = precision_of(fault)
+    boxes = np.stack([points - near, points + near, points], axis=1)
+    found = np.zeros(len(points), bool)
+    low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
+    inside = np.ones(len(points), bool)
+    for axis in range(3):
+        inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
+    some = np.flatnonzero(inside)
+    pairs = pairs_at_planes(boxes[some], vertices[triangles])
+    away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
+    found[some[pairs[away <= near, 0]]] = True
+    return found
+
+
+def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
+    """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
+    vertices, triangles = fault.vertices, fault.triangles
+    corners = vertices[triangles]
+    found = np.full(len(begin), np.nan)
+    pairs = crossing_pairs(np.stack([begin, end, end], axis=1), corners)
+    for start in range(0, len(pairs), 1 << 16):
+        segment, triangle = pairs[start : start + (1 << 16)].T
+        hit = segments_hit(begin[segment], end[segment], corners[triangle])
+        found[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
+    return found
+
+
+def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) the number of the nearest of points (M, 2), the first of equally near ones; and how far it is."""
+    number, away = np.empty(len(plan), np.int64), np.empty(len(plan))
+    some = max(1, _AT_ONCE // max(1, len(points)))
+    for start in range(0, len(plan), some):
+        part = slice(start, start + some)
+        squared = ((plan[part, None] - points) ** 2).sum(axis=2)
+        number[part] = squared.argmin(axis=1)
+        away[part] = np.sqrt(squared.min(axis=1))
+    return number, away
+
+
+def blended(
+    heights: dict[tuple[int, ...], np.ndarray],
+    near: dict[tuple[int, ...], np.ndarray],
+    on_side: dict[tuple[int, ...], list[np.ndarray]],
+    weights: list,
+) -> dict:
+    """(N,) heights by the sides (+1 or -1 of each fault, 0 where it is not), different as the weights say.
+
+    heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
+    compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
+    weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
+    """
+    result = {sides: own.copy() for sides, own in heights.items()}
+    ramped = np.array([weight < 1.0 for weight in weights])
+    patterns, of_node = np.unique(ramped, axis=1, return_inverse=True)
+    for pattern, some in zip(patterns.T, _groups(of_node.ravel()), strict=True):
+        # where all of a fault's weights are 1, what is on its other side has no share
+        distinct = [fault for fault, is_ramped in enumerate(pattern) if not is_ramped]
+        there = {sides: near[sides][some] for sides in heights}
+        there = {sides: own for sides, own in there.items() if own.any()}
+        for sides, own in there.items():
+            total, whole = np.zeros(len(some)), np.zeros(len(some))
+            for other in there:
+                if any(sides[fault] * other[fault] < 0 for fault in distinct):
+                    continue
+                share = there[other].astype(float)
+                for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
+                    alike = side == its  # where one has no such fault: on the side that the other is on
+                    if not alike and 0 in (side, its):
+                        alike = on_side[sides if side else other][fault][some]
+                    elif alike and fault in distinct:
+                        continue
+                    half = 0.5 * weight[some]
+                    share = share * np.where(alike, 0.5 + half, 0.5 - half)
+                z = heights[other][some]
+                total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
+            result[sides][some[own]] = total[own] / np.where(whole > 0, whole, 1.0)[own]
+    return result
+
+
+def _groups(number: np.ndarray) -> list[np.ndarray]:
+    """The places of each number in an array (N,) of all numbers from 0."""
+    order = np.argsort(number, kind="stable")
+    return np.split(order, np.cumsum(np.bincount(number))[:-1])
+
+
+def with_equal_ends(
+    work: Work,
+    plan: np.ndarray,
+    triangles: np.ndarray,
+    heights: dict[tuple[int, ...], np.ndarray],
+    faults: list[FaultShape],
+    within: Within,
+    ramps: list[float],
+    threads: int = 0,
+) -> dict[tuple[int, ...], np.ndarray]:
+    """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
+    triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
+    its ramp, they are drawn together."""
+    first = next(iter(heights.values()))
+    if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
+        return dict.fromkeys(heights, first)
+    ends = [
+        [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
+        for fault in faults
+    ]
+    side_of = _sides_of_nodes(work, plan, heights, faults, threads)
+    on_side = {
+        sides: [(side == 0) | (of == side) for side, of in zip(sides, side_of[sides], strict=True)]
+        for sides in heights
+    }
+    of_branches = {
+        sides: {branch: of[branch].copy() for branch, own in enumerate(ends) if own}
+        for sides, of in side_of.items()
+    }
+    del side_of
+    passed = [np.zeros(len(plan), bool) for _ in faults]
+    for _ in range(2):  # what is passed between nodes alone is near, too
+        near = {
+            sides: np.isfinite(z) & _near(triangles, on_side[sides], passed) for sides, z in heights.items()
+        }
+        low, high = _range(plan, heights, near)
+        known = np.isfinite(low[:, 2])
+        low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
+        inside = known & within(low) & within(high)
+        whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        doubtful = [
+            whole[triangles_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
+            for fault in faults
+        ]
+        for nodes, some in zip(passed, doubtful, strict=True):
+            nodes[some] = True
+    lowest, highest = (each.reduce(list(heights.values()), axis=0) for each in (np.fmin, np.fmax))
+    some = np.isfinite(lowest)
+    box = box_of(*(np.column_stack([plan, z])[some] for z in (lowest, highest)))
+    continuations = [_continued(fault, box) for fault in faults]
+    drawn = _Drawn(plan, ramps, ends, near, of_branches)
+    looked_at: dict[int, np.ndarray] = {}
+    while True:
+        found = blended(heights, near, on_side, drawn.weights)
+        places = _places_of(plan, [np.where(known, z, 0.0) for z in found.values()])
+        for number, fault in enumerate(faults):
+            rows = [
+                places.number[row][doubtful[number][near[sides][doubtful[number]].any(axis=1)]]
+                for row, sides in enumerate(found)
+            ]
+            some = np.unique(np.concatenate(rows), axis=0)
+            corners = places.points[some]
+            before = looked_at.get(number)
+            if before is None or not np.array_equal(before, corners):
+                looked_at[number] = corners
+                _draw_where_passed(
+                    work, places, some, number, fault, continuations[number], within, inside, drawn, threads
+                )
+        if drawn.is_settled() and not _draw_between(
+            work, plan, triangles, found, faults, continuations, within, near, drawn, threads
+        ):
+            return found
+
+
+def _draw_where_passed(
+    work: Work, places, some, number, fault, beyond, within: Within, inside, drawn, threads: int
+) -> None:
+    """Lets sheets be equal at the nodes of triangles that a fault passes beyond its ends, in the triangles
+    `beyond`, of edges that lie in these, and where it touches them.
+
+    places: of all sheets; some: (T, 3) int32 triangles of these. inside: (N,) bool, the nodes at which all
+    sheets are in the compartment."""
+    node = places.node
+    met = triangles_met(work, fault, places.points, places.points, some, threads)
+    passes = met == _PASSES
+    divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
+    passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
+    drawn.let_be_equal(number, node[some[passes]])
+    edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
+    lie_in = _lie_in(work, fault, places.points[edges], beyond, within, threads)
+    drawn.let_be_equal(number, node[edges[lie_in]])
+    touched = np.unique(some[met > 0])
+    touched = touched[inside[node[touched]]]
+    on = _met_points(work, fault, places.points[touched], threads)
+    drawn.let_be_equal(number, node[touched[on], None])
+
+
+class _Places(NamedTuple):
+    """The different places that the nodes of sheets have: points (P, 3), and of which node each is. number:
+    (S, N) int32, the place of each node of each sheet."""
+
+    points: np.ndarray
+    node: np.ndarray
+    number: np.ndarray
+
+
+def _places_of(plan: np.ndarray, heights: list[np.ndarray]) -> _Places:
+    """Those of the nodes (N, 2) in sheets with heights (N,) each: at one node only those differ that some
+    fault near it parts."""
+    number = np.empty((len(heights), len(plan)), np.int32)
+    points, nodes, total = [], [], 0
+    for start in range(0, len(plan), some := max(1, _AT_ONCE // len(heights))):
+        part = slice(start, start + some)
+        z = np.array([each[part] for each in heights])
+        order = np.argsort(z, axis=0, kind="stable")
+        ascending = np.take_along_axis(z, order, axis=0)
+        is_new = np.ones(z.shape, bool)
+        is_new[1:] = ascending[1:] != ascending[:-1]
+        count = is_new.sum(axis=0)
+        first = total + count.cumsum() - count
+        np.put_along_axis(number[:, part], order, (first + is_new.cumsum(axis=0) - 1).astype(np.int32), 0)
+        nodes.append(np.repeat(np.arange(start, start + len(count)), count))
+        points.append(np.column_stack([plan[nodes[-1]], ascending.T[is_new.T]]))
+        total += len(nodes[-1])
+    return _Places(np.concatenate(points), np.concatenate(nodes), number)
+
+
+def _sides_of_nodes(work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int):
+    """By the sides of each sheet: (F, N) int8, on which side of each fault its nodes are."""
+    places = _places_of(plan, [np.nan_to_num(z) for z in heights.values()])
+    side = np.array([fault_sides(work, places.points, fault, threads) for fault in faults])
+    return {sides: side[:, number] for sides, number in zip(heights, places.number, strict=True)}
+
+
+class _Drawn:
+    """Nodes at which the sheets on both sides of faults are to be equal, and what weight that leaves to the
+    difference around. ends: of each fault those at which it ends; near: as with_equal_ends has it; sides: by
+    the sides of each sheet the side of each such branch that its nodes are on."""
+
+    def __init__(self, plan: np.ndarray, ramps: list[float], ends: list[list[int]], near: dict, sides: dict):
+        self.plan, self.ramps, self.ends, self.near, self.sides = plan, ramps, ends, near, sides
+        self.weights = [np.ones(len(plan)) for _ in ramps]
+        self.equal = [np.zeros(len(plan), bool) for _ in ramps]
+
+    def let_be_equal(self, number: int, nodes: np.ndarray) -> None:
+        """For the sides of one fault, at the nodes (K, 1 to 3) of triangles or edges. A branch of it that
+        passes a sheet there, or between two of them, ends in nothing: its sides are equal, too."""
+        self.equal[number][nodes] = True
+        for branch, own in enumerate(self.ends):
+            if number not in own:
+                continue
+            above, below = np.zeros(len(nodes), bool), np.zeros(len(nodes), bool)
+            for sides, near in self.near.items():
+                there = near[nodes].any(axis=1)
+                side = self.sides[sides][branch][nodes]
+                above |= there & (side > 0).any(axis=1)
+                below |= there & (side < 0).any(axis=1)
+            self.equal[branch][nodes[above & below]] = True
+
+    def is_settled(self) -> bool:
+        """Whether nothing has changed since this was asked."""
+        settled = True
+        for number, (equal, ramp) in enumerate(zip(self.equal, self.ramps, strict=True)):
+            if (equal & (self.weights[number] > 0)).any():
+                self.weights[number] = _weight(self.plan, equal, ramp)
+                settled = False
+        return settled
+
+
+def _draw_between(
+    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn, threads: int
+) -> bool:
+    """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
+    neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
+    with_equal_ends has them, changed."""
+    every = np.array(list(found.values()))
+    low, high = (np.column_stack([plan, each.reduce(every, axis=0)]) for each in (np.fmin, np.fmax))
+    differ = triangles[(low[:, 2] < high[:, 2])[triangles].any(axis=1)]
+    low, high = np.nan_to_num(low), np.nan_to_num(high)
+    between = {}
+    for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
+        if not fault.dies_out:
+            continue
+        some = differ[triangles_met(work, fault, low, high, differ, threads) == _PASSES]
+        if len(some):
+            between[number] = _between(work, plan, some, found, number, fault, others, within, threads)
+    places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
+    sides = [fault_sides(work, places, fault, threads) for fault in faults]
+    is_torn, first = False, 0
+    for number, own in between.items():
+        part = slice(first, first + len(own.places))
+        first = part.stop
+        for (one, other), given, rows in own.pairs:
+            is_there = np.ones(len(own.places), bool)
+            for n, side in enumerate(sides):
+                if n != number and (its := one[n] or other[n]):
+                    is_there &= side[part] == its
+            torn = given[np.isin(rows, own.owner[is_there])]
+            for its in (one, other) if len(torn) else ():
+                is_torn = is_torn or not near[its][torn].all()
+                near[its][torn] = True
+            drawn.let_be_equal(number, torn)
+    return not drawn.is_settled() or is_torn
+
+
+class _Between(NamedTuple):
+    """Where a fault would go on between sheets. pairs: the sides of each two sheets, the triangles (T, 3)
+    over which it may be between them, and the numbers (T,) of these two triangles as one pair. places: (K, 3)
+    in the compartment, and owner (K,) the pair of triangles that each lies between."""
+
+    pairs: list[tuple]
+    places: np.ndarray
+    owner: np.ndarray
+
+
+def _between(
+    work: Work, plan, triangles, found: dict, number: int, fault, beyond, within: Within, threads: int
+) -> _Between:
+    """Those of one fault over some triangles. Of all pairs of sheets many have the same two triangles there,
+    and what lies between these is the same."""
+    side, heights = _corners_with_sides(work, plan, triangles, found, fault, threads)
+    over, given_rows = [], [np.empty((0, 7))]
+    for one, other in _pairs(found, number):
+        both = np.column_stack([side[one], side[other]])
+        z = np.column_stack([heights[one], heights[other]])
+        apart = (both != both[:, :1]).any(axis=1) & np.isfinite(z).all(axis=1)
+        given = np.flatnonzero(apart & (z[:, :3] != z[:, 3:]).any(axis=1))
+        over.append(((one, other), triangles[given]))
+        given_rows.append(np.column_stack([given, z[given]]))
+    rows, numbers = np.unique(np.concatenate(given_rows), axis=0, return_inverse=True)
+    ends = np.cumsum([0, *(len(given) for _, given in over)]).tolist()
+    corners = plan[triangles[rows[:, 0].astype(np.int64)]]
+    lower, upper = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
+    owner, places = places_between(lower, upper, beyond, within)
+    parts = zip(over, itertools.pairwise(ends), strict=True)
+    pairs = [(*pair, numbers.ravel()[start:end]) for pair, (start, end) in parts]
+    return _Between(pairs, places, owner)
+
+
+def _corners_with_sides(work: Work, plan, triangles, sheets: dict, fault: FaultShape, threads: int):
+    """By the sides of each sheet, of the corners of some triangles (T, 3): on which side of a fault they are,
+    and their heights."""
+    heights = {sides: z[triangles] for sides, z in sheets.items()}
+    places = [np.column_stack([plan[triangles.ravel()], np.nan_to_num(z.ravel())]) for z in heights.values()]
+    side = fault_sides(work, np.concatenate(places), fault, threads)
+    return dict(zip(sheets, side.reshape(len(sheets), -1, 3), strict=True)), heights
+
+
+def _pairs(sheets: dict, number: int):
+    """The sides of sheets below and above one fault, which are otherwise alike."""
+    for one, other in itertools.product(sheets, repeat=2):
+        if one[number] == -1 and other[number] == 1:
+            rest = (pair for n, pair in enumerate(zip(one, other, strict=True)) if n != number)
+            if all(a == b or 0 in (a, b) for a, b in rest):
+                yield one, other
+
+
+def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:
+    """(N,) bool: the nodes of triangles with corners on given sides of all faults, and those beside them."""
+    count = len(on_side)
+    of_node = np.packbits([own | also for own, also in zip(on_side, passed, strict=True)], axis=0)
+    a, b, c = (of_node[:, corner] for corner in triangles.T)
+    found = np.zeros(of_node.shape[1], bool)
+    found[triangles[((a | b | c) == np.packbits(np.ones((count, 1), bool), axis=0)).all(axis=0)]] = True
+    return with_neighbors(triangles, found)
+
+
+def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) the lowest and the highest place of the sheets near each node; infinite where there is none."""
+    low, high = np.full(len(plan), np.inf), np.full(len(plan), -np.inf)
+    for sides, z in heights.items():
+        low = np.fmin(low, np.where(near[sides], z, low))
+        high = np.fmax(high, np.where(near[sides], z, high))
+    return np.column_stack([plan, low]), np.column_stack([plan, high])
+
+
+def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...], Triangulation]:
+    """The same, with one object for all sheets that are bitwise equal."""
+    known: dict[bytes, Triangulation] = {}
+    return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
+
+
+def torn_beyond(
+    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+) -> np.ndarray | None:
+    """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
+    on beyond its ends; None where there is none."""
+    vertices, triangles = sheet
+    ends = vertices[open_edges(vertices, triangles)]
+    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | (
+        (ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1])
+    )
+    ends[swap] = ends[swap, ::-1]
+    lines, line = np.unique(ends[:, :, :2].reshape(-1, 4), axis=0, return_inverse=True)
+    low, high = np.full((len(lines), 2), np.inf), np.full((len(lines), 2), -np.inf)
+    np.minimum.at(low, line.ravel(), ends[:, :, 2])
+    np.maximum.at(high, line.ravel(), ends[:, :, 2])
+    torn = (low < high).any(axis=1)
+    if not torn.any():
+        return None
+    low, high = (np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]]) for z in (low, high))
+    begin, end = (np.concatenate([low[:, end], high[:, end]]) for end in range(2))
+    box = box_of(low, high)
+    walls = np.concatenate([within.walls(box), _continued(fault, box)])
+    line, shares = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
+    share = shares.mean(axis=1)
+    low, high = (each[line, 0] + share[:, None] * (each[:, 1] - each[:, 0])[line] for each in (low, high))
+    on = np.all([_met_points(work, fault, places, threads) for places in (low, high)], axis=0)
+    middles = (low + high)[on] / 2
+    middles = middles[within(middles)]
+    return middles[0] if len(middles) else None
+
+
+def _continued(fault: FaultShape, box: np.ndarray) -> np.ndarray:
+    """(M, 3, 3) the triangles in which a fault goes on beyond its border, through a box (2, 3)."""
+    return native_module().structure_continuation(fault.native(), box).reshape(-1, 3, 3)
+
+
+def _met_points(work: Work, fault: FaultShape, points: np.ndarray, threads: int) -> np.ndarray:
+    """(P,) bool: the points at which a fault would go on beyond its ends."""
+    alone = np.repeat(np.arange(len(points), dtype=np.int32)[:, None], 3, axis=1)
+    return triangles_met(work, fault, points, points, alone, threads) > 0
+
+
+def _lie_in(
+    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: Within, threads: int
+) -> np.ndarray:
+    """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
+    beyond its ends, in the triangles `beyond`."""
+    found = np.zeros(len(lines), bool)
+    if len(lines):
+        walls = np.concatenate([within.walls(box_of(lines)), beyond])
+        line, places = middles_of_parts(lines[:, 0], lines[:, 1], walls)
+        on = _met_points(work, fault, places, threads)
+        on[on] = within(places[on])
+        found[line[on]] = True
+    return found
+
+
+def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
+    """(K,) bool: the triangles (K, 3, 3) of which a part of the lines where they meet others (M, 3, 3) is in
+    a compartment."""
+    pairs = crossing_pairs(corners, others)
+    ends = np.full((len(pairs), 6, 3), np.nan)
+    one, other = corners[pairs[:, 0]], others[pairs[:, 1]]
+    for turn, (triangle, edges) in enumerate(((one, other), (other, one))):
+        for corner in range(3):
+            begin, end = edges[:, corner], edges[:, (corner + 1) % 3]
+            hit = segments_hit(begin, end, triangle)
+            share = shares_hit(begin[hit], end[hit], triangle[hit])
+            ends[hit, 3 * turn + corner] = begin[hit] + share[:, None] * (end - begin)[hit]
+    rows = np.flatnonzero(np.isfinite(ends[:, :, 0]).sum(axis=1) > 1)
+    found = np.zeros(len(corners), bool)
+    if not len(rows):
+        return found
+    some = ends[rows]
+    at = np.arange(len(rows))
+    first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
+    last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
+    line, places = middles_of_parts(first, last, within.walls(box_of(first, last)))
+    found[pairs[rows[line[within(places)]], 0]] = True
+    return found
+
+
+def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
+    if not beyond.any():
+        return np.ones(len(plan))
+    if ramp <= 0:
+        return np.where(beyond, 0.0, 1.0)
+    share = np.minimum(1.0, nearest(plan, plan[beyond])[1] / ramp)
+    return share * share * (3 - 2 * share)

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfaces of rock masses: read, meshed and interpolated, with warnings about points that cannot be
+right.
+
+Comes in: a `Project`. Goes out: a `RockInput` for each rock mass, with the triangles of its surfaces on the
+planar mesh of its region; or the parts of its surfaces that a tile needs.
+"""

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points so far from the region that they cannot be meant for it: other coordinates, other units."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.units import length_text
+from ..project.project import Rock, surface_item
+
+_FARTHEST = 3.0  # times the extent of points and region
+_TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
+
+
+def require_points_near(rock: Rock, unit: str) -> None:
+    """Refuses a surface whose points are all far away from the region of its rock mass.
+
+    They are if the gap between the bounding boxes of the points and of the region, in plan, is more than
+    three times the diagonals of both. Raises InputRefused with the distance.
+    """
+    if rock.region is None:
+        return
+    low, high = _box(np.concatenate(rock.rings()))
+    for surface in rock.surfaces:
+        points = surface.point_array()
+        if not surface.interpolated or not len(points):
+            continue
+        first, last = _box(points[:, :2])
+        gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
+        away = float(np.hypot(*gap))
+        if away > _FARTHEST * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
+            towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
+            raise InputRefused(
+                f"its points lie {length_text(away, unit)} {towards} of the region",
+                item=surface_item(rock, surface),
+                file=surface.shape_file,
+                advice="check the coordinates and units of both; the region must lie where the points are",
+            )
+
+
+def _box(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plan.min(axis=0), plan.max(axis=0)

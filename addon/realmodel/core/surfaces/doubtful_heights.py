@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Warnings about interpolated surfaces that miss a point by much, or cut older layers beyond their points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.algebra import dot
+from ..base.build_warning import BuildWarning
+from ..base.errors import number_list, place_text
+from ..base.units import number_text
+from ..base.work import Work, native_module
+from ..heights.mis_ties import mean_heights
+from ..project.project import Rock
+from ..settings.methods import SURFACE_OPTIONS
+from ..settings.rules import RULES
+from .wrong_sides import heights_at
+
+_MOST = 20_000  # points or nodes at most at which other surfaces are looked at
+_NOTABLE = 0.25  # of the distance to the neighbors: an outlier below it is not reported
+_BEYOND_NORMAL = 1.5  # times the largest of so many normally distributed residuals, and more, is an outlier
+_LEAST_SHARE = 0.01  # of the area: less is neither reported, nor taken as known from the points
+
+
+@dataclass(frozen=True)
+class Compartment:
+    """Of a rock mass with faults. points: (P, 3) those that a surface was interpolated from here, in this
+    compartment and in others. holds(places (N, 3)): (N,) bool, which of them lie in it."""
+
+    points: np.ndarray
+    holds: Callable[[np.ndarray], np.ndarray]
+
+
+def doubtful_heights(
+    work: Work, entry, numbers: Iterable[int], threads: int, compartment: Compartment | None = None
+) -> list[BuildWarning]:
+    """Warnings about surfaces of a RockInput, by their numbers in ascending order, once all that are built
+    have heights. compartment: that the heights are of, with one surface asked for, whose points are those in
+    it. None of a realization: what it draws is no estimate."""
+    if entry.draws is not None:
+        return []
+    reach, found = _Reach(work, entry, threads), []
+    for number in numbers:
+        points = entry.rock.surfaces[number].points
+        points = np.empty((0, 3)) if points is None else np.ascontiguousarray(points, np.float64)
+        if len(points):
+            found.append(_missed(work, entry, number, points, threads, compartment is None))
+        if len(points := points if compartment is None else compartment.points):
+            found.append(reach.beyond(number, points, compartment))
+    return [warning for warning in found if warning is not None]
+
+
+def _missed(
+    work: Work, entry, number: int, points: np.ndarray, threads: int, are_all: bool
+) -> BuildWarning | None:
+    """The warning about the point that a surface misses by most. are_all: the points are all that it has, and
+    have the numbers that users know.
+
+    It is given where the residual, less what the mesh does not show, is larger than the median distance to
+    the surfaces before and after it; or larger than a quarter of this, if it is an outlier: larger than any
+    that as many normally distributed residuals with the deviation of the other ones would have.
+    """
+    rock, shape = entry.rock, entry.surfaces[number]
+    z = heights_at(work, shape, points[:, :2], threads)
+    known = np.isfinite(z)
+    sizes = np.where(known, np.abs(points[:, 2] - z), 0.0)
+    apart = _distance_to_neighbors(work, entry, number, points, z, threads)
+    if apart is None:
+        return None
+    candidates = np.flatnonzero(sizes > _NOTABLE * apart)
+    if not len(candidates):
+        return None
+    beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates], threads)
+    worst = int(candidates[beyond_mesh.argmax()])
+    largest = float(beyond_mesh.max())
+    if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
+        return None
+    place, hole = place_text(points[worst].tolist()), _hole(rock, number, points[worst])
+    named = f"point {worst}" if are_all else "the point"
+    side = "above" if points[worst, 2] > z[worst] else "below"
+    text = (
+        f"it misses {named} at {place}{hole}, which lies {number_text(sizes[worst])} {side} it; the "
+        f"neighboring surfaces are {number_text(apart)} away: {_remedy(entry.interpolations[number])}"
+    )
+    return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
+
+
+def _unresolved(work: Work, entry, shape, points: np.ndarray, threads: int) -> np.ndarray:
+    """(N,) what the mesh may not show of a surface at points: half of its second difference over an edge,
+    about twice the error of linear interpolation at a peak between nodes."""
+    nodes, triangles = entry.region
+    plan = np.ascontiguousarray(points[:, :2])
+    # edges of equilateral triangles as large as the mean one
+    edge = np.sqrt(float(np.prod(np.ptp(nodes, axis=0))) / len(triangles) * 4.0 / np.sqrt(3.0))
+    middle, found = heights_at(work, shape, plan, threads), np.zeros(len(plan))
+    for offset in ((edge, 0.0), (0.0, edge)):
+        before, after = (heights_at(work, shape, plan + np.array(offset) * sign, threads) for sign in (-1, 1))
+        found = np.fmax(found, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
+    return found
+
+
+def _is_outlier(sizes: np.ndarray, largest: float) -> bool:
+    others = len(sizes) - 1
+    if others < 2:
+        return False
+    deviation = np.sqrt(max(float((sizes**2).sum()) - largest**2, 0.0) / others)
+    return largest > _BEYOND_NORMAL * np.sqrt(2.0 * np.log(others + 1)) * deviation
+
+
+def _distance_to_neighbors(
+    work: Work, entry, number: int, points: np.ndarray, z: np.ndarray, threads: int
+) -> float | None:
+    """The median of the vertical distances, at its points, to the surfaces before and after one, and to the
+    base; None where there is none."""
+    step = -(-len(points) // _MOST)
+    plan, z = np.ascontiguousarray(points[::step, :2]), z[::step]
+    found = [
+        heights_at(work, entry.surfaces[other], plan, threads)
+        for other in (number - 1, number + 1)
+        if 0 <= other < len(entry.surfaces) and entry.surfaces[other] is not None
+    ]
+    if number == 0 and entry.rock.base_elevation is not None:
+        found.append(np.full(len(plan), entry.rock.base_elevation))
+    apart = np.abs(np.concatenate(found) - np.tile(z, len(found))) if found else np.empty(0)
+    apart = apart[apart > 0]  # not where one of them ends, or they are one
+    return float(np.median(apart)) if len(apart) else None
+
+
+def _hole(rock: Rock, number: int, point: np.ndarray) -> str:
+    """The borehole that a point comes from, as a part of a sentence."""
+    name = rock.surfaces[number].name
+    for hole, (_, picks) in rock.hole_picks.items():
+        if any(surface == name and np.array_equal(place, point) for surface, place in picks):
+            return f" of borehole '{hole}'"
+    return ""
+
+
+def _remedy(result) -> str:
+    nugget = 0.0 if result is None or result.variogram is None else result.variogram.nugget
+    cause = f"nugget ({number_text(nugget)}; 0 honors every point)" if nugget else "method"
+    return f"check the point, the {cause}, and the edge length"
+
+
+class _Reach:
+    """What the surfaces of a rock mass cut, one after another, at nodes of its region, _MOST at most."""
+
+    def __init__(self, work: Work, entry, threads: int):
+        self.work, self.entry, self.threads = work, entry, threads
+        if entry.region is None:
+            return
+        nodes, triangles = entry.region
+        self.step = -(-len(nodes) // _MOST)
+        self.plan = np.ascontiguousarray(nodes[:: self.step])
+        (ux, uy), (vx, vy) = ((nodes[triangles[:, n]] - nodes[triangles[:, 0]]).T for n in (1, 2))
+        doubled = np.repeat(np.abs(ux * vy - uy * vx), 3)
+        self.area = np.bincount(triangles.ravel(), doubled, len(nodes))[:: self.step]
+        self.blocks = _Blocks(len(self.plan), entry.rock.base_elevation)
+
+    def beyond(self, number: int, points: np.ndarray, compartment: Compartment | None) -> BuildWarning | None:
+        """The warning about older blocks that a surface cuts beyond its points (outside their convex hull,
+        and farther from them than they are from one another), and not where they are. Surfaces are asked
+        about in their order."""
+        rock = self.entry.rock
+        surface = rock.surfaces[number]
+        follows = any(surface.options.get(option) is not None for option in SURFACE_OPTIONS)
+        if self.entry.region is None or number == 0 or not RULES[surface.rule].cuts or follows:
+            return None
+        while len(self.blocks) < number:
+            at = len(self.blocks)
+            self.blocks.add(self._heights(at), RULES[rock.surfaces[at].rule])
+        z = self._heights(number)
+        cut = self.blocks.cut_by(z)
+        if not cut.any():
+            return None
+        outside = self._outside(points)
+        counts = np.isfinite(z)
+        if not (cut & outside).any():
+            return None
+        if compartment is not None:
+            counts[counts] = compartment.holds(np.column_stack([self.plan, z])[counts])
+        beyond, beside = (np.where(counts & where, self.area, 0.0) for where in (outside, ~outside))
+        whole = beyond.sum() + beside.sum()
+        is_new = (dot(cut, beyond) > _LEAST_SHARE * whole) & (dot(cut, beside) <= _LEAST_SHARE * beside.sum())
+        if not is_new.any():
+            return None
+        there = cut[is_new].any(axis=0) & (beyond > 0)
+        depth = np.where(there, self.blocks.top - z, -np.inf)
+        place = place_text(self.plan[depth.argmax()].tolist())
+        names = [self._name(block) for block in np.flatnonzero(is_new).tolist()]
+        text = (
+            f"beyond its points, on {100 * beyond[there].sum() / whole:.2g} % of its area, it cuts "
+            f"{number_list(names)}, which it does not cut near them; deepest by "
+            f"{number_text(float(depth.max()))} at {place}: "
+            'add a point there, or set extrapolate = "nearest"'
+        )
+        return BuildWarning(text, "extrapolation", rock.name, surface.name)
+
+    def _heights(self, number: int) -> np.ndarray:
+        vertices, _ = shape = self.entry.surfaces[number]
+        own = vertices[:: self.step]
+        if len(vertices) == len(self.entry.region[0]) and np.array_equal(own[:, :2], self.plan):
+            return np.array(own[:, 2])
+        return heights_at(self.work, shape, self.plan, self.threads)
+
+    def _outside(self, points: np.ndarray) -> np.ndarray:
+        native = native_module()
+        outside = self.work.native(native.outside_hull, points, self.plan, threads=self.threads)
+        if outside.any():
+            away = self.work.native(native.nearest_distance, points, self.plan, threads=self.threads)
+            along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)  # of points on a line
+            spacing = float(native.mean_spacing(mean_heights(points), are_apart=True))
+            outside &= away > max(spacing, along)
+        return outside
+
+    def _name(self, number: int) -> str:
+        surface = self.entry.rock.surfaces[number]
+        return f"'{surface.block_name if number else surface.block or 'base block'}'"
+
+
+class _Blocks:
+    """The blocks that surfaces leave at (N,) places; `top`: of what is there, NaN where nothing is."""
+
+    def __init__(self, count: int, base: float | None):
+        self.top = np.full(count, np.nan if base is None else base)
+        self.firm = np.full(count, -np.inf)
+        self.bottoms: list[np.ndarray] = []
+        self.tops: list[np.ndarray] = []
+
+    def __len__(self) -> int:
+        return len(self.tops)
+
+    def add(self, z: np.ndarray, rule) -> None:
+        """The next surface, with heights z (N,), NaN where it has none."""
+        covered = np.isfinite(z)
+        z = np.maximum(z if rule.cuts else np.fmax(z, np.where(covered, self.top, np.nan)), self.firm)
+        if rule.cuts:
+            self.tops = [np.where(covered, np.minimum(top, z), top) for top in self.tops]
+        self.bottoms.append(self.top)
+        self.tops.append(z)
+        self.top = np.where(covered, z, self.top)
+        if rule.protects:
+            self.firm = np.where(covered, z, self.firm)
+
+    def cut_by(self, z: np.ndarray) -> np.ndarray:
+        """(B, N) bool: where a surface that cuts takes more of a block than a tenth of its mean thickness."""
+        z = np.maximum(z, self.firm)
+        found = []
+        for bottom, top in zip(self.bottoms, self.tops, strict=True):
+            thickness = top - bottom
+            is_there = thickness > 0  # never where NaN
+            least = 0.1 * thickness[is_there].mean() if is_there.any() else np.inf
+            found.append(is_there & (top - np.maximum(z, bottom) > least))
+        return np.array(found)

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The planar mesh of a region, on whose vertices surfaces are interpolated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.errors import InputRefused, place_text
+from ..base.work import Cancel, Progress, Work, native_module, run
+from ..project.region_rings import numbered_ring, region_rings
+from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
+from ..settings.meshers import DEFAULT_MESHER
+
+
+@dataclass(frozen=True)
+class MeshEstimate:
+    """What a mesh will take: triangles (within some 5 % where the outline has no fine detail), and bytes of
+    memory at the peak."""
+
+    triangles: int
+    memory: int
+
+
+def mesh_region(
+    outline,
+    holes=(),
+    edge_length: float | str | None = None,
+    mesher: str = DEFAULT_MESHER,
+    *,
+    triangles: int | None = None,
+    size: Iterable[Mapping] = (),
+    constraints: Iterable = (),
+    constraint_points=None,
+    points=None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Meshes a region in plan.
+
+    outline: (N, 2) corners in model units, in either direction, not repeated at the end (a repeated
+    corner is dropped). holes: outlines inside; all rings count even-odd.
+
+    edge_length: the edge that triangles should have, model units; or "auto": half as long as the `points`,
+    (P, 2) or (P, 3), are apart where they lie, growing gently between them. triangles: how many there should
+    be instead (within 5 %); with "auto" it scales what the points ask for.
+
+    mesher: "delaunay", constrained Delaunay refinement: no angle under 25 degrees but between two given
+    edges; "frontal", better triangles in more time (mean ratio above 0.95, 0.99 where the size is uniform);
+    "grid", the nodes of a grid along the axes, which ends at the outline.
+
+    size: where edges are to be shorter: {"at": "outline", "constraints", a place [x, y] or a line
+    [[x, y], ...], "length": model units, "distance": within which they are so long}; beyond, edges grow by
+    a quarter of the distance.
+
+    constraints: lines (N, 2) that the mesh must contain (rivers, fault traces); they may cross one another
+    and the outline, and what lies outside of the region is left out. constraint_points: (N, 2) or (N, 3)
+    points, in the region, that must be vertices.
+
+    Returns vertices (V, 2) float64 and triangles (T, 3) int32, counter-clockwise. The border is the outline,
+    subdivided. Vertices come in this order: the rings' corners, points of constraints and where they cross,
+    points added on edges, the others. The same input gives the same mesh.
+
+    Raises InputRefused where the rings cross or touch in a way that bounds no region, where a length or a
+    constraint is none, or where the mesh would not fit the memory; UsageError; Cancelled.
+    """
+    check_mesher(mesher)
+    asked = _checked(
+        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
+    )
+
+    def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
+        with work.phase(0.0, 1.0, "meshing"):
+            return _native_call(work, native_module().mesh_region, asked)
+
+    return run(task, progress, cancel)
+
+
+def estimate_mesh(
+    outline,
+    holes=(),
+    edge_length: float | str | None = None,
+    mesher: str = DEFAULT_MESHER,
+    *,
+    triangles: int | None = None,
+    size: Iterable[Mapping] = (),
+    constraints: Iterable = (),
+    constraint_points=None,
+    points=None,
+) -> MeshEstimate:
+    """The expected size of the mesh of mesh_region with the same arguments. Raises the same errors, as far as
+    they come before meshing."""
+    check_mesher(mesher)
+    asked = _checked(
+        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
+    )
+    made, memory = run(lambda work: _native_call(work, native_module().estimate_region_mesh, asked))
+    return MeshEstimate(round(made), round(memory))
+
+
+def mesh_rings(
+    work: Work,
+    rings: list[np.ndarray],
+    edge_length: float | str | None,
+    mesher: str,
+    *,
+    triangles: int | None = None,
+    size: Iterable[Mapping] = (),
+    constraints: Iterable = (),
+    constraint_points=None,
+    points=None,
+):
+    """mesh_region within a work that is already running, from checked rings."""
+    asked = _asked(rings, edge_length, mesher, triangles, size, constraints, constraint_points, points)
+    return _native_call(work, native_module().mesh_region, asked)
+
+
+def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """The region of checked rings in as few triangles as there are, without further vertices."""
+    native = native_module()
+    try:
+        return native.triangulate_rings(rings)
+    except native.InputError as error:
+        raise refused_region(error) from error
+
+
+def triangulate_polygon(outline, holes=()) -> np.ndarray:
+    """Divides a polygon with holes into triangles of its corners: by ear clipping, then swapping edges until
+    the triangulation is constrained Delaunay.
+
+    outline, holes: (N, 2) corners in either direction; holes may touch the outline, one another and
+    themselves in points. Returns (T, 3) int32, counter-clockwise: corner numbers, counted through the
+    outline and the holes one after another. Corners in one line stay corners; one that repeats the corner
+    before it is not used.
+
+    Raises InputRefused where a ring bounds nothing. Whether rings cross is looked for only where ears run
+    out: mesh_region looks for it always.
+    """
+    rings = [numbered_ring(outline, "outline")]
+    rings += [numbered_ring(hole, f"hole {number}") for number, hole in enumerate(holes, 1)]
+    native = native_module()
+    try:
+        return native.triangulate_polygon(rings)
+    except native.InputError as error:
+        raise refused_region(error) from error
+
+
+def _checked(outline, holes, *others) -> dict:
+    return _asked(region_rings(outline, holes), *others)
+
+
+def _asked(
+    rings: Sequence[np.ndarray],
+    edge_length,
+    mesher: str,
+    triangles,
+    size,
+    constraints,
+    constraint_points,
+    points,
+) -> dict:
+    """The arguments of the native mesher. Raises InputRefused and UsageError."""
+    lines = [places_of(line, f"constraint {number}") for number, line in enumerate(constraints)]
+    given = None if constraint_points is None else places_of(constraint_points, "constraint_points")
+    length, wanted, density = size_of_edges(edge_length, triangles, points)
+    return {
+        "rings": list(rings),
+        "edge_length": length,
+        "mesher": mesher,
+        "triangles": wanted,
+        "sizes": local_lengths(size, lines, given),
+        "constraints": lines,
+        "constraint_points": given,
+        "density": density,
+    }
+
+
+def _native_call(work: Work, function, asked: dict):
+    native = native_module()
+    try:
+        return work.native(function, **asked)
+    except native.InputError as error:
+        raise refused_region(error) from error
+
+
+def refused_region(error) -> InputRefused:
+    """The refusal of a region that the native part found fault with."""
+    place = tuple(error.place[:2]) if error.place is not None else None
+    what = str(error)
+    if place is not None and "(" not in what:
+        what = f"{what} at {place_text(place)}"
+    return InputRefused(what, item="region", place=place)

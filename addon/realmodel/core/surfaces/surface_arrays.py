@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangulated surfaces one after another, as flat arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .rock_input import RockInput
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceArrays:
+    """The arrays `surface_...` of docs/dev/geometry.md, under the same names: vertices (Vs, 3) float64,
+    triangles (Ts, 3) int32, which index within their own surface, vertex_offsets and triangle_offsets
+    (S + 1,) int64."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    vertex_offsets: np.ndarray
+    triangle_offsets: np.ndarray
+
+    @classmethod
+    def of(cls, shapes: Iterable[tuple[np.ndarray, np.ndarray]]) -> SurfaceArrays:
+        """Of vertices and triangles of each surface."""
+        shapes = list(shapes)
+        vertices, triangles = [v for v, _ in shapes], [t for _, t in shapes]
+        return cls(
+            np.concatenate([np.empty((0, 3)), *vertices]),
+            np.concatenate([np.empty((0, 3), np.int32), *triangles]),
+            np.cumsum([0, *map(len, vertices)], dtype=np.int64),
+            np.cumsum([0, *map(len, triangles)], dtype=np.int64),
+        )
+
+    @classmethod
+    def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> SurfaceArrays:
+        """Of the arrays of a file."""
+        names = ("vertices", "triangles", "vertex_offsets", "triangle_offsets")
+        return cls(*(arrays[f"surface_{name}"] for name in names))
+
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) and triangles (T, 3) of one surface."""
+        v, t = self.vertex_offsets, self.triangle_offsets
+        return self.vertices[v[number] : v[number + 1]], self.triangles[t[number] : t[number + 1]]
+
+
+def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
+    """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface
+    that no fault displaces has one."""
+    found = [np.zeros(0, np.int64)]
+    for entry in inputs:
+        for number in range(len(entry.surfaces)):
+            if entry.structure is None:
+                sizes = [len(entry.surface(number)[1])]
+            else:
+                sizes = [len(own) for _, own in entry.structure.distinct(number)]
+            found.append(np.repeat(np.arange(len(sizes)), sizes))
+    return np.concatenate(found).astype(np.int32)
+
+
+def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:
+    """The attributes (V,) of the vertices of one surface, by its global index: `height`; `variance` and
+    `distance`, NaN where there are none."""
+    interfaces = [entry.attributes.get(k, {}) for entry in inputs for k in range(len(entry.surfaces))]
+    known = interfaces[number] if number < len(interfaces) else {}  # faults and bodies have none
+    unknown = np.full(len(vertices), np.nan)
+    return {
+        "height": vertices[:, 2].copy(),
+        "variance": known.get("variance", unknown),
+        "distance": known.get("distance", unknown),
+    }

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The heights of the surfaces of a rock mass: the order of interpolation, and minimum thicknesses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused, place_text
+from ..base.work import Work, native_module
+from ..heights import Interpolation, chosen, heights
+from ..heights.interpolation import Task
+from ..heights.mis_ties import without_mis_ties
+from ..heights.on_mesh import within_bounds
+from ..heights.run import elsewhere
+from ..heights.surface_reference import heights_of
+from ..project.project import Rock, surface_item
+from ..settings.methods import SURFACE_OPTIONS, checked_options
+from .wrong_sides import Triangulation, heights_at, listed
+
+
+class Trend(NamedTuple):
+    """What the few points of a surface, or none, are interpolated on. sheet: it; z: (N,) its heights at the
+    nodes of the planar mesh, NaN where it has none. interpolation, attributes: of the points that it was made
+    from. method, options: by which what points differ from it is interpolated."""
+
+    sheet: Triangulation
+    z: np.ndarray
+    interpolation: Interpolation
+    attributes: dict[str, np.ndarray]
+    method: str
+    options: dict
+
+
+def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(V,) bool: the vertices that triangles name."""
+    used = np.zeros(len(vertices), bool)
+    used[triangles] = True
+    return used
+
+
+def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
+    """The surfaces of the rock mass that the options of one of them name: numbers by names."""
+    numbers = {surface.name: n for n, surface in enumerate(rock.surfaces)}
+    options = rock.surfaces[number].options
+    names = [options[option] for option in SURFACE_OPTIONS if isinstance(options.get(option), str)]
+    return {name: numbers[name] for name in names}
+
+
+def needed_surfaces(rock: Rock, number: int) -> list[int]:
+    """The surfaces that have to have heights before one of them."""
+    needs = list(named_surfaces(rock, number).values())
+    if rock.surfaces[number].minimum_thickness is not None:
+        needs.append(number - 1)
+    return needs
+
+
+def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
+    """The surfaces to be given heights so that those up to `last` (None: all) have theirs, each after those
+    that it needs. check_project has made sure that there is such an order."""
+    order: list[int] = []
+
+    def visit(number: int) -> None:
+        if number in order:
+            return
+        for needed in needed_surfaces(rock, number):
+            visit(needed)
+        order.append(number)
+
+    for number in range(len(rock.surfaces) if last is None else min(last + 1, len(rock.surfaces))):
+        visit(number)
+    return [number for number in order if rock.surfaces[number].interpolated]
+
+
+def _vertex_attributes(
+    work: Work, points: np.ndarray, result: Interpolation, region: Triangulation, threads: int
+) -> dict:
+    """Attributes (V,) of the vertices that `where_known` keeps, for points interpolated on a region's mesh:
+    `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
+    NaN where there are no points."""
+    nodes, triangles = region
+    kept = np.isfinite(result.z)
+    if not kept.all():
+        kept = used_vertices(nodes, triangles[kept[triangles].all(axis=1)])
+    variance = np.full(len(nodes), np.nan) if result.variance is None else result.variance
+    if len(points):
+        distance = work.native(native_module().nearest_distance, points, nodes, threads=threads)
+    else:
+        distance = np.full(len(nodes), np.nan)
+    return {"variance": variance[kept], "distance": distance[kept]}
+
+
+def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | None = None) -> None:
+    """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
+    keeps it above the older one where it has a minimum thickness."""
+    rock, surface = entry.rock, entry.rock.surfaces[number]
+    nodes, triangles = entry.region
+    method, settings = surface.method_options()
+    others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
+    try:
+        if trend is not None:
+            result = _on_trend(work, entry, number, trend, others, threads)
+        else:
+            give = heights if entry.draws is None else entry.draws[number].heights
+            result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
+        shape = where_known(nodes, triangles, result.z)
+        if trend is not None and not len(surface.points):
+            attributes = trend.attributes
+        else:
+            attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
+        warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
+        if surface.minimum_thickness is not None:
+            warnings += _older_points_above(work, rock, number, shape, threads)
+            shape, raised = _above_older(work, entry, number, shape, threads)
+            warnings += raised
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    entry.surfaces[number] = shape
+    entry.interpolations[number] = result
+    entry.attributes[number] = attributes
+    entry.warnings += warnings
+
+
+def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, threads: int) -> Interpolation:
+    """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
+    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.region
+    points, mis_ties = without_mis_ties(surface.points)
+    away = points.copy()
+    away[:, 2] -= heights_at(work, trend.sheet, points[:, :2], threads)
+    away = away[np.isfinite(away[:, 2])]
+    result = replace(trend.interpolation, z=trend.z)
+    if len(away):
+        give = heights
+        if entry.draws is not None:  # the trend is drawn, too: nothing is the same in the next realization
+            give = replace(entry.draws[number], known={}).heights
+        settings = checked_options(trend.method, trend.options)
+        result = give(work, away, nodes, trend.method, settings, threads, triangles, {})
+        result = replace(result, z=trend.z + result.z)
+    task = Task(work, points, nodes, surface.method_options()[1], threads, triangles, surfaces=others)
+    border = result.z
+    if task.settings.get("border") is not None:
+        given = heights_of(task, task.settings["border"], nodes, "border")
+        border = np.where(np.isfinite(given), given, border)
+    warnings = [*([mis_ties] if mis_ties else []), *elsewhere(points, nodes)]
+    return replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
+
+
+def _older_points_above(
+    work: Work, rock: Rock, number: int, shape: Triangulation, threads: int
+) -> list[BuildWarning]:
+    """The points of the older surface above one that is to keep off it, before this is raised."""
+    points = rock.surfaces[number - 1].point_array()
+    if not len(points):
+        return []
+    z = heights_at(work, shape, points[:, :2], threads)
+    return listed(rock, number - 1, points[:, 2] - z, "above", number)
+
+
+def settle_method(work: Work, entry, number: int, threads: int) -> None:
+    """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
+    rock, surface = entry.rock, entry.rock.surfaces[number]
+    method, settings = surface.method_options()
+    if method != "auto":
+        return
+    try:
+        method, options = chosen(work, surface.points, settings, threads)
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    rock.surfaces[number] = replace(surface, method=method, options=options)
+
+
+def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
+    """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
+    known = np.isfinite(z)
+    if known.all():
+        return np.column_stack([nodes, z]), triangles
+    kept = triangles[known[triangles].all(axis=1)]
+    if not len(kept):
+        raise no_triangle_known()
+    used = used_vertices(nodes, kept)
+    number = np.cumsum(used, dtype=np.int32) - 1
+    return np.column_stack([nodes[used], z[used]]), number[kept]
+
+
+def no_triangle_known() -> InputRefused:
+    return InputRefused(
+        "no triangle of the region's mesh has heights at all its nodes",
+        advice='extrapolate = "method" or "nearest" gives heights beyond the points',
+    )
+
+
+def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
+    """The shape, raised to the minimum thickness above the older surface, and warnings where it was
+    raised."""
+    rock = entry.rock
+    surface = rock.surfaces[number]
+    vertices, triangles = shape
+    older_vertices, _ = entry.surfaces[number - 1]
+    if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
+        least = older_vertices[:, 2] + surface.minimum_thickness
+    else:
+        least = heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
+        least += surface.minimum_thickness
+    raised, lift = raise_to(vertices[:, 2], least)
+    if raised is None:
+        return shape, []
+    worst = int(lift.argmax())
+    place = tuple(vertices[worst, :2].tolist())
+    warning = raised_above(
+        rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
+    )
+    return (np.column_stack([vertices[:, :2], raised]), triangles), [warning]
+
+
+def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
+    """Heights (N,) raised to the least ones where these are known, None where all are high enough; and by how
+    much each was."""
+    lift = np.where(np.isfinite(least), least - z, 0.0)
+    lift[~(lift > 0)] = 0.0
+    return (np.where(lift > 0, least, z) if lift.any() else None), lift
+
+
+def raised_above(
+    rock: Rock, number: int, count: int, nodes: int, thickness: float, by, place
+) -> BuildWarning:
+    """The warning about a surface that was raised at some of its nodes to its minimum thickness above the
+    older one. count: of these nodes; by, place: the largest rise, and where it is."""
+    text = (
+        f"raised at {count} of {nodes} nodes to stay {thickness:g} above "
+        f"'{rock.surfaces[number - 1].name}', by up to {by:.4g} at {place_text(place)}"
+    )
+    return BuildWarning(text, "minimum_thickness", rock.name, rock.surfaces[number].name)

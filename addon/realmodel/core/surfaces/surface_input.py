@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surface of a project, read: its points or its ready mesh, from a file or from arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sized
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.mapped_arrays import Gather, MappedArrays, in_memory, in_pieces
+from ..base.text import Step, no_step
+from ..base.triangles import checked_triangulation
+from ..base.work import Work
+from ..heights.interpolate import checked_points
+from ..project.project import Rock, Surface, surface_item
+from ..readers import read_mesh, read_point_file
+from .surface_heights import Triangulation
+
+
+@dataclass(frozen=True)
+class ReadSurface:
+    """surface: with arrays in the place of files. shape: the triangulation of a ready mesh, else None. faces:
+    (T,) the face of its file that each triangle belongs to, None where these are equal. warnings:
+    sentences."""
+
+    surface: Surface
+    shape: Triangulation | None
+    faces: np.ndarray | None
+    warnings: list[str]
+
+    def with_arrays(self, change: Callable[[Any], Any]) -> ReadSurface:
+        """The same, with `change` of each array in its place: a reference to it (MappedArrays.place), or
+        the array of such a reference."""
+        surface, shape = self.surface, self.shape
+        faces = None if self.faces is None else change(self.faces)
+        if shape is None:
+            return replace(self, surface=replace(surface, points=change(surface.points)), faces=faces)
+        vertices, triangles = map(change, shape)
+        surface = replace(surface, vertices=vertices, triangles=triangles)
+        return replace(self, surface=surface, shape=(vertices, triangles), faces=faces)
+
+
+@dataclass(frozen=True)
+class SurfaceInput:
+    """A surface before it is read, with all that reading it needs: another process may read it. rock: the
+    name of its rock mass; boreholes: the last file of boreholes, if any; met: the points where they meet
+    it."""
+
+    rock: str
+    surface: Surface
+    boreholes: Path | None
+    met: np.ndarray | None
+    units: str
+
+    @classmethod
+    def of(cls, rock: Rock, surface: Surface, met: np.ndarray | None, units: str) -> SurfaceInput:
+        boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
+        return cls(rock.name, surface, boreholes, met, units)
+
+    def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:
+        """arrays: where those that come from files are kept; None: in memory. Raises InputRefused, naming the
+        surface."""
+        surface = self.surface
+        file = surface.input_file or surface.shape_file
+        if file is None and surface.points is None:
+            file = self.boreholes
+        try:
+            if surface.interpolated:
+                points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
+                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, warnings)
+            vertices, triangles, faces, warnings = self._mesh(step, arrays)
+        except InputRefused as error:
+            raise error.within(surface_item(Rock(self.rock, []), surface)) from error
+        surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
+        return ReadSurface(surface, (vertices, triangles), faces, warnings)
+
+    def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
+        surface = self.surface
+        points: object = surface.points
+        warnings: list[str] = []
+        if surface.point_file is not None:
+            points, warnings = read_point_file(surface.point_file, self.units, step, gather)
+        if self.met is not None:
+            own = np.empty((0, 3)) if points is None else checked_points(points)
+            points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
+        if points is None and surface.needs_points:
+            raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
+        if points is None or (isinstance(points, Sized) and not len(points) and not surface.needs_points):
+            return np.empty((0, 3)), warnings
+        checked = checked_points(points)
+        # checked_points may return another array with the same values
+        is_kept = surface.point_file is not None or self.met is not None
+        return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
+
+    def _mesh(self, step: Step, arrays: MappedArrays | None):
+        surface = self.surface
+        if surface.mesh_file is None:
+            return *checked_triangulation(surface.vertices, surface.triangles), None, []
+        file = surface.mesh_file.file
+        if arrays is None:
+            mesh = read_mesh(file, step)
+            vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
+        else:
+            mesh = read_mesh(file, step, arrays.rows)
+            vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
+        return vertices, mesh.triangles, mesh.face_of_triangle, warnings
+
+
+# Reads surfaces in any order: pairs of number and surface. It reports its progress to the Work.
+Reader = Callable[[Work, list[SurfaceInput]], Iterable[tuple[int, ReadSurface]]]
+
+
+def read_each(work: Work, surfaces: list[SurfaceInput]) -> Iterator[tuple[int, ReadSurface]]:
+    """Reads surfaces one after another."""
+    for number, surface in enumerate(surfaces):
+
+        def step(share: float, number: int = number) -> None:
+            work.step((number + share) / len(surfaces))
+
+        yield number, surface.read(step)
+        work.step((number + 1) / len(surfaces))

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points of a surface above those of a younger one that cuts, at one place: it would have removed them.
+
+Where there is no point of the younger surface at the place nothing can be said: a surface that was eroded is
+often given as it was before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from itertools import combinations
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import number_list, place_text
+from ..project.project import Rock
+from ..settings.rules import RULES
+from .shared_places import is_raster, places_of
+from .wrong_sides import WrongPoints
+
+_MOST = 20_000  # points that are picked; more are a survey, and may be of another time
+
+
+def points_above_younger(rock: Rock, numbers: Collection[int]) -> list[BuildWarning]:
+    """The points of surfaces, of these numbers, that contradict the order of a rock mass with arrays.
+
+    Two points in one hole (Rock.hole_picks) contradict it wherever the older one lies higher. Points with
+    the same x and y do where most of two surfaces are so: single ones may be of a surface that was continued
+    above the ground. Rasters are left out: they may be of one ground at several times.
+    """
+    surfaces = rock.surfaces
+    picks = _Picks(rock)
+    known = [n for n in sorted(numbers) if _may_be_picks(surfaces[n].point_array())]
+    points = {n: surfaces[n].point_array() for n in known}
+    places = dict(zip(known, places_of(list(points.values())), strict=True)) if known else {}
+    found: dict[int, WrongPoints] = {}
+    holes: dict[int, list[str]] = {}
+    for older, younger in combinations(known, 2):
+        if RULES[surfaces[older].rule].protects or not RULES[surfaces[younger].rule].cuts:
+            continue  # the points of the younger one are looked at instead: wrong_sides
+        if younger == older + 1 and surfaces[younger].minimum_thickness is not None:
+            continue  # found where this is imposed
+        own, other, names = picks.shared(older, younger)
+        if not len(own):
+            own, other = places[older].shared_with(places[younger])
+        above = points[older][own]
+        beyond = above[:, 2] - points[younger][other, 2]
+        if not names and 2 * (beyond > 0).sum() <= (beyond != 0).sum():
+            continue
+        by_number = np.argsort(own)
+        wrong = WrongPoints.of(above[by_number], beyond[by_number], younger, own[by_number])
+        if wrong is not None:
+            found[older] = found[older].joined(wrong) if older in found else wrong
+            holes.setdefault(older, []).extend(
+                name for name, by in zip(names, beyond, strict=False) if by > 0
+            )
+    return [_warning(rock, older, wrong, holes[older]) for older, wrong in found.items()]
+
+
+def _may_be_picks(points: np.ndarray) -> bool:
+    return 0 < len(points) <= _MOST and not is_raster(points)
+
+
+def _warning(rock: Rock, older: int, wrong: WrongPoints, holes: list[str]) -> BuildWarning:
+    surface = rock.surfaces[older]
+    names = number_list([f"'{rock.surfaces[younger].name}'" for younger in wrong.others])
+    text = (
+        f"{len(wrong.items)} of its {len(surface.point_array())} points lie above those of {names} at the "
+        f"same place, the farthest by {wrong.by:.4g}: point {wrong.worst} at {place_text(wrong.place)}"
+    )
+    if holes:
+        text += f"; holes {number_list(dict.fromkeys(holes))}"
+    text += "; a younger surface removes what is above it: check the order of the surfaces, and these points"
+    return BuildWarning(text, "wrong_side", rock.name, surface.name, wrong.items)
+
+
+class _Picks:
+    """The picks of the boreholes of a rock mass, by their surfaces and holes."""
+
+    def __init__(self, rock: Rock):
+        self._of: dict[int, dict[str, int]] = {}
+        for number, surface in enumerate(rock.surfaces):
+            met = [
+                (hole, tuple(place))
+                for hole, (_, picks) in rock.hole_picks.items()
+                for name, place in picks
+                if name == surface.name
+            ]
+            if met:
+                rows = {tuple(place): row for row, place in enumerate(surface.point_array().tolist())}
+                self._of[number] = {hole: rows[place] for hole, place in met if place in rows}
+
+    def shared(self, first: int, second: int) -> tuple[np.ndarray, np.ndarray, list[str]]:
+        """The numbers of the points of two surfaces in the holes that meet both, (N,) each, and the holes."""
+        own, other = self._of.get(first, {}), self._of.get(second, {})
+        holes = [hole for hole in own if hole in other]
+        rows = np.array([(own[hole], other[hole]) for hole in holes], int).reshape(-1, 2)
+        return rows[:, 0], rows[:, 1], holes

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points of a surface on the wrong side of another surface by the rules: usually errors in the data."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import place_text
+from ..base.work import Work, native_module
+from ..project.project import Rock
+from ..settings.rules import RULES
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+
+def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
+    """(N,) heights of a surface at places (N, 2), NaN where it has none."""
+    surface_heights = native_module().surface_heights
+    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
+
+
+def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
+    """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
+    where heights of all older ones are known. Each older surface is asked once for the points of all.
+
+    A surface that does not cut ends on the top that is there, and any surface on one that protects itself; a
+    minimum thickness keeps it above the one before it. What an older surface's points do above a younger
+    one is no contradiction: there the younger one ends, or has cut.
+    """
+    surfaces = entry.rock.surfaces
+    points = {
+        number: surfaces[number].point_array() for number in numbers if len(surfaces[number].point_array())
+    }
+    warnings = []
+    found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock), threads)
+    for number, (beyond, others) in found.items():
+        warnings += listed(entry.rock, number, beyond, "below", others)
+    return warnings
+
+
+def kept_off(rock: Rock) -> frozenset[int]:
+    """The surfaces that a minimum thickness keeps off the one before."""
+    return frozenset(n for n, surface in enumerate(rock.surfaces) if surface.minimum_thickness is not None)
+
+
+def below_older(
+    work: Work,
+    rock: Rock,
+    shapes: list[Triangulation | None],
+    points: dict[int, np.ndarray],
+    off: Collection[int],
+    threads: int,
+) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """Of points (N, 3) of surfaces, by their numbers: how far each lies below what its surface is kept above
+    (N,), and of which surface this is (N,). shapes: of all surfaces, None where heights are not known. off:
+    those that a minimum thickness keeps off the one before."""
+    surfaces = rock.surfaces
+    points = {number: own for number, own in points.items() if number > 0}
+    beneath = {number: _Beneath(len(own)) for number, own in points.items()}
+    for older in range(max(points, default=0)):
+        shape = shapes[older]
+        if shape is None:
+            continue
+        younger = [number for number in points if number > older]
+        z = heights_at(work, shape, np.concatenate([points[n][:, :2] for n in younger]), threads)
+        ends = np.cumsum([len(points[number]) for number in younger])
+        for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
+            beneath[number].add(own, older, RULES[surfaces[older].rule])
+    found = {}
+    for number, below in beneath.items():
+        surface = surfaces[number]
+        floor = below.firm if RULES[surface.rule].cuts else below.top
+        if number in off and below.last is not None and shapes[number - 1] is not None:
+            floor.raise_to(below.last, number - 1)
+        found[number] = floor.z - points[number][:, 2], floor.surface
+    return found
+
+
+class _Beneath:
+    """What there is beneath (N,) points: the top, and what may not be cut; last: the heights of the youngest
+    surface of those that were added, oldest first."""
+
+    def __init__(self, count: int):
+        self.top, self.firm = _Floor(count), _Floor(count)
+        self.last: np.ndarray | None = None
+
+    def add(self, z: np.ndarray, number: int, rule) -> None:
+        own = _Floor(len(z))
+        own.raise_to(z, number)
+        covered = np.isfinite(z)
+        if not rule.cuts:
+            own.raise_to(np.where(covered, self.top.z, np.nan), self.top.surface)
+        own.raise_to(np.where(covered, self.firm.z, np.nan), self.firm.surface)
+        self.top.take(own, covered)
+        if rule.protects:
+            self.firm.take(own, covered)
+        self.last = z
+
+
+class _Floor:
+    """(N,) heights, and the surface that each is of."""
+
+    def __init__(self, count: int):
+        self.z = np.full(count, -np.inf)
+        self.surface = np.full(count, -1)
+
+    def raise_to(self, z: np.ndarray, surface) -> None:
+        higher = z > self.z  # never where NaN
+        self.z = np.where(higher, z, self.z)
+        self.surface = np.where(higher, surface, self.surface)
+
+    def take(self, other: _Floor, where: np.ndarray) -> None:
+        self.z = np.where(where, other.z, self.z)
+        self.surface = np.where(where, other.surface, self.surface)
+
+
+@dataclass(frozen=True)
+class WrongPoints:
+    """The points of a surface, by their numbers, that lie on the wrong side of others, and these; the
+    farthest: its number, place, and how far."""
+
+    items: tuple[int, ...]
+    others: tuple[int, ...]
+    worst: int
+    place: tuple[float, ...]
+    by: float
+
+    @classmethod
+    def of(cls, points: np.ndarray, beyond: np.ndarray, others, numbers: np.ndarray) -> WrongPoints | None:
+        """None where all are right. beyond: how far each of the points (N, 3) is; others: beyond which
+        surface, one or (N,); numbers: of the points."""
+        wrong = np.flatnonzero(beyond > 0)
+        if not len(wrong):
+            return None
+        surfaces = np.unique(np.broadcast_to(others, beyond.shape)[wrong])
+        worst = wrong[int(beyond[wrong].argmax())]
+        return cls(
+            tuple(numbers[wrong].tolist()),
+            tuple(surfaces.tolist()),
+            int(numbers[worst]),
+            tuple(points[worst].tolist()),
+            float(beyond[worst]),
+        )
+
+    def joined(self, other: WrongPoints) -> WrongPoints:
+        """The wrong points of two parts of a surface."""
+        worst = min((self, other), key=lambda each: (-each.by, each.worst))
+        items, others = (
+            tuple(sorted({*getattr(self, name), *getattr(other, name)})) for name in ("items", "others")
+        )
+        return replace(worst, items=items, others=others)
+
+    def warning(self, rock: Rock, number: int, count: int, side: str) -> BuildWarning:
+        """count: of all points of the surface."""
+        names = " and ".join(f"'{rock.surfaces[other].name}'" for other in self.others)
+        text = (
+            f"{len(self.items)} of its {count} points lie {side} {names}, the farthest by "
+            f"{self.by:.4g}: point {self.worst} at {place_text(self.place)}"
+        )
+        return BuildWarning(text, "wrong_side", rock.name, rock.surfaces[number].name, tuple(self.items))
+
+
+def listed(rock: Rock, number: int, beyond: np.ndarray, side: str, others) -> list[BuildWarning]:
+    """The warning about the points of a surface on the wrong side of other surfaces. beyond: (N,) how far;
+    others: the numbers of these surfaces, one or (N,)."""
+    points = rock.surfaces[number].point_array()
+    found = WrongPoints.of(points, beyond, others, np.arange(len(points)))
+    return [] if found is None else [found.warning(rock, number, len(points), side)]
