@@ -74,15 +74,6 @@ class FileBytes:
             begin, size = begin + size, BYTES_AT_ONCE
         return -1
 
-    def rfind(self, text: bytes) -> int:
-        """The last position of a short text; -1 where there is none."""
-        for end in range(self._size, 0, -BYTES_AT_ONCE):
-            begin = max(end - BYTES_AT_ONCE, 0)
-            found = self[begin : end + len(text) - 1].rfind(text)
-            if found >= 0:
-                return begin + found
-        return -1
-
     def count(self, text: bytes, begin: int, end: int) -> int:
         """The number of times that a text of one byte occurs between two positions."""
         places = range(begin, end, BYTES_AT_ONCE)

@@ -139,3 +139,17 @@ def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | 
         found.add_vertices(vertices)
     found.add_faces(faces, lines)
     return found.mesh()
+
+
+def mesh_of_corners(file: Path, corners, sizes: Sequence[int] = (3,)) -> TriangleMesh:
+    """The mesh of faces that are given by the places (C, 3) of their corners, one face after another; equal
+    places become one vertex, in the order of their coordinates. sizes: the number of corners of each face, or
+    that of all. Raises InputRefused."""
+    with np.errstate(invalid="ignore"):  # NaN of any kind is refused
+        places = np.asarray(corners, np.float64) + 0.0  # zero has one sign
+    vertices, index = np.unique(places, axis=0, return_inverse=True)
+    if len(set(sizes)) == 1:
+        return mesh_of_faces(file, vertices, index.reshape(-1, sizes[0]))
+    ends = itertools.accumulate(sizes, initial=0)
+    numbers = index.ravel().tolist()
+    return mesh_of_faces(file, vertices, [numbers[begin:end] for begin, end in itertools.pairwise(ends)])
