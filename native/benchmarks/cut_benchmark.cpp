@@ -64,7 +64,7 @@ realmodel::CellComplex make_model(int quads, bool lattice, double shift, int thr
     realmodel::strata::StackInput input;
     for (const Surface& s : made)
         input.surfaces.push_back({s.vertices, s.triangles});
-    return realmodel::strata::build_stack(input, threads, nullptr);
+    return realmodel::strata::build_stack(input, {threads, nullptr});
 }
 
 /// FNV-1a of the bytes of arrays.
@@ -117,12 +117,12 @@ int main(int count, char** arguments) {
     const auto began = std::chrono::steady_clock::now();
     const auto cut = [&] {
         if (kind == "block")
-            return realmodel::cutting::cut_by_block(model, other, 4, threads, nullptr);
+            return realmodel::cutting::cut_by_block(model, other, 4, {threads, nullptr});
         if (kind == "plane")
-            return realmodel::cutting::cut_by_plane(model, {{-4, -4, 1.1}, {-0.3, 0.2, 1}}, threads,
-                                                    nullptr);
+            return realmodel::cutting::cut_by_plane(model, {{-4, -4, 1.1}, {-0.3, 0.2, 1}},
+                                                    {threads, nullptr});
         return realmodel::cutting::cut_by_surface(model, {cutter.vertices, cutter.triangles},
-                                                  threads, nullptr);
+                                                  {threads, nullptr});
     }();
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

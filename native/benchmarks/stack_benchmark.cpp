@@ -85,7 +85,7 @@ int main(int count, char** arguments) {
     }
     const auto began = std::chrono::steady_clock::now();
     const auto complex = realmodel::strata::build_rock_masses(
-        input, threads, nullptr,
+        input, {threads, nullptr},
         blocks ? realmodel::strata::CellKind::kBlocks : realmodel::strata::CellKind::kColumns);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

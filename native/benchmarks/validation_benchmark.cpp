@@ -70,12 +70,12 @@ int main(int count, char** arguments) {
         return std::chrono::duration<double>(Clock::now() - since).count();
     };
     const auto begin = Clock::now();
-    const CellComplex model = strata::build_stack(input, threads, nullptr,
+    const CellComplex model = strata::build_stack(input, {threads, nullptr},
                                                   blocks ? CellKind::kBlocks : CellKind::kColumns);
     const double built = seconds(begin);
 
     const auto start = Clock::now();
-    const auto results = validation::check_topology(model, threads, nullptr);
+    const auto results = validation::check_topology(model, {threads, nullptr});
     const double checked = seconds(start);
     const auto faces = static_cast<double>(model.face_cells.size());
     std::printf("%.0f faces: built in %.2f s, proven in %.3f s (%.1f %%), %.0f ns a face\n", faces,

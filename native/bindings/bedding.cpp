@@ -25,12 +25,12 @@ namespace {
 using HistoryArrays =
     std::tuple<std::vector<SurfaceArrays>, std::optional<double>, std::vector<std::string>>;
 
-py::tuple bedding_arrays(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-                         const Indices& face_vertices, const Indices& face_cells,
-                         const std::vector<HistoryArrays>& given, const Indices& faces,
-                         const Array<bool>& reversed, const Indices& history, const Indices& layer,
-                         const Indices& histories_of_corners, int threads,
-                         const Progress* control) {
+std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
+    const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+    const Indices& face_vertices, const Indices& face_cells,
+    const std::vector<HistoryArrays>& given, const Indices& faces, const Array<bool>& reversed,
+    const Indices& history, const Indices& layer, const Indices& histories_of_corners, int threads,
+    Progress* control) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -57,10 +57,10 @@ py::tuple bedding_arrays(const Array<double>& vertices, const Array<std::int64_t
     {
         const py::gil_scoped_release unlocked;
         made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
-                                   threads, control);
+                                   {threads, control});
     }
-    return py::make_tuple(to_array(std::move(made.height)), to_array(std::move(made.thickness)),
-                          to_array(std::move(made.depth)));
+    return {to_array(std::move(made.height)), to_array(std::move(made.thickness)),
+            to_array(std::move(made.depth))};
 }
 
 }  // namespace

@@ -20,19 +20,19 @@ using booleans::Refinement;
 
 /// An array that looks at memory of a Refinement, which it keeps alive.
 template <class T>
-py::array seen(const py::object& owner, const T* values, std::vector<py::ssize_t> shape) {
+py::array_t<T> seen(const py::object& owner, const T* values, std::vector<py::ssize_t> shape) {
     py::array_t<T> array(std::move(shape), values, owner);
     array.attr("flags").attr("writeable") = false;
     return array;
 }
 
 template <class T>
-py::array seen(const py::object& owner, const std::vector<T>& values) {
+py::array_t<T> seen(const py::object& owner, const std::vector<T>& values) {
     return seen(owner, values.data(), {static_cast<py::ssize_t>(values.size())});
 }
 
-py::array rows_seen(const py::object& owner,
-                    const std::vector<std::array<std::int32_t, 3>>& triangles) {
+py::array_t<std::int32_t> rows_seen(const py::object& owner,
+                                    const std::vector<std::array<std::int32_t, 3>>& triangles) {
     static_assert(sizeof(std::array<std::int32_t, 3>) == 3 * sizeof(std::int32_t));
     return seen(owner, reinterpret_cast<const std::int32_t*>(triangles.data()),
                 {static_cast<py::ssize_t>(triangles.size()), 3});
@@ -76,7 +76,7 @@ py::list sub_blocks(const py::object& self) {
     return found;
 }
 
-py::array is_in(const py::object& self) {
+py::array_t<bool> is_in(const py::object& self) {
     const auto& values = in(self).is_in;
     static_assert(sizeof(values[0]) == 4 * sizeof(bool));
     return seen(self, reinterpret_cast<const bool*>(values.data()),
@@ -98,7 +98,7 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     const booleans::TriangleMesh first{view(first_vertices), view(first_triangles)};
     const booleans::TriangleMesh second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;
-    return std::make_unique<Refinement>(booleans::intersect(first, second, threads, control));
+    return std::make_unique<Refinement>(booleans::intersect(first, second, {threads, control}));
 }
 
 }  // namespace

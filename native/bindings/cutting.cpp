@@ -62,7 +62,7 @@ py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, threads, control);
+        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, {threads, control});
     }
     return to_dict(std::move(cut));
 }
@@ -75,8 +75,8 @@ py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)}, threads,
-                                      control);
+        cut = cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)},
+                                      {threads, control});
     }
     return to_dict(std::move(cut));
 }
@@ -87,7 +87,7 @@ py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_block(arrays.complex, others.complex, block, threads, control);
+        cut = cutting::cut_by_block(arrays.complex, others.complex, block, {threads, control});
     }
     return to_dict(std::move(cut));
 }
@@ -98,7 +98,7 @@ py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& po
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::section_by_plane(arrays.complex, {point, normal}, threads, control);
+        section = cutting::section_by_plane(arrays.complex, {point, normal}, {threads, control});
     }
     return to_dict(std::move(section));
 }
@@ -109,13 +109,14 @@ py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::fence_panel(arrays.complex, start, end, threads, control);
+        section = cutting::fence_panel(arrays.complex, start, end, {threads, control});
     }
     return to_dict(std::move(section));
 }
 
-py::tuple triangulate_faces(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-                            const Indices& face_vertices, int threads, Progress* control) {
+std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
+    const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+    const Indices& face_vertices, int threads, Progress* control) {
     require_columns(vertices, 3, "vertices");
     const auto positions = view(vertices);
     const auto offsets = view(face_offsets);
@@ -124,9 +125,9 @@ py::tuple triangulate_faces(const Array<double>& vertices, const Array<std::int6
     cutting::FaceTriangles found;
     {
         const py::gil_scoped_release unlocked;
-        found = cutting::triangulate_faces(positions, offsets, corners, threads, control);
+        found = cutting::triangulate_faces(positions, offsets, corners, {threads, control});
     }
-    return py::make_tuple(to_array(std::move(found.triangles)), to_array(std::move(found.offsets)));
+    return {to_array(std::move(found.triangles)), to_array(std::move(found.offsets))};
 }
 
 }  // namespace

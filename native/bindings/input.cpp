@@ -26,10 +26,10 @@ input::Values values_of(const ValuesTuple& given) {
     return {std::get<0>(given), std::get<1>(given)};
 }
 
-py::tuple read_numbers(const py::bytes& text, std::size_t begin, std::size_t end, char separator,
-                       char decimal, const std::vector<std::size_t>& columns,
-                       const std::vector<FilterTuple>& filters, const ValuesTuple& missing,
-                       int threads) {
+std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
+    const py::bytes& text, std::size_t begin, std::size_t end, char separator, char decimal,
+    const std::vector<std::size_t>& columns, const std::vector<FilterTuple>& filters,
+    const ValuesTuple& missing, int threads) {
     const std::string_view whole = text;
     if (begin > end || end > whole.size() || columns.empty()) {
         throw InputError("bad_range", "no columns, or bytes beyond the text");
@@ -42,8 +42,8 @@ py::tuple read_numbers(const py::bytes& text, std::size_t begin, std::size_t end
         const py::gil_scoped_release unlocked;  // bytes do not change
         table = input::read_numbers(whole.substr(begin, end - begin), format, threads);
     }
-    return py::make_tuple(to_array(std::move(table.values), columns.size()), table.lines,
-                          table.filtered, table.missing);
+    return {to_array(std::move(table.values), columns.size()), table.lines, table.filtered,
+            table.missing};
 }
 
 py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {

@@ -47,15 +47,18 @@ interpolation::Drift drift_of(const std::string& name) {
     throw InputError("option", "drift \"" + name + "\" is not known");
 }
 
-py::tuple kriged_tuple(interpolation::Kriged&& kriged) {
-    return py::make_tuple(to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)),
-                          kriged.alone);
+/// heights, variances, nodes with no point within the radius
+using KrigedArrays = std::tuple<Array<double>, Array<double>, std::int64_t>;
+
+KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
+    return {to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)), kriged.alone};
 }
 
-py::tuple krige(const Array<double>& points, const Array<double>& nodes, const std::string& model,
-                double range, double sill, double nugget, double ratio, double azimuth,
-                const std::vector<NestedTuple>& further, int neighbours, int octants, double radius,
-                const std::string& drift, int threads, Progress* control) {
+KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
+                   const std::string& model, double range, double sill, double nugget, double ratio,
+                   double azimuth, const std::vector<NestedTuple>& further, int neighbours,
+                   int octants, double radius, const std::string& drift, int threads,
+                   Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
@@ -69,10 +72,11 @@ py::tuple krige(const Array<double>& points, const Array<double>& nodes, const s
     return kriged_tuple(std::move(kriged));
 }
 
-py::tuple krige_left_out(const Array<double>& points, const std::string& model, double range,
-                         double sill, double nugget, double ratio, double azimuth,
-                         const std::vector<NestedTuple>& further, int neighbours, int octants,
-                         double radius, const std::string& drift, int threads, Progress* control) {
+KrigedArrays krige_left_out(const Array<double>& points, const std::string& model, double range,
+                            double sill, double nugget, double ratio, double azimuth,
+                            const std::vector<NestedTuple>& further, int neighbours, int octants,
+                            double radius, const std::string& drift, int threads,
+                            Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
     const interpolation::KrigingOptions options{neighbours, threads, drift_of(drift), octants,
@@ -137,7 +141,7 @@ Array<double> nearest_distance(const Array<double>& points, const Array<double>&
     std::vector<double> distances;
     {
         const py::gil_scoped_release unlocked;
-        distances = interpolation::nearest_distances(from, to, threads, control);
+        distances = interpolation::nearest_distances(from, to, {threads, control});
     }
     return to_array(std::move(distances));
 }
@@ -153,7 +157,7 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
     std::vector<double> sums;
     {
         const py::gil_scoped_release unlocked;
-        sums = interpolation::line_sums(to, lines, threads, control);
+        sums = interpolation::line_sums(to, lines, {threads, control});
     }
     return to_array(std::move(sums));
 }

@@ -41,8 +41,11 @@ std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays,
     return rings;
 }
 
-py::tuple to_tuple(meshing::PlanarMesh&& mesh) {
-    return py::make_tuple(to_array(std::move(mesh.vertices)), to_array(std::move(mesh.triangles)));
+/// vertices (V, 2), triangles (T, 3)
+using PlanarArrays = std::tuple<Array<double>, Array<std::int32_t>>;
+
+PlanarArrays to_tuple(meshing::PlanarMesh&& mesh) {
+    return {to_array(std::move(mesh.vertices)), to_array(std::move(mesh.triangles))};
 }
 
 meshing::Mesher to_mesher(const std::string& name) {
@@ -80,11 +83,12 @@ meshing::MeshRequest to_request(double edge_length, const std::string& mesher, d
     return request;
 }
 
-py::tuple mesh_region(const std::vector<Array<double>>& rings, double edge_length,
-                      const std::string& mesher, double triangles, const std::vector<Size>& sizes,
-                      const std::vector<Array<double>>& constraints,
-                      const std::optional<Array<double>>& constraint_points,
-                      const std::optional<Array<double>>& density, Progress* control) {
+PlanarArrays mesh_region(const std::vector<Array<double>>& rings, double edge_length,
+                         const std::string& mesher, double triangles,
+                         const std::vector<Size>& sizes,
+                         const std::vector<Array<double>>& constraints,
+                         const std::optional<Array<double>>& constraint_points,
+                         const std::optional<Array<double>>& density, Progress* control) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request =
         to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
@@ -96,22 +100,20 @@ py::tuple mesh_region(const std::vector<Array<double>>& rings, double edge_lengt
     return to_tuple(std::move(mesh));
 }
 
-py::tuple estimate_region_mesh(const std::vector<Array<double>>& rings, double edge_length,
-                               const std::string& mesher, double triangles,
-                               const std::vector<Size>& sizes,
-                               const std::vector<Array<double>>& constraints,
-                               const std::optional<Array<double>>& constraint_points,
-                               const std::optional<Array<double>>& density, Progress* control) {
+std::tuple<double, double> estimate_region_mesh(
+    const std::vector<Array<double>>& rings, double edge_length, const std::string& mesher,
+    double triangles, const std::vector<Size>& sizes, const std::vector<Array<double>>& constraints,
+    const std::optional<Array<double>>& constraint_points,
+    const std::optional<Array<double>>& density, Progress* control) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request =
         to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
     const py::gil_scoped_release unlocked;
     const meshing::MeshEstimate estimate = meshing::estimate_region_mesh(region, request, control);
-    const py::gil_scoped_acquire locked;
-    return py::make_tuple(estimate.triangles, estimate.bytes);
+    return {estimate.triangles, estimate.bytes};
 }
 
-py::tuple triangulate_rings(const std::vector<Array<double>>& rings) {
+PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     meshing::PlanarMesh mesh;
     {
@@ -121,7 +123,8 @@ py::tuple triangulate_rings(const std::vector<Array<double>>& rings) {
     return to_tuple(std::move(mesh));
 }
 
-py::object triangulate_polygon(const std::vector<Array<double>>& rings, Progress* control) {
+Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
+                                        Progress* control) {
     const std::vector<meshing::Ring> polygon = to_rings(rings);
     std::vector<std::array<std::int32_t, 3>> triangles;
     {

@@ -24,14 +24,16 @@ namespace {
 
 using Position = std::array<double, 3>;
 
-py::tuple polygon_edges(const Indices& offsets, const Indices& corners, std::size_t vertices) {
+std::tuple<Array<std::int32_t>, Array<std::int32_t>> polygon_edges(const Indices& offsets,
+                                                                   const Indices& corners,
+                                                                   std::size_t vertices) {
     shells::PolygonEdges found;
     const auto begins = view(offsets), numbers = view(corners);
     {
         const py::gil_scoped_release unlocked;
         found = shells::polygon_edges(begins, numbers, vertices);
     }
-    return py::make_tuple(to_array(std::move(found.edges)), to_array(std::move(found.of_corner)));
+    return {to_array(std::move(found.edges)), to_array(std::move(found.of_corner))};
 }
 
 py::list shell_arrays(std::vector<shells::Shell>&& shells) {
@@ -53,7 +55,7 @@ py::list shell_arrays(std::vector<shells::Shell>&& shells) {
 py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                         const Indices& face_vertices, const Indices& face_cells,
                         const Indices& cell_block, std::size_t blocks, const Position& origin,
-                        std::optional<double> shrink, int threads, const Progress* control) {
+                        std::optional<double> shrink, int threads, Progress* control) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -66,8 +68,8 @@ py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>
     std::vector<shells::Shell> found;
     {
         const py::gil_scoped_release unlocked;
-        found = shrink ? shells::cell_shells(complex, *shrink, origin, threads, control)
-                       : shells::block_shells(complex, origin, threads, control);
+        found = shrink ? shells::cell_shells(complex, *shrink, origin, {threads, control})
+                       : shells::block_shells(complex, origin, {threads, control});
     }
     return shell_arrays(std::move(found));
 }

@@ -61,7 +61,7 @@ std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices
     const auto lengths = lengths_of<simulation::LineLength>(sizes);
     const py::gil_scoped_release unlocked;
     return std::make_unique<PlanLines>(simulation::plan_lines(
-        arrays.complex, view_of(block_rock), edge_length, lengths, threads, control));
+        arrays.complex, view_of(block_rock), edge_length, lengths, {threads, control}));
 }
 
 py::list rings_of(const PlanLines& lines) {
@@ -124,7 +124,7 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
                                         {{plan_vertices.begin(), plan_vertices.end()},
                                          {plan_triangles.begin(), plan_triangles.end()}},
                                         {minimum_thickness, layers, layer_thickness, divided},
-                                        threads, control);
+                                        {threads, control});
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -152,7 +152,7 @@ py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
     {
         const py::gil_scoped_release unlocked;
         mesh = simulation::filled_mesh(arrays.complex, view_of(cell_region), view_of(kept),
-                                       edge_length, tolerance, lengths, threads, control);
+                                       edge_length, tolerance, lengths, {threads, control});
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -178,8 +178,8 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     simulation::CleanedCells cells;
     {
         const py::gil_scoped_release unlocked;
-        cells = simulation::clean_cells(arrays.complex, view_of(surface_kind), tolerance, threads,
-                                        control);
+        cells = simulation::clean_cells(arrays.complex, view_of(surface_kind), tolerance,
+                                        {threads, control});
     }
     py::dict made = complex_arrays(cells.complex);
     made["cell_origin"] = to_array(std::move(cells.cell_origin));
@@ -192,16 +192,17 @@ py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& s
     return made;
 }
 
-py::tuple describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
-                         const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
+std::tuple<Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>, Array<std::int64_t>>
+describe_cells(const Array<std::int64_t>& face_offsets, const Indices& face_vertices,
+               const Array<std::uint32_t>& begin, const Array<std::uint32_t>& sides) {
     simulation::CellDescriptions found;
     {
         const py::gil_scoped_release unlocked;
         found = simulation::describe_cells({view_of(face_offsets), view_of(face_vertices)},
                                            view_of(begin), view_of(sides));
     }
-    return py::make_tuple(to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
-                          to_array(std::move(found.counts)), to_array(std::move(found.lengths)));
+    return {to_array(std::move(found.faces)), to_array(std::move(found.vertices)),
+            to_array(std::move(found.counts)), to_array(std::move(found.lengths))};
 }
 
 Array<std::int64_t> inner_faces(const Indices& face_cells, std::size_t cells) {

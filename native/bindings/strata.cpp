@@ -105,7 +105,7 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, threads, control, kind,
+        complex = strata::build_rock_masses(input, {threads, control}, kind,
                                             space ? &*space : nullptr, is_local);
     }
     return to_dict(std::move(complex));
@@ -122,8 +122,8 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]}, threads,
-                                  control, kind);
+        tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]},
+                                  {threads, control}, kind);
         for (const strata::BorderVertex& vertex : tile.border) {
             numbers.push_back(vertex.vertex);
             nearest.insert(nearest.end(), vertex.nearest.begin(), vertex.nearest.end());
@@ -143,7 +143,7 @@ std::optional<strata::Joins> find_joins(const std::vector<RockArrays>& rocks, bo
     const auto input = views_of(rocks);
     const py::gil_scoped_release release;
     const MemoryGivenBack at_the_end;
-    return strata::find_joins(input, borders, threads, control);
+    return strata::find_joins(input, borders, {threads, control});
 }
 
 /// The columns of vertices of a surface or a region.
@@ -153,22 +153,23 @@ std::size_t columns_of(const Array<double>& vertices) {
     return columns;
 }
 
-py::object joined_mesh(const strata::Joins& joins, const Array<double>& vertices,
-                       const Indices& triangles, int threads, Progress* control) {
+std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
+    const strata::Joins& joins, const Array<double>& vertices, const Indices& triangles,
+    int threads, Progress* control) {
     const std::size_t columns = columns_of(vertices);
     require_columns(triangles, 3, "triangles");
     std::optional<strata::JoinedMesh> mesh;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        mesh =
-            columns == 3
-                ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)}, threads, control)
-                : joins.mesh(strata::RegionView{view(vertices), view(triangles)}, threads, control);
+        mesh = columns == 3 ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)},
+                                         {threads, control})
+                            : joins.mesh(strata::RegionView{view(vertices), view(triangles)},
+                                         {threads, control});
     }
-    if (!mesh) return py::none();
-    return py::make_tuple(to_array(std::move(mesh->vertices), columns),
-                          to_array(std::move(mesh->triangles), 3));
+    if (!mesh) return std::nullopt;
+    return std::tuple(to_array(std::move(mesh->vertices), columns),
+                      to_array(std::move(mesh->triangles), 3));
 }
 
 Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices) {
@@ -189,18 +190,20 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                              {}, {}, std::nullopt, false);
 }
 
-py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
+std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices& face_cells,
+                                                                  std::size_t cells,
+                                                                  Progress* control) {
     const auto faces = rows<2>(face_cells, "face_cells");
     strata::CellSides found;
     {
         const py::gil_scoped_release release;
         found = strata::cell_sides(faces, cells, control);
     }
-    return py::make_tuple(to_array(std::move(found.offsets)), to_array(std::move(found.sides)));
+    return {to_array(std::move(found.offsets)), to_array(std::move(found.sides))};
 }
 
 Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
-                                    const Progress* control) {
+                                    Progress* control) {
     const auto faces = rows<2>(face_cells, "face_cells");
     std::vector<std::int32_t> component;
     {

@@ -57,14 +57,15 @@ Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::
     return array;
 }
 
-py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArrays>& structures,
-                          int threads, Progress* control) {
+std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
+    const py::dict& rock, const std::vector<StructureArrays>& structures, int threads,
+    Progress* control) {
     const PartArrays arrays(rock);
     const auto views = views_of(structures);
     std::vector<structures::Part> parts;
     {
         const py::gil_scoped_release release;
-        parts = structures::parts_of(arrays.complex, views, threads, control);
+        parts = structures::parts_of(arrays.complex, views, {threads, control});
     }
     std::vector<structures::Sides> sides;
     std::vector<std::array<double, 3>> low, high;
@@ -73,8 +74,7 @@ py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArray
         low.push_back(part.low);
         high.push_back(part.high);
     }
-    return py::make_tuple(sides_array(sides, views.size()), to_array(std::move(low)),
-                          to_array(std::move(high)));
+    return {sides_array(sides, views.size()), to_array(std::move(low)), to_array(std::move(high))};
 }
 
 /// triangles (K, 3, 3), is_continuation (K,), kept
@@ -142,7 +142,7 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
         const py::gil_scoped_release release;
         joined = structures::join_models(parts, views,
                                          {acts.data(), static_cast<std::size_t>(acts.size())},
-                                         threads, control, beyond, largest);
+                                         {threads, control}, beyond, largest);
     }
     py::dict result = complex_arrays(joined.complex);
     result["cell_part"] = to_array(std::move(joined.cell_part));
@@ -150,8 +150,7 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
 }
 
 Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
-                                   const Array<double>& points, int threads,
-                                   const Progress* control) {
+                                   const Array<double>& points, int threads, Progress* control) {
     require_columns(points, 3, "points");
     const auto views = views_of(structures);
     if (views.empty()) throw py::value_error("structures: none is given");
@@ -159,7 +158,7 @@ Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structure
     {
         const py::gil_scoped_release release;
         sides = structures::sides_of_points(
-            views, {points.data(), static_cast<std::size_t>(points.size())}, threads, control);
+            views, {points.data(), static_cast<std::size_t>(points.size())}, {threads, control});
     }
     return to_array(std::move(sides));
 }
@@ -167,7 +166,7 @@ Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structure
 Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
                                      const Array<double>& low, const Array<double>& high,
                                      const Array<std::int32_t>& triangles, int threads,
-                                     const Progress* control) {
+                                     Progress* control) {
     require_columns(low, 3, "low");
     require_columns(high, 3, "high");
     require_columns(triangles, 3, "triangles");
@@ -184,7 +183,7 @@ Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
         found = structures::triangles_beyond(
             views, {low.data(), static_cast<std::size_t>(low.size())},
             {high.data(), static_cast<std::size_t>(high.size())},
-            {triangles.data(), static_cast<std::size_t>(triangles.size())}, threads, control);
+            {triangles.data(), static_cast<std::size_t>(triangles.size())}, {threads, control});
     }
     return to_array(std::move(found));
 }

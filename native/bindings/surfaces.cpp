@@ -41,14 +41,14 @@ Array<std::int32_t> hull_border(const Array<double>& nodes) {
     return to_array(std::move(border));
 }
 
-py::array outside_hull(const Array<double>& points, const Array<double>& nodes, int threads,
-                       Progress* control) {
+Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes, int threads,
+                         Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<std::uint8_t> outside;
     {
         const py::gil_scoped_release unlocked;
-        outside = interpolation::outside_hull(from, to, threads, control);
+        outside = interpolation::outside_hull(from, to, {threads, control});
     }
     return to_array(std::move(outside)).attr("view")("bool");
 }
@@ -61,26 +61,27 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = method(from, to, threads, control);
+        z = method(from, to, {threads, control});
     }
     return to_array(std::move(z));
 }
 
 template <auto method>
-py::tuple on_part(const Array<double>& points, const Array<double>& nodes,
-                  const Array<double>& border, const std::array<double, 4>& all,
-                  const std::array<double, 4>& window, bool is_whole, int threads,
-                  Progress* control) {
+std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
+                                               const Array<double>& nodes,
+                                               const Array<double>& border,
+                                               const std::array<double, 4>& all,
+                                               const std::array<double, 4>& window, bool is_whole,
+                                               int threads, Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
     interpolation::PartValues found;
     {
         const py::gil_scoped_release unlocked;
-        found = method(from, to, around, threads, control);
+        found = method(from, to, around, {threads, control});
     }
-    return py::make_tuple(to_array(std::move(found.z)),
-                          to_array(std::move(found.certain)).attr("view")("bool"));
+    return {to_array(std::move(found.z)), to_array(std::move(found.certain)).attr("view")("bool")};
 }
 
 Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
@@ -91,7 +92,7 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::heights_on_surface(corners, faces, to, threads, control);
+        z = interpolation::heights_on_surface(corners, faces, to, {threads, control});
     }
     return to_array(std::move(z));
 }

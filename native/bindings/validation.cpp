@@ -65,7 +65,7 @@ py::list check_topology(const py::dict& model, int threads, Progress* control) {
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_topology(arrays.complex, threads, control);
+        results = validation::check_topology(arrays.complex, {threads, control});
     }
     return to_list(results);
 }
@@ -87,8 +87,8 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_samples(arrays.complex, {input, block}, places, seed, threads,
-                                            control);
+        results = validation::check_samples(arrays.complex, {input, block}, places, seed,
+                                            {threads, control});
     }
     return to_list(results);
 }

@@ -18,14 +18,14 @@ namespace {
 
 Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                            const Indices& face_vertices, const Indices& face_cells,
-                           std::size_t cells, int threads, const Progress* control) {
+                           std::size_t cells, int threads, Progress* control) {
     const auto positions = rows<3, double>(vertices, "vertices");
     const auto sides = rows<2, std::int32_t>(face_cells, "face_cells");
     std::vector<double> volumes;
     {
         const py::gil_scoped_release release;
         volumes = strata::cell_volumes(positions, view(face_offsets), view(face_vertices), sides,
-                                       cells, threads, control);
+                                       cells, {threads, control});
     }
     return to_array(std::move(volumes));
 }

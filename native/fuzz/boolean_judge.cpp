@@ -191,14 +191,14 @@ public:
     std::vector<Defect> run() {
         const Flat a = flat(inputs_[0]), b = flat(inputs_[1]);
         try {
-            const Refinement r = booleans::intersect(a.view(), b.view(), 1);
+            const Refinement r = booleans::intersect(a.view(), b.view(), {1});
             look_at_triangles(r);
             if (defects_.empty()) look_at_parts(r);
             if (defects_.empty()) look_at_loops(r);
             if (defects_.empty()) look_at_blocks(r);
             if (defects_.empty()) look_at_operations(r);
             if (defects_.empty()) look_again(r);
-            const Refinement other = booleans::intersect(a.view(), b.view(), 2);
+            const Refinement other = booleans::intersect(a.view(), b.view(), {2});
             if (other.vertices != r.vertices || other.triangles != r.triangles)
                 add("threads", "two threads give another refinement");
         } catch (const InputError& error) {
@@ -475,7 +475,7 @@ private:
         Flat all{r.vertices, {}};
         for (const Row& t : r.triangles)
             all.triangles.insert(all.triangles.end(), t.begin(), t.end());
-        const Refinement again = booleans::intersect(all.view(), all.view(), 1);
+        const Refinement again = booleans::intersect(all.view(), all.view(), {1});
         if (again.triangles.size() != 2 * r.triangles.size() ||
             again.vertices.size() != r.vertices.size())
             add("again", "intersected with itself the refinement is divided");

@@ -24,7 +24,7 @@ double spacing(double value) {
 }
 
 CellComplex built(const StackCase& stack, int threads, strata::CellKind cells) {
-    return strata::build_rock_masses(views_of(stack), threads, nullptr, cells);
+    return strata::build_rock_masses(views_of(stack), {threads, nullptr}, cells);
 }
 
 /// Which surfaces have a block beneath them.

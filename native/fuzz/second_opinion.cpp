@@ -23,7 +23,7 @@ std::vector<Defect> second_opinion(const strata::CellComplex& complex, const Sta
                 defects.push_back({"validation " + test.name, test.findings.first[0].text});
         }
     };
-    add(validation::check_topology(view, 1, nullptr));
+    add(validation::check_topology(view, {1, nullptr}));
     // where borders were joined the model is that of an input that differs by rounding
     if (!defects.empty() || were_borders_joined(complex)) return defects;
     std::vector<std::int32_t> block_of_surface;
@@ -35,7 +35,7 @@ std::vector<Defect> second_opinion(const strata::CellComplex& complex, const Sta
     }
     constexpr std::int64_t kPlaces = 150;
     const std::vector<strata::StackInput> rocks = views_of(stack);
-    add(validation::check_samples(view, {rocks, block_of_surface}, kPlaces, 1, 1, nullptr));
+    add(validation::check_samples(view, {rocks, block_of_surface}, kPlaces, 1, {1, nullptr}));
     return defects;
 }
 

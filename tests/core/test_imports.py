@@ -42,7 +42,7 @@ class _Imports(ast.NodeVisitor):
             name = f"{base}.{alias.name}"
             if name in self.modules:
                 self.found.add(name)
-            elif alias.name != "_native":
+            elif "_native" not in (alias.name, node.module):
                 self.found.add(base)
 
 

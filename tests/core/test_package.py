@@ -2,6 +2,7 @@
 """The package as a whole: one version everywhere, and nothing of Blender until it is asked for."""
 
 import ast
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -70,3 +71,8 @@ def test_an_old_python_is_refused_in_words(monkeypatch):
     monkeypatch.setattr(realmodel, "sys", SimpleNamespace(version_info=old))
     with pytest.raises(RuntimeError, match=r"this Blender has 3\.10: use Blender 4\.1"):
         realmodel.register()
+
+
+def test_the_stub_of_the_native_module_is_that_of_the_module():
+    write_stub = runpy.run_path(str(ROOT / "scripts" / "write_stub.py"))
+    assert write_stub["stub"](_native) == write_stub["STUB"].read_text(), "run scripts/write_stub.py"

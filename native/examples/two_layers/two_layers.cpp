@@ -51,7 +51,7 @@ void print_volumes() {
     for (const Surface& surface : surfaces) {
         input.surfaces.push_back({surface.coordinates, triangles});
     }
-    const auto model = realmodel::strata::build_stack(input, 0, nullptr);
+    const auto model = realmodel::strata::build_stack(input, {0, nullptr});
 
     std::printf("lower layer %.1f\n", model.volumes[1]);
     std::printf("upper layer %.1f\n", model.volumes[2]);

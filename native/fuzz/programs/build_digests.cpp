@@ -36,7 +36,7 @@ void print_stack(const std::string& name, fuzz::StackCase stack) {
         return;
     }
     const auto built = [&](strata::CellKind cells) {
-        return strata::build_rock_masses(fuzz::views_of(stack), threads, nullptr, cells);
+        return strata::build_rock_masses(fuzz::views_of(stack), {threads, nullptr}, cells);
     };
     print(name + ", columns", fuzz::digest(built(strata::CellKind::kColumns)));
     print(name + ", blocks", fuzz::digest(built(strata::CellKind::kBlocks)));

@@ -32,19 +32,19 @@ TriangleArrangement::Triangle TriangleArrangement::triangle_of(
 
 std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
     const std::int32_t number = checked_number(triangles_.size(), "triangles");
-    add_all({&corners, 1}, 1, nullptr);
+    add_all({&corners, 1}, {1, nullptr});
     return number;
 }
 
-void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
-                                  const Progress* progress) {
+void TriangleArrangement::add_all(std::span<const std::array<SpacePointId, 3>> corners,
+                                  const Execution& execution) {
     const std::size_t before = triangles_.size();
     checked_number(before + corners.size(), "triangles");
     triangles_.resize(before + corners.size());
     of_edge_.resize(3 * triangles_.size());
     constexpr std::size_t kChunk = 1 << 10;
     parallel_ranges(
-        corners.size(), kChunk, threads, progress,
+        corners.size(), kChunk, execution,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 triangles_[before + i] = triangle_of(corners[i]);

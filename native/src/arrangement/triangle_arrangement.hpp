@@ -9,7 +9,7 @@
 #include "arrangement/polygons.hpp"
 #include "arrangement/region_loops.hpp"
 #include "exact/space_predicates.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::arrangement {
 
@@ -42,8 +42,7 @@ public:
     /// @throws InputError kind too_large
     std::int32_t add(const std::array<SpacePointId, 3>& corners);
     /// The same for many, numbered in their order.
-    void add_all(std::span<const std::array<SpacePointId, 3>> corners, int threads,
-                 const Progress* progress);
+    void add_all(std::span<const std::array<SpacePointId, 3>> corners, const Execution& execution);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
@@ -67,7 +66,7 @@ public:
     /// Adds its points and its segment to both triangles.
     void insert(const Intersection& intersection);
     /// Divides all triangles. With it no more can be added.
-    void divide(int threads, const Progress* progress);
+    void divide(const Execution& execution);
 
     const Regions& regions() const { return regions_; }
     const std::array<SpacePointId, 3>& corners(std::int32_t triangle) const {
@@ -133,24 +132,23 @@ private:
     void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
     template <class Visit>
-    void each_triangle(int threads, const Progress* progress, const Visit& visit) const;
+    void each_triangle(const Execution& execution, const Visit& visit) const;
     std::vector<std::int32_t> large_triangles(std::span<const std::int32_t> among) const;
-    void sort_all(int threads, const Progress* progress);
+    void sort_all(const Execution& execution);
     std::vector<SegmentPair> crossing_segments(const Triangle& t) const;
     struct LargeTriangle;
-    std::vector<SegmentPair> crossing_segments(const LargeTriangle& large, int threads,
-                                               const Progress* progress) const;
+    std::vector<SegmentPair> crossing_segments(const LargeTriangle& large,
+                                               const Execution& execution) const;
     bool do_cross(const Triangle& t, const SegmentPair& pair) const;
-    void intersect_segments(int threads, const Progress* progress);
-    std::vector<std::vector<Edge>> exchange_points(int threads, const Progress* progress);
+    void intersect_segments(const Execution& execution);
+    std::vector<std::vector<Edge>> exchange_points(const Execution& execution);
     void messages_of(std::int32_t triangle, NodesOnLines& nodes_on, std::vector<Message>& messages,
                      std::vector<Edge>& edges) const;
     void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
                      std::size_t end, std::vector<Message>& messages,
                      std::vector<Edge>& edges) const;
     class RegionFinder;
-    void find_all_regions(std::vector<std::vector<Edge>>& edges, int threads,
-                          const Progress* progress);
+    void find_all_regions(std::vector<std::vector<Edge>>& edges, const Execution& execution);
 
     exact::SpacePoints& points_;
     std::vector<Triangle> triangles_;

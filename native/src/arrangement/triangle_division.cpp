@@ -45,13 +45,11 @@ std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
 
 /// Calls visit(number) for all triangles, those of a chunk one after another on one thread.
 template <class Visit>
-void TriangleArrangement::each_triangle(int threads, const Progress* progress,
-                                        const Visit& visit) const {
-    parallel_ranges(triangles_.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                            visit(i);
-                    });
+void TriangleArrangement::each_triangle(const Execution& execution, const Visit& visit) const {
+    parallel_ranges(triangles_.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            visit(i);
+    });
 }
 
 /// Finds the nodes of one triangle on lines in it.
@@ -147,8 +145,8 @@ std::vector<std::int32_t> TriangleArrangement::large_triangles(
 }
 
 /// Puts the points and segments of all triangles in order, each once.
-void TriangleArrangement::sort_all(int threads, const Progress* progress) {
-    each_triangle(threads, progress, [this](std::size_t i) {
+void TriangleArrangement::sort_all(const Execution& execution) {
+    each_triangle(execution, [this](std::size_t i) {
         const auto order = [](auto& of) {
             std::sort(of.begin(), of.end());
             of.erase(std::unique(of.begin(), of.end()), of.end());
@@ -201,11 +199,11 @@ std::vector<Box> boxes_of(const std::vector<BoxedSegment<Segment>>& boxed) {
 
 /// make(i) for all i, on all threads.
 template <class Item, class Make>
-std::vector<std::optional<Item>> made_for_all(std::size_t count, int threads,
-                                              const Progress* progress, const Make& make) {
+std::vector<std::optional<Item>> made_for_all(std::size_t count, const Execution& execution,
+                                              const Make& make) {
     std::vector<std::optional<Item>> made(count);
     parallel_chunks(
-        count, threads, progress, [&](std::size_t i) { made[i].emplace(make(i)); }, 0.02);
+        count, execution, [&](std::size_t i) { made[i].emplace(make(i)); }, 0.02);
     return made;
 }
 
@@ -244,12 +242,12 @@ struct TriangleArrangement::LargeTriangle {
 
 /// The same, in the same order, of a large triangle.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
-    const LargeTriangle& large, int threads, const Progress* progress) const {
+    const LargeTriangle& large, const Execution& execution) const {
     const Triangle& t = triangles_[index(large.number)];
     const auto& boxed = large.boxed;
     std::vector<std::vector<SegmentPair>> found((boxed.size() + kChunk - 1) / kChunk);
     parallel_ranges(
-        boxed.size(), kChunk, threads, progress,
+        boxed.size(), kChunk, execution,
         [&](std::size_t begin, std::size_t end) {
             std::vector<std::size_t> near;
             for (std::size_t i = begin; i < end; ++i) {
@@ -271,9 +269,9 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
 
 /// Notes where segments of one triangle cross each other: only where the triangles of a group do
 /// cross.
-void TriangleArrangement::intersect_segments(int threads, const Progress* progress) {
+void TriangleArrangement::intersect_segments(const Execution& execution) {
     std::vector<std::vector<SegmentPair>> found(triangles_.size());
-    each_triangle(threads, progress, [&](std::size_t i) {
+    each_triangle(execution, [&](std::size_t i) {
         if (triangles_[i].segments.size() <= kLarge) found[i] = crossing_segments(triangles_[i]);
     });
     std::vector<std::int32_t> with_many;
@@ -281,12 +279,11 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
         if (triangles_[i].facing != 0 && triangles_[i].segments.size() > kLarge)
             with_many.push_back(static_cast<std::int32_t>(i));
     }
-    auto large =
-        made_for_all<LargeTriangle>(with_many.size(), threads, progress, [&](std::size_t i) {
-            return LargeTriangle(points_, with_many[i], triangles_[index(with_many[i])]);
-        });
+    auto large = made_for_all<LargeTriangle>(with_many.size(), execution, [&](std::size_t i) {
+        return LargeTriangle(points_, with_many[i], triangles_[index(with_many[i])]);
+    });
     for (auto& own : large) {
-        found[index(own->number)] = crossing_segments(*own, threads, progress);
+        found[index(own->number)] = crossing_segments(*own, execution);
         own.reset();
     }
     std::vector<std::pair<std::size_t, SegmentPair>> pairs;
@@ -301,7 +298,7 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
     for (std::size_t first = 0; first < pairs.size(); first += kAtOnce) {
         at.resize(std::min(kAtOnce, pairs.size() - first));
         parallel_ranges(
-            at.size(), kChunk, threads, progress,
+            at.size(), kChunk, execution,
             [&](std::size_t begin, std::size_t end) {
                 for (std::size_t k = begin; k < end; ++k) {
                     const auto& [i, pair] = pairs[first + k];
@@ -371,24 +368,23 @@ void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines&
 /// them know them.
 /// @return for each triangle what its lines are divided into; none where nothing divides it
 std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchange_points(
-    int threads, const Progress* progress) {
+    const Execution& execution) {
     std::vector<std::vector<Edge>> edges(triangles_.size());
     std::vector<std::int32_t> changed(triangles_.size());
     std::iota(changed.begin(), changed.end(), 0);
     while (!changed.empty()) {
         std::vector<std::vector<Message>> messages((changed.size() + kChunk - 1) / kChunk);
         const std::vector<std::int32_t> large = large_triangles(changed);
-        parallel_ranges(changed.size(), kChunk, threads, progress,
-                        [&](std::size_t begin, std::size_t end) {
-                            NodesOnLines nodes_on(*this);
-                            for (std::size_t i = begin; i < end; ++i) {
-                                if (!std::ranges::binary_search(large, changed[i]))
-                                    messages_of(changed[i], nodes_on, messages[begin / kChunk],
-                                                edges[index(changed[i])]);
-                            }
-                        });
+        parallel_ranges(changed.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+            NodesOnLines nodes_on(*this);
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!std::ranges::binary_search(large, changed[i]))
+                    messages_of(changed[i], nodes_on, messages[begin / kChunk],
+                                edges[index(changed[i])]);
+            }
+        });
         auto nodes_on_large = made_for_all<NodesOnLines>(
-            large.size(), threads, progress,
+            large.size(), execution,
             [&](std::size_t i) { return NodesOnLines(*this, triangles_[index(large[i])]); });
         for (std::size_t which = 0; which < large.size(); ++which) {
             const std::int32_t triangle = large[which];
@@ -398,7 +394,7 @@ std::vector<std::vector<TriangleArrangement::Edge>> TriangleArrangement::exchang
             messages.resize(first + chunks);
             std::vector<std::vector<Edge>> own(chunks);
             parallel_ranges(
-                t.line_count(), kChunk, threads, progress,
+                t.line_count(), kChunk, execution,
                 [&](std::size_t begin, std::size_t end) {
                     messages_of(triangle, *nodes_on_large[which], begin, end,
                                 messages[first + begin / kChunk], own[begin / kChunk]);
@@ -453,7 +449,7 @@ private:
 namespace {
 
 /// The regions of several ranges of triangles, one after another.
-Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progress) {
+Regions joined(std::vector<Regions>& ranges, const Execution& execution) {
     std::vector<std::size_t> regions, loops, nodes;  // before each range
     for (const Regions& range : ranges) {
         regions.push_back(range.size());
@@ -467,7 +463,7 @@ Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progre
     all.loops.region_begins.resize(count + 1);
     all.loops.loop_begins.resize(count_before(loops) + 1);
     all.loops.nodes.resize(count_before(nodes));
-    parallel_chunks(ranges.size(), threads, progress, [&](std::size_t i) {
+    parallel_chunks(ranges.size(), execution, [&](std::size_t i) {
         const Regions range = std::move(ranges[i]);
         std::ranges::copy(range.triangles, all.triangles.begin() + regions[i]);
         std::ranges::copy(range.loops.nodes, all.loops.nodes.begin() + nodes[i]);
@@ -484,8 +480,8 @@ Regions joined(std::vector<Regions>& ranges, int threads, const Progress* progre
 }  // namespace
 
 /// @param edges  of each triangle, as exchange_points() gives them
-void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges, int threads,
-                                           const Progress* progress) {
+void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges,
+                                           const Execution& execution) {
     std::vector<std::int32_t> all(triangles_.size());
     std::iota(all.begin(), all.end(), 0);
     const std::vector<std::int32_t> large = large_triangles(all);
@@ -503,25 +499,25 @@ void TriangleArrangement::find_all_regions(std::vector<std::vector<Edge>>& edges
         }
     }
     std::vector<Regions> found(ranges.size());
-    parallel_workers(ranges.size(), threads, progress, [&] {
+    parallel_workers(ranges.size(), execution, [&] {
         return [&, finder = RegionFinder(*this)](std::size_t at) mutable {
             const std::size_t r = order[at];
             for (std::size_t i = ranges[r][0]; i < ranges[r][1]; ++i)
                 finder.add_regions(static_cast<std::int32_t>(i), edges[i], found[r]);
         };
     });
-    regions_ = joined(found, threads, progress);
+    regions_ = joined(found, execution);
 }
 
-void TriangleArrangement::divide(int threads, const Progress* progress) {
-    parallel_sort(of_edge_, std::less<>(), threads, progress);
-    sort_all(threads, progress);
+void TriangleArrangement::divide(const Execution& execution) {
+    parallel_sort(of_edge_, std::less<>(), execution);
+    sort_all(execution);
     exchange_segments();
-    sort_all(threads, progress);
-    intersect_segments(threads, progress);
-    sort_all(threads, progress);
-    auto edges = exchange_points(threads, progress);
-    find_all_regions(edges, threads, progress);
+    sort_all(execution);
+    intersect_segments(execution);
+    sort_all(execution);
+    auto edges = exchange_points(execution);
+    find_all_regions(edges, execution);
 }
 
 }  // namespace realmodel::arrangement

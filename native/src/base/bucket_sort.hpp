@@ -26,25 +26,24 @@ public:
     /// called twice for each
     template <class Produce>
     Array<Element> sorted(std::size_t chunks, std::size_t expected, const Produce& produce,
-                          int threads, const Progress* progress) const {
+                          const Execution& execution) const {
         const std::size_t buckets = std::clamp<std::size_t>(expected / kTogether, 1, kMostBuckets);
         const auto by_bucket = [&](std::size_t chunk, const auto& put) {
             produce(chunk, [&](const Element& e) { put(bucket_of(e, buckets), e); });
         };
-        auto made = bucketize_in_order<Element>(buckets, chunks, by_bucket, threads, progress);
+        auto made = bucketize_in_order<Element>(buckets, chunks, by_bucket, execution);
         for (std::size_t b = 0; b < buckets; ++b) {
             if (made[b].size() <= kMost) continue;
-            parallel_sort(made.values, less_, threads, progress);
+            parallel_sort(made.values, less_, execution);
             return std::move(made.values);
         }
         constexpr std::size_t kBuckets = 64;  // sorted at a time
-        parallel_ranges(buckets, kBuckets, threads, progress,
-                        [&](std::size_t begin, std::size_t end) {
-                            std::vector<Element> scratch;
-                            std::vector<std::uint32_t> ends;
-                            for (std::size_t b = begin; b < end; ++b)
-                                sort_bucket(made[b], b, buckets, scratch, ends);
-                        });
+        parallel_ranges(buckets, kBuckets, execution, [&](std::size_t begin, std::size_t end) {
+            std::vector<Element> scratch;
+            std::vector<std::uint32_t> ends;
+            for (std::size_t b = begin; b < end; ++b)
+                sort_bucket(made[b], b, buckets, scratch, ends);
+        });
         return std::move(made.values);
     }
 

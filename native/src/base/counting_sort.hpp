@@ -61,19 +61,18 @@ Buckets<Value> bucketize(std::size_t buckets, const Produce& produce) {
 /// @throws InputError kind too_large, Cancelled
 template <class Value, class Produce>
 Buckets<Value> bucketize_in_any_order(std::size_t buckets, std::size_t chunks,
-                                      const Produce& produce, int threads,
-                                      const Progress* progress) {
+                                      const Produce& produce, const Execution& execution) {
     Buckets<Value> made;
-    made.offsets = zeros<std::uint32_t>(buckets + 2, threads, progress);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    made.offsets = zeros<std::uint32_t>(buckets + 2, execution);
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         produce(chunk, [&](std::size_t bucket, const Value&) {
             assert(bucket < buckets);
             count_one(made.offsets[bucket + 1]);
         });
     });
-    running_totals(made.offsets, UINT32_MAX, threads, progress);
+    running_totals(made.offsets, UINT32_MAX, execution);
     made.values.resize(made.offsets.back());
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         produce(chunk, [&](std::size_t bucket, const Value& value) {
             made.values[count_one(made.offsets[bucket + 1])] = value;
         });
@@ -87,9 +86,9 @@ Buckets<Value> bucketize_in_any_order(std::size_t buckets, std::size_t chunks,
 /// @throws InputError kind too_large, Cancelled
 template <class Value, class Produce>
 Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const Produce& produce,
-                                  int threads, const Progress* progress) {
+                                  const Execution& execution) {
     std::vector<std::vector<std::uint32_t>> next(chunks);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         next[chunk].resize(buckets);
         produce(chunk, [&](std::size_t bucket, const Value&) { ++next[chunk][bucket]; });
     });
@@ -103,7 +102,7 @@ Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const
         made.offsets.push_back(static_cast<std::uint32_t>(total));
     }
     made.values.resize(total);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         produce(chunk, [&](std::size_t bucket, const Value& value) {
             made.values[next[chunk][bucket]++] = value;
         });
@@ -117,11 +116,10 @@ Buckets<Value> bucketize_in_order(std::size_t buckets, std::size_t chunks, const
 /// @throws InputError kind too_large, Cancelled
 template <class Value, class Produce>
 Buckets<Value> sorted_in_buckets(std::size_t buckets, std::size_t chunks, const Produce& produce,
-                                 int threads, const Progress* progress) {
-    Buckets<Value> made =
-        bucketize_in_any_order<Value>(buckets, chunks, produce, threads, progress);
+                                 const Execution& execution) {
+    Buckets<Value> made = bucketize_in_any_order<Value>(buckets, chunks, produce, execution);
     constexpr std::size_t kBuckets = 1 << 12;  // sorted at a time
-    parallel_ranges(buckets, kBuckets, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(buckets, kBuckets, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             std::sort(made[b].begin(), made[b].end());
     });

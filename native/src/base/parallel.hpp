@@ -19,7 +19,7 @@
 #include <optional>
 #include <thread>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel {
 
@@ -47,14 +47,14 @@ void run_team(int threads, const std::function<void(std::size_t own, std::size_t
 
 /// For loops of one thread: asks every 16384 rounds whether the caller wants to stop.
 /// @throws Cancelled
-inline void poll(const Progress* progress, std::size_t round) {
+inline void poll(Progress* progress, std::size_t round) {
     if (progress != nullptr && (round & 0x3fff) == 0) progress->check();
 }
 
 /// What the threads of one loop share: how far it is, and the error of its lowest failed chunk.
 class LoopGuard {
 public:
-    LoopGuard(const Progress* progress, std::size_t count, double share)
+    LoopGuard(Progress* progress, std::size_t count, double share)
         : progress_(progress), counted_(progress, count, share) {}
 
     /// Runs a chunk, unless the loop was cancelled or a chunk before this one has failed.
@@ -84,7 +84,7 @@ public:
     }
 
 private:
-    const Progress* progress_;
+    Progress* progress_;
     CountedLoop counted_;
     std::atomic<std::size_t> failed_chunk_{SIZE_MAX};
     std::mutex failing_;
@@ -97,11 +97,11 @@ private:
 /// @param share  of what is left of the present part of the progress: how much this loop takes
 /// @throws Cancelled, or what make() or a worker threw
 template <class Make>
-void parallel_workers(std::size_t count, int threads, const Progress* progress, const Make& make,
+void parallel_workers(std::size_t count, const Execution& execution, const Make& make,
                       double share = 0.2) {
-    LoopGuard guard(progress, count, share);
+    LoopGuard guard(execution.progress, count, share);
     std::atomic<std::size_t> next{0};
-    run_team(count > 1 ? thread_count(threads) : 1, [&](std::size_t, std::size_t) {
+    run_team(count > 1 ? thread_count(execution.threads) : 1, [&](std::size_t, std::size_t) {
         std::optional<decltype(make())> worker;
         for (;;) {
             const std::size_t chunk = next.fetch_add(1, std::memory_order_relaxed);
@@ -117,20 +117,20 @@ void parallel_workers(std::size_t count, int threads, const Progress* progress, 
 
 /// Calls work(chunk) for every chunk, as parallel_workers() without anything of a thread's own.
 template <class Work>
-void parallel_chunks(std::size_t count, int threads, const Progress* progress, const Work& work,
+void parallel_chunks(std::size_t count, const Execution& execution, const Work& work,
                      double share = 0.2) {
     const auto make = [&work] { return [&work](std::size_t chunk) { work(chunk); }; };
-    parallel_workers(count, threads, progress, make, share);
+    parallel_workers(count, execution, make, share);
 }
 
 /// Calls work(begin, end) for ranges of `size` items that cover 0 to count - 1.
 template <class Work>
-void parallel_ranges(std::size_t count, std::size_t size, int threads, const Progress* progress,
+void parallel_ranges(std::size_t count, std::size_t size, const Execution& execution,
                      const Work& work, double share = 0.2) {
     const auto range = [&](std::size_t chunk) {
         work(chunk * size, std::min(count, (chunk + 1) * size));
     };
-    parallel_chunks((count + size - 1) / size, threads, progress, range, share);
+    parallel_chunks((count + size - 1) / size, execution, range, share);
 }
 
 /// Calls work(chunk) for every chunk, each thread an equal run of them: in loops over the same

@@ -35,12 +35,11 @@ inline void check_total(std::size_t vertices, std::uint64_t largest) {
 /// The same for many numbers; the last element becomes the sum of all.
 /// @throws InputError kind too_large, where the sum is more than `largest`
 template <class Number>
-void running_totals(Array<Number>& counts, std::uint64_t largest, int threads,
-                    const Progress* progress) {
+void running_totals(Array<Number>& counts, std::uint64_t largest, const Execution& execution) {
     constexpr std::size_t kChunk = 1 << 16;
     const std::size_t count = counts.size() - 1;
     std::vector<std::size_t> before((count + kChunk - 1) / kChunk);
-    parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         std::size_t sum = 0;
         for (std::size_t i = begin; i < end; ++i)
             sum += static_cast<std::size_t>(counts[i]);
@@ -48,7 +47,7 @@ void running_totals(Array<Number>& counts, std::uint64_t largest, int threads,
     });
     const std::size_t total = count_before(before);
     check_total(total, largest);
-    parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         std::size_t sum = before[begin / kChunk];
         for (std::size_t i = begin; i < end; ++i) {
             const auto own = static_cast<std::size_t>(counts[i]);
@@ -61,9 +60,9 @@ void running_totals(Array<Number>& counts, std::uint64_t largest, int threads,
 
 /// An array of zeros.
 template <class Number>
-Array<Number> zeros(std::size_t size, int threads, const Progress* progress) {
+Array<Number> zeros(std::size_t size, const Execution& execution) {
     Array<Number> array(size);
-    parallel_ranges(size, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(size, 1 << 18, execution, [&](std::size_t begin, std::size_t end) {
         std::fill(array.begin() + begin, array.begin() + end, Number{});
     });
     return array;

@@ -11,7 +11,7 @@ namespace realmodel {
 /// Sorts by a total order on several threads; can be cancelled. Equal elements must be alike, for
 /// their order is not kept.
 template <class Array, class Less>
-void parallel_sort(Array& elements, const Less& less, int threads, const Progress* progress) {
+void parallel_sort(Array& elements, const Less& less, const Execution& execution) {
     // runs that fit the cache, and of few elements enough runs for several threads
     constexpr std::size_t kLongest = 1 << 16, kShortest = 1 << 12;
     const std::size_t count = elements.size();
@@ -19,7 +19,7 @@ void parallel_sort(Array& elements, const Less& less, int threads, const Progres
     const auto at = [&](Array& of, std::size_t i) {
         return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
     };
-    parallel_chunks((count + run_length - 1) / run_length, threads, progress, [&](std::size_t run) {
+    parallel_chunks((count + run_length - 1) / run_length, execution, [&](std::size_t run) {
         std::sort(at(elements, run * run_length), at(elements, (run + 1) * run_length), less);
     });
     if (count <= run_length) return;
@@ -29,7 +29,7 @@ void parallel_sort(Array& elements, const Less& less, int threads, const Progres
         // run would stand in the second, so that the last merges are shared between threads too.
         const std::size_t pieces_of_pair = 2 * width / run_length;
         const std::size_t pairs = (count + 2 * width - 1) / (2 * width);
-        parallel_chunks(pairs * pieces_of_pair, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(pairs * pieces_of_pair, execution, [&](std::size_t chunk) {
             const std::size_t begin = chunk / pieces_of_pair * 2 * width;
             const std::size_t middle = std::min(begin + width, count);
             const std::size_t end = std::min(begin + 2 * width, count);

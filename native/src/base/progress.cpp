@@ -40,14 +40,14 @@ void Progress::begin(double start, double end, const char* text) noexcept {
     report(start, text);
 }
 
-void Progress::advance(double fraction) const noexcept {
+void Progress::advance(double fraction) noexcept {
     double before = fraction_.load(std::memory_order_relaxed);
     while (before < fraction &&
            !fraction_.compare_exchange_weak(before, fraction, std::memory_order_relaxed)) {
     }
 }
 
-CountedLoop::CountedLoop(const Progress* progress, std::size_t rounds, double share) noexcept
+CountedLoop::CountedLoop(Progress* progress, std::size_t rounds, double share) noexcept
     : progress_(progress) {
     if (progress == nullptr || rounds == 0) return;
     from_ = progress->fraction();

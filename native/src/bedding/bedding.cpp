@@ -51,7 +51,7 @@ class Corners {
 public:
     Corners(const ComplexView& complex, std::span<const History> histories,
             std::span<const Polygon> polygons, std::span<const std::int32_t> histories_of_corners,
-            int threads, const Progress* progress);
+            const Execution& execution);
     Bedding bedding();
 
 private:
@@ -90,8 +90,7 @@ private:
     std::span<const History> histories_;
     std::span<const Polygon> polygons_;
     std::span<const std::int32_t> histories_of_corners_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     double largest_plan_ = 0, largest_height_ = 0;
     std::vector<std::uint32_t> begin_;                   ///< of each polygon's corners
     std::vector<std::unique_ptr<SheetHeights>> sheets_;  ///< that differ
@@ -102,14 +101,12 @@ private:
 
 Corners::Corners(const ComplexView& complex, std::span<const History> histories,
                  std::span<const Polygon> polygons,
-                 std::span<const std::int32_t> histories_of_corners, int threads,
-                 const Progress* progress)
+                 std::span<const std::int32_t> histories_of_corners, const Execution& execution)
     : complex_(complex),
       histories_(histories),
       polygons_(polygons),
       histories_of_corners_(histories_of_corners),
-      threads_(threads),
-      progress_(progress) {
+      execution_(execution) {
     check();
     number_corners();
     check_histories();
@@ -187,7 +184,7 @@ void Corners::make_sheets() {
         }
     }
     sheets_.resize(distinct.size());
-    parallel_chunks(distinct.size(), threads_, progress_, [&](std::size_t n) {
+    parallel_chunks(distinct.size(), execution_, [&](std::size_t n) {
         sheets_[n] = std::make_unique<SheetHeights>(*distinct[n], kNear * largest_plan_);
     });
 }
@@ -199,7 +196,7 @@ void Corners::sort_positions() {
         const auto vertex = static_cast<std::int32_t>(v);
         order[v] = {plan(vertex), vertex};
     }
-    parallel_sort(order, std::less<>(), threads_, progress_);
+    parallel_sort(order, std::less<>(), execution_);
     position_of_.resize(order.size());
     for (std::size_t at = 0; at < order.size(); ++at) {
         if (at > 0 && order[at].first != order[at - 1].first) ++positions_;
@@ -220,7 +217,7 @@ Bedding Corners::bedding() {
     const std::size_t count = begin_.back();
     Bedding made{Array<float>(count), Array<float>(count), Array<float>(count)};
     const std::size_t chunks = (positions_ + kPositions - 1) / kPositions;
-    parallel_workers(chunks, threads_, progress_, [&] {
+    parallel_workers(chunks, execution_, [&] {
         return [&, columns = std::vector<Column>(histories_.size()),
                 scratch = Column()](std::size_t chunk) mutable {
             const std::size_t end = std::min(positions_, (chunk + 1) * kPositions);
@@ -347,9 +344,8 @@ void Corners::set(std::uint32_t corner, const Polygon& polygon, const Column& co
 
 Bedding bedding_of(const ComplexView& complex, std::span<const History> histories,
                    std::span<const Polygon> polygons,
-                   std::span<const std::int32_t> histories_of_corners, int threads,
-                   const Progress* progress) {
-    return Corners(complex, histories, polygons, histories_of_corners, threads, progress).bedding();
+                   std::span<const std::int32_t> histories_of_corners, const Execution& execution) {
+    return Corners(complex, histories, polygons, histories_of_corners, execution).bedding();
 }
 
 }  // namespace realmodel::bedding

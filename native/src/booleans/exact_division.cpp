@@ -66,12 +66,11 @@ bool is_triangle(const Region& region) {
 
 }  // namespace
 
-ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int threads,
-                             Progress* progress)
+ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen,
+                             const Execution& execution)
     : pieces_(pieces),
       chosen_(std::move(chosen)),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       arrangement_(pieces.points) {
     find_candidates();
     find_meetings();
@@ -94,14 +93,14 @@ bool ExactDivision::is_aside(const Corners& own, const Corners& other,
 void ExactDivision::find_candidates() {
     const std::size_t count = chosen_.size();
     std::vector<Box> boxes(count);
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
     });
     // the tree of the inputs is that of their pieces, as long as none is divided
     const bool all = pieces_.are_whole() && count == pieces_.input_count();
     const std::optional<BoxTree> own =
-        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, progress_);
+        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes, execution_.progress);
     const BoxTree& tree = own ? *own : pieces_.tree();
     std::vector<std::vector<std::array<std::int32_t, 2>>> found((tree.leaf_count() + kChunk - 1) /
                                                                 kChunk);
@@ -109,27 +108,26 @@ void ExactDivision::find_candidates() {
         return exact::SideFilter(pieces_.points.rounded(c[0]), pieces_.points.rounded(c[1]),
                                  pieces_.points.rounded(c[2]));
     };
-    parallel_ranges(
-        tree.leaf_count(), kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            auto& pairs = found[begin / kChunk];
-            std::int32_t last = -1;  // the pairs of a piece follow one another
-            std::optional<exact::SideFilter> plane;
-            tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
-                const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
-                const Corners &a = one.corners, &b = other.corners;
-                if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) ||
-                    has_equal_corners(b) || shared_corners(a, b) == 3)
-                    return;
-                if (i != last) plane.emplace(filter_of(a));
-                last = i;
-                if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
-                const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
-                pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
-            });
+    parallel_ranges(tree.leaf_count(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        auto& pairs = found[begin / kChunk];
+        std::int32_t last = -1;  // the pairs of a piece follow one another
+        std::optional<exact::SideFilter> plane;
+        tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
+            const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
+            const Corners &a = one.corners, &b = other.corners;
+            if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) || has_equal_corners(b) ||
+                shared_corners(a, b) == 3)
+                return;
+            if (i != last) plane.emplace(filter_of(a));
+            last = i;
+            if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
+            const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
+            pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
         });
+    });
     for (const auto& pairs : found)
         candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
-    parallel_sort(candidates_, std::less<>(), threads_, progress_);
+    parallel_sort(candidates_, std::less<>(), execution_);
 }
 
 void ExactDivision::find_meetings() {
@@ -139,7 +137,7 @@ void ExactDivision::find_meetings() {
             triangle_of[index(i)] = 0;
     }
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         if (triangle_of[i] < 0) continue;
         triangle_of[i] = arrangement_.add(pieces_[chosen_[i]].corners);
         piece_of_.push_back(static_cast<std::int32_t>(i));
@@ -150,7 +148,7 @@ void ExactDivision::find_meetings() {
     }
     const std::size_t count = candidates_.size();
     std::vector<std::vector<Meeting>> found((count + kChunk - 1) / kChunk);
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
             if (met && is_contact(*met)) found[begin / kChunk].push_back(*met);
@@ -229,10 +227,10 @@ std::vector<Corners> ExactDivision::divided(const Region& region) const {
 void ExactDivision::divide(const std::vector<Meeting>& at) {
     pieces_.points.reserve_intersections(at.size());  // each is an end of two segments
     for (const Meeting& met : at) {
-        if (progress_ != nullptr) progress_->check();  // points take time
+        if (execution_.progress != nullptr) execution_.progress->check();  // points take time
         arrangement_.insert(met);
     }
-    arrangement_.divide(threads_, progress_);
+    arrangement_.divide(execution_);
     divide_regions();
 }
 
@@ -242,17 +240,15 @@ void ExactDivision::divide_regions() {
     std::vector<std::int32_t> as(regions.size(), -1);
     std::vector<std::uint8_t> is_reversed(regions.size(), 0);
     std::vector<std::vector<SpacePointId>> outlines(regions.size());
-    parallel_ranges(regions.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t r = begin; r < end; ++r) {
-                            if (!is_triangle(regions[r]))
-                                outlines[r] = canonical(regions[r].loops[0]);
-                        }
-                    });
+    parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t r = begin; r < end; ++r) {
+            if (!is_triangle(regions[r])) outlines[r] = canonical(regions[r].loops[0]);
+        }
+    });
     KeyTable table;
     std::vector<std::uint64_t> words;
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        poll(progress_, r);
+        poll(execution_.progress, r);
         if (outlines[r].empty()) continue;
         words.clear();
         for (const SpacePointId p : outlines[r])
@@ -268,13 +264,11 @@ void ExactDivision::divide_regions() {
                                          corners[2]) != view.second;
     }
     std::vector<std::vector<Corners>> triangles(regions.size());
-    parallel_ranges(regions.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t r = begin; r < end; ++r) {
-                            if (as[r] == static_cast<std::int32_t>(r))
-                                triangles[r] = divided(regions[r]);
-                        }
-                    });
+    parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t r = begin; r < end; ++r) {
+            if (as[r] == static_cast<std::int32_t>(r)) triangles[r] = divided(regions[r]);
+        }
+    });
     // new points become the nearest doubles
     SpacePoints& points = pieces_.points;
     std::vector<SpacePointId> vertex(points.size(), kNone);
@@ -295,7 +289,7 @@ void ExactDivision::divide_regions() {
     std::vector<std::pair<PieceId, std::vector<Piece>>> changed;
     std::size_t r = 0;
     for (std::size_t t = 0; t < piece_of_.size(); ++t) {
-        poll(progress_, t);
+        poll(execution_.progress, t);
         const PieceId id = piece(static_cast<std::int32_t>(t));
         std::vector<Piece> made;
         for (; r < regions.size() && index(regions.triangles[r]) == t; ++r) {
@@ -320,7 +314,7 @@ void ExactDivision::divide_regions() {
     std::sort(changed.begin(), changed.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < changed.size();) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         const std::int32_t input = changed[i].first.input;
         std::vector<Piece> all;
         const auto old = pieces_.of(input);

@@ -17,7 +17,7 @@ namespace realmodel::booleans {
 class ExactDivision {
 public:
     /// @param chosen  pieces, among them all that may meet fresh ones
-    ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int threads, Progress* progress);
+    ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, const Execution& execution);
 
     using Meeting = arrangement::TriangleArrangement::Intersection;
     /// Where fresh pieces meet others out of order. Finds them; pieces without area are dropped.
@@ -49,8 +49,7 @@ private:
 
     Pieces& pieces_;
     std::vector<PieceId> chosen_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     std::vector<std::array<std::int32_t, 2>> candidates_;  ///< first chosen pieces, then triangles
     arrangement::TriangleArrangement arrangement_;
     std::vector<std::int32_t> piece_of_;  ///< of triangles of the arrangement: the chosen piece

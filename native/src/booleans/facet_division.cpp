@@ -32,7 +32,7 @@ void add_fan(const std::vector<SpacePointId>& loop, std::vector<Corners>& triang
 /// point numbers are its own.
 class FacetDivision {
 public:
-    FacetDivision(const SpacePoints& points, const FacetPoints& facet, const Progress* progress)
+    FacetDivision(const SpacePoints& points, const FacetPoints& facet, Progress* progress)
         : global_(points), progress_(progress) {
         Corners own;
         for (std::size_t k = 0; k < 3; ++k)
@@ -405,7 +405,7 @@ private:
     }
 
     const SpacePoints& global_;
-    const Progress* progress_;
+    Progress* progress_;
     SpacePoints places_;
     std::vector<SpacePointId> names_;  ///< of places: the point that is taken to lie there
     std::map<SpacePointId, SpacePointId> by_name_;  ///< and back
@@ -427,7 +427,7 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
 }
 
 std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet,
-                             const Progress* progress) {
+                             Progress* progress) {
     std::vector<SpacePointId> loop;
     std::optional<std::size_t> folded;  // the edge that the corner across it lies on
     for (std::size_t k = 0; k < 3; ++k) {

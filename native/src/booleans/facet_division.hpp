@@ -34,6 +34,6 @@ std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b)
 /// points, however its corners are ordered. Each part of an edge has one triangle.
 /// @throws Cancelled
 std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet,
-                             const Progress* progress);
+                             Progress* progress);
 
 }  // namespace realmodel::booleans

@@ -25,25 +25,25 @@ struct Keyed {
     auto operator<=>(const Keyed&) const = default;
 };
 
-void find_facets(const Parts& parts, FacetMesh& mesh, int threads, const Progress* progress) {
+void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution) {
     const std::size_t count = parts.triangles.size();
     std::vector<Keyed> keyed(count);
-    parallel_ranges(count, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             keyed[i] = {parts.triangles[i].corners, static_cast<std::int32_t>(i)};
             std::sort(keyed[i].sorted.begin(), keyed[i].sorted.end());
         }
     });
-    parallel_sort(keyed, std::less<>(), threads, progress);
+    parallel_sort(keyed, std::less<>(), execution);
     std::vector<std::int32_t> first(count);  // of the parts that coincide
     for (std::size_t i = 0, begin = 0; i < count; ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         if (keyed[i].sorted != keyed[begin].sorted) begin = i;
         first[index(keyed[i].part)] = keyed[begin].part;
     }
     mesh.of_part.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         const Part& part = parts.triangles[i];
         if (first[i] == static_cast<std::int32_t>(i)) {
             mesh.of_part[i] = static_cast<std::int32_t>(mesh.facets.size());
@@ -66,13 +66,13 @@ struct EdgeUse {
 
 }  // namespace
 
-FacetMesh facets_of(const Parts& parts, int threads, const Progress* progress) {
+FacetMesh facets_of(const Parts& parts, const Execution& execution) {
     FacetMesh mesh;
-    find_facets(parts, mesh, threads, progress);
+    find_facets(parts, mesh, execution);
     const std::size_t count = mesh.facets.size();
     checked_number(2 * count, "sides of triangles");  // those who ask number them
     std::vector<EdgeUse> uses(3 * count);
-    parallel_ranges(count, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const auto& corners = mesh.facets[f].corners;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -83,11 +83,11 @@ FacetMesh facets_of(const Parts& parts, int threads, const Progress* progress) {
             }
         }
     });
-    parallel_sort(uses, std::less<>(), threads, progress);
+    parallel_sort(uses, std::less<>(), execution);
     mesh.uses.reserve(uses.size());
     mesh.edges_of.resize(count);
     for (std::size_t i = 0; i < uses.size(); ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         if (i == 0 || uses[i].edge != uses[i - 1].edge) {
             if (i > 0) mesh.use_begins.push_back(i);
             checked_number(mesh.edges.size(), "edges");

@@ -19,7 +19,7 @@ namespace {
 using exact::DoubleDoubleInterval;
 
 /// Whether a surface has no border: it passes each edge as often one way as the other.
-std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Progress* progress) {
+std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
     std::array<bool, 2> is_closed{true, true};
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         poll(progress, e);
@@ -37,7 +37,7 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, const Progress* progr
 
 /// The parts of each surface that hang together across edges that are in no loop.
 void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCells& cells,
-                       Refinement& result, const Progress* progress) {
+                       Refinement& result, Progress* progress) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
     DisjointSets joined(2 * count);
@@ -97,7 +97,7 @@ DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
 }
 
 void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
-                     const SpaceCells& cells, Refinement& result, const Progress* progress) {
+                     const SpaceCells& cells, Refinement& result, Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         poll(progress, f);
@@ -139,22 +139,23 @@ bool is_kept(Operation operation, bool in_first, bool in_second) {
 
 }  // namespace
 
-Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int threads,
-                     Progress* progress) {
-    const Parts parts = refine({first, second}, threads, progress);
-    if (progress != nullptr) progress->begin(0.8, 0.9, "finding facets");
-    const FacetMesh mesh = facets_of(parts, threads, progress);
-    if (progress != nullptr) progress->begin(0.9, 0.99, "finding what is inside");
-    const SpaceCells cells = cells_of(parts.vertices, mesh, threads, progress);
-    Loops loops = find_loops(mesh, progress);
+Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
+                     const Execution& execution) {
+    const Parts parts = refine({first, second}, execution);
+    if (execution.progress != nullptr) execution.progress->begin(0.8, 0.9, "finding facets");
+    const FacetMesh mesh = facets_of(parts, execution);
+    if (execution.progress != nullptr)
+        execution.progress->begin(0.9, 0.99, "finding what is inside");
+    const SpaceCells cells = cells_of(parts.vertices, mesh, execution);
+    Loops loops = find_loops(mesh, execution.progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());
     for (const Position& p : parts.vertices)
         result.vertices.insert(result.vertices.end(), p.begin(), p.end());
     std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
-    result.is_closed = closed_surfaces(mesh, progress);
+    result.is_closed = closed_surfaces(mesh, execution.progress);
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
-        poll(progress, t);
+        poll(execution.progress, t);
         const Part& part = parts.triangles[t];
         result.triangles.push_back(part.corners);
         result.source.push_back(part.source);
@@ -165,7 +166,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
     }
     result.is_in.resize(parts.triangles.size());
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
-        poll(progress, t);
+        poll(execution.progress, t);
         // the first part of a facet is turned as that is, the others are not asked
         const auto& sides = cells.of_facet[index(mesh.of_part[t])];
         for (std::size_t side = 0; side < 2; ++side) {
@@ -174,10 +175,10 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int 
                     result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
         }
     }
-    find_sub_surfaces(mesh, loops, cells, result, progress);
-    find_sub_blocks(parts.vertices, mesh, cells, result, progress);
+    find_sub_surfaces(mesh, loops, cells, result, execution.progress);
+    find_sub_blocks(parts.vertices, mesh, cells, result, execution.progress);
     result.loops = std::move(loops.loops);
-    if (progress != nullptr) progress->report(1.0, nullptr);
+    if (execution.progress != nullptr) execution.progress->report(1.0, nullptr);
     return result;
 }
 

@@ -24,7 +24,7 @@ bool is_intersection(const FacetMesh& mesh, std::size_t edge) {
 /// The intersection edges as a graph.
 class LoopGraph {
 public:
-    LoopGraph(const FacetMesh& mesh, const Progress* progress) : mesh_(mesh), progress_(progress) {
+    LoopGraph(const FacetMesh& mesh, Progress* progress) : mesh_(mesh), progress_(progress) {
         result_.of_edge.assign(mesh.edges.size(), -1);
         for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
             poll(progress_, e);
@@ -81,14 +81,14 @@ private:
     }
 
     const FacetMesh& mesh_;
-    const Progress* progress_;
+    Progress* progress_;
     Loops result_;
     std::vector<End> ends_;  ///< in order
 };
 
 }  // namespace
 
-Loops find_loops(const FacetMesh& mesh, const Progress* progress) {
+Loops find_loops(const FacetMesh& mesh, Progress* progress) {
     return LoopGraph(mesh, progress).run();
 }
 

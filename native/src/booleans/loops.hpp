@@ -17,6 +17,6 @@ struct Loops {
 /// An edge of facets of both surfaces is an intersection edge, but within a part that they share:
 /// there all of its facets are of both.
 /// @throws Cancelled
-Loops find_loops(const FacetMesh& mesh, const Progress* progress);
+Loops find_loops(const FacetMesh& mesh, Progress* progress);
 
 }  // namespace realmodel::booleans

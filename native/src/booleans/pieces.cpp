@@ -32,8 +32,8 @@ void check(const TriangleMesh& mesh, int surface) {
 
 }  // namespace
 
-Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress)
-    : progress_(progress) {
+Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution)
+    : progress_(execution.progress) {
     for (std::uint8_t source = 0; source < 2; ++source) {
         const TriangleMesh& mesh = surfaces[source];
         check(mesh, source);
@@ -41,7 +41,7 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const P
         second_ = whole_.size();
         std::vector<SpacePointId> number(mesh.vertex_count(), kNone);
         for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-            poll(progress, t);
+            poll(execution.progress, t);
             Piece piece;
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t v = index(mesh.triangles[3 * t + k]);
@@ -60,12 +60,11 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const P
             largest_ = std::max(largest_, std::abs(x));
     }
     std::vector<spatial::Box> boxes(whole_.size());
-    parallel_ranges(whole_.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                            boxes[i] = box(whole_[i].corners);
-                    });
-    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), progress);
+    parallel_ranges(whole_.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            boxes[i] = box(whole_[i].corners);
+    });
+    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution.progress);
 }
 
 void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {

@@ -31,7 +31,7 @@ struct PieceId {
 class Pieces {
 public:
     /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large
-    Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress);
+    Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution);
 
     SpacePoints points;
 
@@ -93,7 +93,7 @@ private:
         std::vector<Piece> pieces;
         std::unique_ptr<spatial::BoxTree> tree;  ///< where there are many
     };
-    const Progress* progress_;
+    Progress* progress_;
     std::vector<Piece> whole_;
     std::vector<std::int32_t> list_;  ///< of each input triangle: its pieces in lists_, -1 itself
     std::vector<List> lists_;

@@ -30,8 +30,8 @@ constexpr int kMostRounds = 40;
 /// nothing meets out of order.
 class Refiner {
 public:
-    Refiner(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress* progress)
-        : pieces_(surfaces, threads, progress), threads_(threads), progress_(progress) {
+    Refiner(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution)
+        : pieces_(surfaces, execution), execution_(execution) {
         for (std::size_t i = 0; i < pieces_.input_count(); ++i)
             fresh_.push_back(static_cast<std::int32_t>(i));
     }
@@ -69,8 +69,7 @@ private:
     };
 
     Pieces pieces_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     Numbers fresh_;  ///< triangles of the inputs that have fresh pieces
     State state_ = State::kWhole;
     double ulps_ = kNearest;
@@ -98,15 +97,14 @@ bool Refiner::is_flat(const Corners& c) const {
 void Refiner::drop_flat() {
     for (;;) {
         std::vector<std::vector<Corners>> found(fresh_.size());
-        parallel_ranges(fresh_.size(), kChunk, threads_, progress_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                for (const Piece& piece : pieces_.of(fresh_[i])) {
-                                    if (piece.is_fresh && is_flat(piece.corners))
-                                        found[i].push_back(in_order(piece.corners).first);
-                                }
-                            }
-                        });
+        parallel_ranges(fresh_.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                    if (piece.is_fresh && is_flat(piece.corners))
+                        found[i].push_back(in_order(piece.corners).first);
+                }
+            }
+        });
         std::vector<Corners> flat;
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             flat.insert(flat.end(), found[i].begin(), found[i].end());
@@ -114,7 +112,7 @@ void Refiner::drop_flat() {
         }
         if (state_ == State::kWhole || flat.empty()) return;
         sort_unique(flat);
-        Numbers changed = Snapping(pieces_, flat, threads_, progress_).apply();
+        Numbers changed = Snapping(pieces_, flat, execution_).apply();
         changed.insert(changed.end(), fresh_.begin(), fresh_.end());
         sort_unique(changed);
         find_fresh(changed);
@@ -129,18 +127,17 @@ std::vector<PieceId> Refiner::pieces_near_fresh() const {
         inputs = fresh_;
     } else {
         std::vector<std::vector<std::int32_t>> near((fresh_.size() + 63) / 64);
-        parallel_ranges(
-            fresh_.size(), 64, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-                auto& own = near[begin / 64];
-                for (std::size_t i = begin; i < end; ++i) {
-                    for (const Piece& piece : pieces_.of(fresh_[i])) {
-                        if (!piece.is_fresh) continue;
-                        pieces_.find_inputs(pieces_.box(piece.corners),
-                                            [&](std::int32_t input) { own.push_back(input); });
-                    }
+        parallel_ranges(fresh_.size(), 64, execution_, [&](std::size_t begin, std::size_t end) {
+            auto& own = near[begin / 64];
+            for (std::size_t i = begin; i < end; ++i) {
+                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                    if (!piece.is_fresh) continue;
+                    pieces_.find_inputs(pieces_.box(piece.corners),
+                                        [&](std::int32_t input) { own.push_back(input); });
                 }
-                sort_unique(own);
-            });
+            }
+            sort_unique(own);
+        });
         for (const auto& some : near)
             inputs.insert(inputs.end(), some.begin(), some.end());
         sort_unique(inputs);
@@ -172,7 +169,7 @@ bool Refiner::round() {
     }
     std::set_union(fresh_.begin(), fresh_.end(), inputs.begin(), inputs.end(),
                    std::back_inserter(touched));
-    ExactDivision division(pieces_, std::move(near), threads_, progress_);
+    ExactDivision division(pieces_, std::move(near), execution_);
     for (const std::int32_t input : fresh_) {
         for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
             pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = false;
@@ -199,7 +196,7 @@ bool Refiner::snap_shallow(ExactDivision& division, Numbers& touched) {
     const Nearness nearness(pieces_.points, ulps_);
     std::vector<FacetPair> pairs;
     for (const auto& met : division.meetings()) {
-        if (progress_ != nullptr) progress_->check();  // points take time
+        if (execution_.progress != nullptr) execution_.progress->check();  // points take time
         const FacetPair pair = pair_of(division, met);
         if (nearness.is_shallow(pair) && !division.is_in_doubles(met)) pairs.push_back(pair);
     }
@@ -262,14 +259,13 @@ std::vector<std::uint8_t> Refiner::near_meetings(const ExactDivision& division) 
     const auto& meetings = division.meetings();
     const Nearness nearness(pieces_.points, ulps_);
     std::vector<std::uint8_t> is_near(meetings.size());
-    parallel_ranges(meetings.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                            NearParts found;
-                            nearness.find(pair_of(division, meetings[i]), found);
-                            is_near[i] = found.empty() ? 0 : 1;
-                        }
-                    });
+    parallel_ranges(meetings.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            NearParts found;
+            nearness.find(pair_of(division, meetings[i]), found);
+            is_near[i] = found.empty() ? 0 : 1;
+        }
+    });
     return is_near;
 }
 
@@ -281,7 +277,7 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
         sort_unique(pairs);
         // first only what does not settle, then all that is near it
         const double of_the_rest = snap_rounds_ < kLocalRounds ? kNearest : ulps_;
-        Snapping snapping(pieces_, pairs, {ulps_, of_the_rest}, threads_, progress_);
+        Snapping snapping(pieces_, pairs, {ulps_, of_the_rest}, execution_);
         const auto own = snapping.apply();
         changed.insert(changed.end(), own.begin(), own.end());
         if (!snapping.merges()) break;
@@ -306,8 +302,8 @@ Refiner::Numbers Refiner::snap(std::vector<FacetPair>&& pairs) {
 Parts Refiner::run() {
     for (int n = 0; n < kMostRounds; ++n) {
         const double share = 0.8 * n / (n + 1.0);
-        if (progress_ != nullptr)
-            progress_->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");
+        if (execution_.progress != nullptr)
+            execution_.progress->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");
         if (fresh_.empty() || !round()) return result();
     }
     throw InputError(
@@ -320,7 +316,7 @@ Parts Refiner::result() const {
     Parts parts;
     std::vector<std::int32_t> number(pieces_.points.size(), -1);
     for (std::size_t i = 0; i < pieces_.input_count(); ++i) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         const auto input = static_cast<std::int32_t>(i);
         for (const Piece& piece : pieces_.of(input)) {
             Part part{{}, pieces_.row(input), pieces_.source(input)};
@@ -341,8 +337,8 @@ Parts Refiner::result() const {
 
 }  // namespace
 
-Parts refine(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress* progress) {
-    return Refiner(surfaces, threads, progress).run();
+Parts refine(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution) {
+    return Refiner(surfaces, execution).run();
 }
 
 }  // namespace realmodel::booleans

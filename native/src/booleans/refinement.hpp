@@ -34,6 +34,6 @@ struct Parts {
 /// are rounded to coarser and coarser steps, which merges them.
 ///
 /// @throws InputError kinds not_finite, bad_index, no_triangles, too_large, too_close; Cancelled
-Parts refine(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress* progress);
+Parts refine(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution);
 
 }  // namespace realmodel::booleans

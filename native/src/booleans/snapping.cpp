@@ -52,15 +52,14 @@ void cancel_folds(std::vector<Piece>& pieces) {
 /// What gets new vertices hands them on to all that is near it, so that layers that lie upon one
 /// another are divided alike: from the pairs on, in waves.
 Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
-                   int threads, const Progress* progress)
+                   const Execution& execution)
     : pieces_(pieces),
       wide_(pieces.points, radius.of_pairs),
       narrow_(pieces.points, radius.of_the_rest),
-      threads_(threads),
-      progress_(progress) {
+      execution_(execution) {
     std::vector<std::int32_t> facets;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         for (const Corners& corners : pairs[i])
             facets.push_back(facets_.add(corners));
     }
@@ -80,13 +79,8 @@ Snapping::Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radiu
     if (merged_.empty()) place(std::move(found));
 }
 
-Snapping::Snapping(Pieces& pieces, std::span<const Corners> flat, int threads,
-                   const Progress* progress)
-    : pieces_(pieces),
-      wide_(pieces.points, 0),
-      narrow_(pieces.points, 0),
-      threads_(threads),
-      progress_(progress) {
+Snapping::Snapping(Pieces& pieces, std::span<const Corners> flat, const Execution& execution)
+    : pieces_(pieces), wide_(pieces.points, 0), narrow_(pieces.points, 0), execution_(execution) {
     for (const Corners& t : flat) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
@@ -107,21 +101,20 @@ std::vector<Snapping::FacetNumbers> Snapping::pairs_around(std::span<const std::
     std::vector<std::vector<Corners>> around(std::min(kAtOnce, facets.size()));
     for (std::size_t first = 0; first < facets.size(); first += kAtOnce) {
         const std::size_t count = std::min(kAtOnce, facets.size() - first);
-        parallel_ranges(count, kChunk, threads_, progress_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                auto& own = around[i];
-                                own.clear();
-                                spatial::Box box = pieces_.box(facets_[facets[first + i]]);
-                                box.widen(reach(facets[first + i]));
-                                pieces_.find(box, [&own](const Piece& piece) {
-                                    own.push_back(in_order(piece.corners).first);
-                                });
-                                sort_unique(own);
-                            }
-                        });
+        parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                auto& own = around[i];
+                own.clear();
+                spatial::Box box = pieces_.box(facets_[facets[first + i]]);
+                box.widen(reach(facets[first + i]));
+                pieces_.find(box, [&own](const Piece& piece) {
+                    own.push_back(in_order(piece.corners).first);
+                });
+                sort_unique(own);
+            }
+        });
         for (std::size_t i = 0; i < count; ++i) {
-            if (progress_ != nullptr) progress_->check();
+            if (execution_.progress != nullptr) execution_.progress->check();
             const std::int32_t facet = facets[first + i];
             for (const Corners& corners : around[i]) {
                 const std::int32_t other = facets_.add(corners);
@@ -158,10 +151,10 @@ std::vector<std::int32_t> Snapping::find_near(std::span<const FacetNumbers> pair
         }
         own.parts.make_unique();
     };
-    parallel_ranges(pairs.size(), kPairs, threads_, progress_, work);
+    parallel_ranges(pairs.size(), kPairs, execution_, work);
     std::vector<std::int32_t> next;
     for (Found& own : found) {
-        if (progress_ != nullptr) progress_->check();
+        if (execution_.progress != nullptr) execution_.progress->check();
         all.take(own.parts);
         near_.insert(near_.end(), own.near.begin(), own.near.end());
         moved_ = std::max(moved_, own.moved);
@@ -190,7 +183,7 @@ void Snapping::merge_vertices(const std::vector<Edge>& same) {
     };
     DisjointSets sets(vertices.size());
     for (std::size_t i = 0; i < same.size(); ++i) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         sets.join(number(same[i][0]), number(same[i][1]));
     }
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -206,7 +199,7 @@ void Snapping::merge_vertices(const std::vector<Edge>& same) {
 void Snapping::place(NearParts&& found) {
     places_.resize(facets_.size());
     for (std::size_t i = 0; i < near_.size(); ++i) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         const auto [one, other] = near_[i];
         for (const auto& [own, near] : {std::pair(one, other), std::pair(other, one)}) {
             Place& place = places_[index(own)];
@@ -231,12 +224,12 @@ void Snapping::place(NearParts&& found) {
     if (!found.crossings.empty()) {
         VertexGrid grid(pieces_.points, wide_.distance_at(pieces_.largest_coordinate()));
         for (std::size_t f = 0; f < facets_.size(); ++f) {
-            poll(progress_, f);
+            poll(execution_.progress, f);
             for (const SpacePointId p : facets_[static_cast<std::int32_t>(f)])
                 grid.add(p);
         }
         for (const NearParts::Crossing& crossing : found.crossings) {
-            if (progress_ != nullptr) progress_->check();
+            if (execution_.progress != nullptr) execution_.progress->check();
             SpacePointId p = grid.nearest(crossing.at, crossing.within);
             if (!p.has_value()) {
                 p = pieces_.points.add(crossing.at);
@@ -256,7 +249,7 @@ void Snapping::place(NearParts&& found) {
 /// Adds points to edges, each once.
 /// @return whether any is new
 bool Snapping::add_points(std::vector<OnEdge>&& found) {
-    parallel_sort(found, std::less<>(), threads_, progress_);
+    parallel_sort(found, std::less<>(), execution_);
     for (Divided& edge : on_edges_)
         edge.old = edge.points.size();
     bool is_new = false;
@@ -265,7 +258,7 @@ bool Snapping::add_points(std::vector<OnEdge>&& found) {
         std::vector<SpacePointId> known = edge.points;
         std::sort(known.begin(), known.end());
         for (; end < found.size() && found[end].first == found[begin].first; ++end) {
-            poll(progress_, end);
+            poll(execution_.progress, end);
             const SpacePointId p = found[end].second;
             if ((end > begin && found[end - 1].second == p) ||
                 std::binary_search(known.begin(), known.end(), p))
@@ -285,11 +278,10 @@ void Snapping::spread_points() {
     }
     std::vector<std::vector<OnEdge>> found((facets.size() + kChunk - 1) / kChunk);
     for (bool goes_on = true; goes_on;) {
-        parallel_ranges(facets.size(), kChunk, threads_, progress_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                take_points(facets[i], found[begin / kChunk]);
-                        });
+        parallel_ranges(facets.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                take_points(facets[i], found[begin / kChunk]);
+        });
         std::vector<OnEdge> all;
         for (auto& own : found) {
             append(all, own);
@@ -330,32 +322,29 @@ void Snapping::take_points(std::int32_t facet, std::vector<OnEdge>& found) {
 
 void Snapping::order_points() {
     const auto& points = pieces_.points;
-    parallel_ranges(
-        on_edges_.size(), kPairs, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e) {
-                const Edge& edge = edges_[static_cast<std::int32_t>(e)];
-                auto& on = on_edges_[e].points;
-                const std::size_t axis = edge_axis(points, edge[0], edge[1]);
-                const bool grows = points.rounded(edge[0])[axis] < points.rounded(edge[1])[axis];
-                const auto at = [&](SpacePointId p) {
-                    return grows ? points.rounded(p)[axis] : -points.rounded(p)[axis];
-                };
-                std::sort(on.begin(), on.end(), [&](SpacePointId p, SpacePointId q) {
-                    return std::pair(at(p), p) < std::pair(at(q), q);
-                });
-                on.erase(
-                    std::unique(on.begin(), on.end(),
-                                [&](SpacePointId p, SpacePointId q) { return at(p) == at(q); }),
-                    on.end());
-            }
-        });
-    parallel_ranges(places_.size(), kPairs, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            places_[f].seen = {};
-                            sort_unique(places_[f].over);
-                        }
-                    });
+    parallel_ranges(on_edges_.size(), kPairs, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) {
+            const Edge& edge = edges_[static_cast<std::int32_t>(e)];
+            auto& on = on_edges_[e].points;
+            const std::size_t axis = edge_axis(points, edge[0], edge[1]);
+            const bool grows = points.rounded(edge[0])[axis] < points.rounded(edge[1])[axis];
+            const auto at = [&](SpacePointId p) {
+                return grows ? points.rounded(p)[axis] : -points.rounded(p)[axis];
+            };
+            std::sort(on.begin(), on.end(), [&](SpacePointId p, SpacePointId q) {
+                return std::pair(at(p), p) < std::pair(at(q), q);
+            });
+            on.erase(std::unique(on.begin(), on.end(),
+                                 [&](SpacePointId p, SpacePointId q) { return at(p) == at(q); }),
+                     on.end());
+        }
+    });
+    parallel_ranges(places_.size(), kPairs, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            places_[f].seen = {};
+            sort_unique(places_[f].over);
+        }
+    });
 }
 
 SpacePointId Snapping::merged(SpacePointId p) const {
@@ -421,7 +410,7 @@ std::vector<Corners> Snapping::divided(const Corners& in_order) const {
         }
         sort_unique(facet.wanted);
     }
-    return booleans::divided(pieces_.points, facet, progress_);
+    return booleans::divided(pieces_.points, facet, execution_.progress);
 }
 
 /// The triangles of the inputs that may have one of the vertices, edges or facets that change.
@@ -440,17 +429,16 @@ std::vector<std::int32_t> Snapping::inputs_to_change() {
             boxes.push_back(pieces_.box(facets_[static_cast<std::int32_t>(f)]));
     }
     std::vector<std::vector<std::int32_t>> found((boxes.size() + kChunk - 1) / kChunk);
-    parallel_ranges(
-        boxes.size(), kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            auto& own = found[begin / kChunk];
-            for (std::size_t i = begin; i < end; ++i)
-                pieces_.find_inputs(boxes[i], [&own](std::int32_t input) { own.push_back(input); });
-            sort_unique(own);
-        });
+    parallel_ranges(boxes.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        auto& own = found[begin / kChunk];
+        for (std::size_t i = begin; i < end; ++i)
+            pieces_.find_inputs(boxes[i], [&own](std::int32_t input) { own.push_back(input); });
+        sort_unique(own);
+    });
     std::vector<std::int32_t> inputs;
     for (const auto& own : found)
         append(inputs, own);
-    parallel_sort(inputs, std::less<>(), threads_, progress_);
+    parallel_sort(inputs, std::less<>(), execution_);
     inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
     return inputs;
 }
@@ -487,7 +475,7 @@ std::vector<std::int32_t> Snapping::apply() {
             made[i] = {};
         }
     };
-    parallel_chunks(inputs.size(), threads_, progress_, change);
+    parallel_chunks(inputs.size(), execution_, change);
     std::vector<std::int32_t> changed;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         if (is_changed[i] == 0) continue;

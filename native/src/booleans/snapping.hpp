@@ -29,12 +29,12 @@ public:
         double of_the_rest;  ///< where these have handed on vertices
     };
     /// @param pairs  facets that meet, in order
-    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius, int threads,
-             const Progress* progress);
+    Snapping(Pieces& pieces, std::span<const FacetPair> pairs, const Radius& radius,
+             const Execution& execution);
 
     /// Folds triangles without area onto their longest edges: the corner across it becomes a vertex
     /// of all that have the edge, and the triangle is gone.
-    Snapping(Pieces& pieces, std::span<const Corners> flat, int threads, const Progress* progress);
+    Snapping(Pieces& pieces, std::span<const Corners> flat, const Execution& execution);
 
     /// Whether vertices become one: then this is all that apply() does.
     bool merges() const { return !merged_.empty(); }
@@ -91,8 +91,7 @@ private:
 
     Pieces& pieces_;
     Nearness wide_, narrow_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     NumberTable<Corners> facets_;     ///< those of the pairs first
     std::size_t first_ = 0;           ///< so many
     NumberTable<Edge> edges_;         ///< of facets that are near others, and divided ones

@@ -28,12 +28,11 @@ std::int32_t side_number(std::int32_t facet, std::size_t side) {
 
 class CellFinder {
 public:
-    CellFinder(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-               Progress* progress)
+    CellFinder(const std::vector<Position>& vertices, const FacetMesh& mesh,
+               const Execution& execution)
         : vertices_(vertices),
           mesh_(mesh),
-          threads_(threads),
-          progress_(progress),
+          execution_(execution),
           sides_(2 * mesh.facets.size() + 1),
           outside_(static_cast<std::int32_t>(2 * mesh.facets.size())) {}
 
@@ -58,8 +57,7 @@ private:
 
     const std::vector<Position>& vertices_;
     const FacetMesh& mesh_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     DisjointSets sides_;  ///< of facets, and the outside
     std::int32_t outside_;
 };
@@ -67,7 +65,7 @@ private:
 /// What is between two facets that follow one another around an edge is one place.
 void CellFinder::join_around_edges() {
     parallel_ranges(
-        mesh_.edges.size(), 1 << 10, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        mesh_.edges.size(), 1 << 10, execution_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = begin; e < end; ++e) {
                 const auto uses = mesh_.uses_of(e);
                 const auto join = [&](const FacetUse& from, const FacetUse& to) {
@@ -102,7 +100,7 @@ void CellFinder::join_along_rays() {
     const std::size_t count = mesh_.facets.size();
     DisjointSets connected(count);
     for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
-        poll(progress_, e);
+        poll(execution_.progress, e);
         const auto uses = mesh_.uses_of(e);
         for (const FacetUse& use : uses)
             connected.join(uses[0].facet, use.facet);
@@ -110,7 +108,7 @@ void CellFinder::join_along_rays() {
     std::vector<Box> boxes(count);
     Box whole;
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         for (const std::int32_t v : mesh_.facets[f].corners)
             boxes[f].include(vertices_[index(v)]);
         whole.include(boxes[f]);
@@ -120,7 +118,7 @@ void CellFinder::join_along_rays() {
     std::vector<std::int32_t> part_of(count, -1);
     constexpr std::size_t kTried = 64;
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         const auto root = index(connected.find(static_cast<std::int32_t>(f)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(parts.size());
@@ -131,7 +129,7 @@ void CellFinder::join_along_rays() {
     }
     // for a few rays a tree is not worth its while
     std::optional<spatial::BoxTree> tree;
-    if (parts.size() > kFewRays) tree.emplace(boxes, progress_);
+    if (parts.size() > kFewRays) tree.emplace(boxes, execution_.progress);
     const auto find = [&](const Box& ray, std::vector<std::int32_t>& near) {
         if (tree) return tree->find(ray, [&](std::int32_t other) { near.push_back(other); });
         for (std::size_t f = 0; f < count; ++f) {
@@ -142,7 +140,7 @@ void CellFinder::join_along_rays() {
         // ends: of the places that are tried in a facet two at most are in line with an edge
         bool found = false;
         for (std::size_t attempt = 0; !found; ++attempt) {
-            if (progress_ != nullptr) progress_->check();
+            if (execution_.progress != nullptr) execution_.progress->check();
             found = cast(facets[attempt % facets.size()], static_cast<int>(attempt / facets.size()),
                          find, whole);
         }
@@ -227,7 +225,7 @@ SpaceCells CellFinder::number_cells() {
     std::int32_t next = 1;
     cells.of_facet.resize(count);
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         for (std::size_t side = 0; side < 2; ++side) {
             std::int32_t& cell =
                 number[index(sides_.find(side_number(static_cast<std::int32_t>(f), side)))];
@@ -237,7 +235,7 @@ SpaceCells CellFinder::number_cells() {
     }
     std::vector<std::vector<std::int32_t>> facets_around(index(next));
     for (std::size_t f = 0; f < count; ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         const auto& [below, above] = cells.of_facet[f];
         if (below == above) continue;
         facets_around[index(below)].push_back(static_cast<std::int32_t>(f));
@@ -248,7 +246,7 @@ SpaceCells CellFinder::number_cells() {
     std::vector<std::int32_t> open{SpaceCells::kOutside};
     is_known[SpaceCells::kOutside] = 1;
     for (std::size_t n = 0; !open.empty(); ++n) {
-        poll(progress_, n);
+        poll(execution_.progress, n);
         const std::int32_t cell = open.back();
         open.pop_back();
         for (const std::int32_t f : facets_around[index(cell)]) {
@@ -270,9 +268,9 @@ SpaceCells CellFinder::number_cells() {
 
 }  // namespace
 
-SpaceCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-                    Progress* progress) {
-    return CellFinder(vertices, mesh, threads, progress).run();
+SpaceCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                    const Execution& execution) {
+    return CellFinder(vertices, mesh, execution).run();
 }
 
 }  // namespace realmodel::booleans

@@ -20,7 +20,7 @@ struct SpaceCells {
     std::size_t size() const { return winding.size(); }
 };
 
-SpaceCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
-                    Progress* progress);
+SpaceCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                    const Execution& execution);
 
 }  // namespace realmodel::booleans

@@ -17,9 +17,9 @@ namespace realmodel::cutting {
 /// are numbered in their order there.
 class ParallelNumbering {
 public:
-    ParallelNumbering(std::size_t nodes, std::size_t chunks, int threads, const Progress* progress)
-        : threads_(threads), progress_(progress), nodes_(nodes), first_of_(chunks) {
-        parallel_ranges(nodes, kNodes, threads, progress, [&](std::size_t begin, std::size_t end) {
+    ParallelNumbering(std::size_t nodes, std::size_t chunks, const Execution& execution)
+        : execution_(execution), nodes_(nodes), first_of_(chunks) {
+        parallel_ranges(nodes, kNodes, execution, [&](std::size_t begin, std::size_t end) {
             std::fill(nodes_.begin() + begin, nodes_.begin() + end, Node{UINT32_MAX, -1});
         });
     }
@@ -37,7 +37,7 @@ public:
     template <class PositionOf>
     void number(const PositionOf& position_of, Array<Position>& positions) {
         std::vector<std::size_t> before(first_of_.size());
-        parallel_chunks(first_of_.size(), threads_, progress_, [&](std::size_t chunk) {
+        parallel_chunks(first_of_.size(), execution_, [&](std::size_t chunk) {
             // what another chunk before this one turned out to have first is taken away
             std::erase_if(first_of_[chunk], [&](NodeId node) {
                 return nodes_[index(node)].chunk != static_cast<std::uint32_t>(chunk);
@@ -46,7 +46,7 @@ public:
         });
         positions.resize(count_before(before));
         checked_number(positions.size(), "vertices of a model");
-        parallel_chunks(first_of_.size(), threads_, progress_, [&](std::size_t chunk) {
+        parallel_chunks(first_of_.size(), execution_, [&](std::size_t chunk) {
             std::size_t next = before[chunk];
             for (const NodeId node : first_of_[chunk]) {
                 nodes_[index(node)].number = static_cast<std::int32_t>(next);
@@ -64,8 +64,7 @@ private:
         std::int32_t number;
     };
 
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     Array<Node> nodes_;
     std::vector<std::vector<NodeId>> first_of_;  ///< of chunks
 };
@@ -74,12 +73,11 @@ private:
 /// with the old numbers of nodes, and last these are replaced.
 class ChunkedComplex {
 public:
-    ChunkedComplex(CellComplex& to, std::size_t nodes, std::size_t chunks, int threads,
-                   const Progress* progress)
+    ChunkedComplex(CellComplex& to, std::size_t nodes, std::size_t chunks,
+                   const Execution& execution)
         : to_(to),
-          threads_(threads),
-          progress_(progress),
-          numbering_(nodes, chunks, threads, progress),
+          execution_(execution),
+          numbering_(nodes, chunks, execution),
           faces_(chunks),
           corners_(chunks) {}
 
@@ -125,17 +123,15 @@ public:
     void number(const PositionOf& position_of) {
         numbering_.number(position_of, to_.vertices);
         auto& nodes = to_.face_vertices;
-        parallel_ranges(nodes.size(), 1 << 16, threads_, progress_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                nodes[i] = numbering_[nodes[i]];
-                        });
+        parallel_ranges(nodes.size(), 1 << 16, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                nodes[i] = numbering_[nodes[i]];
+        });
     }
 
 private:
     CellComplex& to_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     ParallelNumbering numbering_;
     std::vector<std::size_t> faces_, corners_;  ///< of chunks: how many, then how many before
 };

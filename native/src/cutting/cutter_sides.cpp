@@ -47,7 +47,7 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 }
 
 void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
-                         std::span<const std::uint8_t> reaches, const Progress* progress,
+                         std::span<const std::uint8_t> reaches, Progress* progress,
                          const std::function<void(std::int32_t, std::int32_t)>& join) {
     const ComplexView& model = overlay.model();
     const auto regions = static_cast<std::int32_t>(overlay.size());
@@ -93,8 +93,8 @@ void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
                 }
             }
         },
-        overlay.threads(), progress);
-    parallel_ranges(overlay.node_count(), kChunk, overlay.threads(), progress,
+        {overlay.threads(), progress});
+    parallel_ranges(overlay.node_count(), kChunk, {overlay.threads(), progress},
                     [&](std::size_t first_node, std::size_t end_node) {
                         for (std::size_t node = first_node; node < end_node; ++node) {
                             const auto own = uses[node];

@@ -63,7 +63,7 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 /// at once.
 /// @param reaches  of cells (cells_near_surface)
 void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
-                         std::span<const std::uint8_t> reaches, const Progress* progress,
+                         std::span<const std::uint8_t> reaches, Progress* progress,
                          const std::function<void(std::int32_t, std::int32_t)>& join);
 
 /// On which side of a surface everything is. Going round its edges, the side changes with every

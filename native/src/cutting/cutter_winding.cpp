@@ -106,7 +106,7 @@ bool CutterWinding::is_edge(const std::array<NodeId, 2>& edge) const {
     return false;
 }
 
-void CutterWinding::find_coinciding(const Progress* progress) {
+void CutterWinding::find_coinciding(Progress* progress) {
     const std::size_t count = overlay_.size();
     counts_.assign(count, 0);
     level_.assign(count, -1);
@@ -128,7 +128,7 @@ void CutterWinding::find_coinciding(const Progress* progress) {
         }
     }
     parallel_ranges(
-        count, 1 << 12, overlay_.threads(), progress, [&](std::size_t begin, std::size_t end) {
+        count, 1 << 12, {overlay_.threads(), progress}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 std::int8_t facing = 0;
                 const std::int32_t found = first.find(hash_of(outline(r)), [&](std::int32_t other) {
@@ -148,7 +148,7 @@ void CutterWinding::find_coinciding(const Progress* progress) {
     });
 }
 
-void CutterWinding::collect_uses(const Progress* progress) {
+void CutterWinding::collect_uses(Progress* progress) {
     const std::size_t count = overlay_.size(), nodes = overlay_.node_count();
     std::vector<std::uint8_t> is_on_surface(nodes, 0);
     for (std::size_t r = 0; r < count; ++r) {
@@ -172,7 +172,7 @@ void CutterWinding::collect_uses(const Progress* progress) {
                 });
             }
         },
-        overlay_.threads(), progress);
+        {overlay_.threads(), progress});
     uses_ = std::move(found.values);
     first_edge_.assign(nodes + 1, 0);
     std::size_t kept = 0;
@@ -198,14 +198,14 @@ void CutterWinding::collect_uses(const Progress* progress) {
     });
 }
 
-void CutterWinding::find_fans(const Progress* progress) {
+void CutterWinding::find_fans(Progress* progress) {
     order_.resize(uses_.size());
     windings_.assign(uses_.size(), 0);
     blade_begins_.resize(uses_.size() + edge_count());
     blades_.resize(edge_count());
     is_known_.assign(edge_count(), 0);
     parallel_ranges(
-        edge_count(), 1 << 8, overlay_.threads(), progress,
+        edge_count(), 1 << 8, {overlay_.threads(), progress},
         [this](std::size_t begin, std::size_t end) {
             std::vector<arrangement::HalfPlane> scratch;
             EdgeFan fan;

@@ -77,9 +77,9 @@ public:
     bool is_edge(const std::array<NodeId, 2>& edge) const;
 
 private:
-    void find_coinciding(const Progress* progress);
-    void collect_uses(const Progress* progress);
-    void find_fans(const Progress* progress);
+    void find_coinciding(Progress* progress);
+    void collect_uses(Progress* progress);
+    void find_fans(Progress* progress);
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(const Winding& winding);
     void cross(Winding& winding, std::size_t region, std::size_t entered) const;

@@ -34,8 +34,8 @@ void require_faces(const ComplexView& complex, std::size_t faces) {
 
 FaceTriangles triangulate_faces(std::span<const double> vertices,
                                 std::span<const std::int64_t> face_offsets,
-                                std::span<const std::int32_t> face_vertices, int threads,
-                                Progress* progress) {
+                                std::span<const std::int32_t> face_vertices,
+                                const Execution& execution) {
     ComplexView complex;
     complex.vertices = vertices;
     complex.face_offsets = face_offsets;
@@ -46,7 +46,7 @@ FaceTriangles triangulate_faces(std::span<const double> vertices,
     std::vector<std::vector<std::array<std::int32_t, 3>>> of_chunk(chunks);
     FaceTriangles found;
     found.offsets.resize(faces + 1, 0);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         std::vector<std::array<std::int32_t, 3>> triangles;
         const std::size_t end = std::min(faces, (chunk + 1) * kFacesOfChunk);
         for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {

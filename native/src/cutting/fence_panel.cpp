@@ -91,10 +91,10 @@ private:
 }  // namespace
 
 Section fence_panel(const ComplexView& model, const std::array<double, 2>& start,
-                    const std::array<double, 2>& end, int threads, Progress* progress) {
+                    const std::array<double, 2>& end, const Execution& execution) {
     const double dx = end[0] - start[0], dy = end[1] - start[1];
     const Position first{start[0], start[1], 0}, last{end[0], end[1], 0};
-    const Section whole = section_by_plane(model, {first, {dy, -dx, 0}}, threads, progress);
+    const Section whole = section_by_plane(model, {first, {dy, -dx, 0}}, execution);
     const Section begun = SectionClip(whole, checked_plane({first, {dx, dy, 0}})).above();
     return SectionClip(begun, checked_plane({last, {-dx, -dy, 0}})).above();
 }

@@ -40,8 +40,8 @@ private:
 /// One half while it is put together.
 struct Half {
     Half(CellComplex& to, std::vector<std::int32_t>& cells, std::size_t nodes, std::size_t chunks,
-         int threads, const Progress* progress)
-        : complex(to), origin(cells), chunked(to, nodes, chunks, threads, progress) {}
+         const Execution& execution)
+        : complex(to), origin(cells), chunked(to, nodes, chunks, execution) {}
 
     CellComplex& complex;
     std::vector<std::int32_t>& origin;
@@ -54,13 +54,12 @@ struct Half {
 template <class Chunks>
 Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_positions,
                  const Pieces& near, const Chunks& pieces, const std::vector<HalfCell>& half_cells,
-                 int threads, Progress* progress) {
+                 const Execution& execution) {
     Cut cut;
     const std::size_t own_nodes = model.vertex_count(), chunks = pieces.chunks();
-    std::array<Half, 2> halves{Half(cut.below, cut.below_cells, own_nodes + new_positions.size(),
-                                    chunks, threads, progress),
-                               Half(cut.above, cut.above_cells, own_nodes + new_positions.size(),
-                                    chunks, threads, progress)};
+    std::array<Half, 2> halves{
+        Half(cut.below, cut.below_cells, own_nodes + new_positions.size(), chunks, execution),
+        Half(cut.above, cut.above_cells, own_nodes + new_positions.size(), chunks, execution)};
     const auto half_of = [&](std::int32_t part) {
         return half_cells[index(part)].side == kBelow ? std::size_t{0} : std::size_t{1};
     };
@@ -84,7 +83,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
             }
         });
     };
-    parallel_chunks(chunks + 1, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks + 1, execution, [&](std::size_t chunk) {
         if (chunk == 0) {
             cut.section = assemble_section(model, new_positions, near);
             return;
@@ -95,7 +94,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
     });
     for (Half& half : halves)
         half.chunked.make_room();
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         std::array<ChunkedComplex::Writer, 2> writers{
             ChunkedComplex::Writer(halves[0].chunked, chunk),
             ChunkedComplex::Writer(halves[1].chunked, chunk)};
@@ -113,7 +112,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
                                            : new_positions[index(node) - own_nodes];
         });
         half.complex.cell_kind = model.cell_kind;
-        half.complex.volumes = strata::block_volumes(half.complex, model.blocks, threads, progress);
+        half.complex.volumes = strata::block_volumes(half.complex, model.blocks, execution);
     }
     return cut;
 }
@@ -136,16 +135,15 @@ struct ChunkedPieces {
 }  // namespace
 
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
-                    Progress* progress) {
-    return assemble_all(model, new_positions, pieces, ChunkedPieces{pieces}, half_cells, threads,
-                        progress);
+                    const Pieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const Execution& execution) {
+    return assemble_all(model, new_positions, pieces, ChunkedPieces{pieces}, half_cells, execution);
 }
 
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
-                    Progress* progress) {
-    return assemble_all(model, new_positions, pieces.near(), pieces, half_cells, threads, progress);
+                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const Execution& execution) {
+    return assemble_all(model, new_positions, pieces.near(), pieces, half_cells, execution);
 }
 
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,

@@ -13,13 +13,13 @@ class WholePieces;
 /// Puts both halves and the section together. `positions` are the model's vertices and the new
 /// nodes after them.
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
-                    Progress* progress);
+                    const Pieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const Execution& execution);
 
 /// The same of a model of which a part was cut up.
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
-                    Progress* progress);
+                    const WholePieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const Execution& execution);
 
 /// The pieces that lie on the cutter, each as it is seen from above.
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,

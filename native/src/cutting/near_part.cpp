@@ -38,18 +38,17 @@ void include_at_once(spatial::Box& box, const spatial::Box& other) {
 /// The faces, in order, of which one of the cells is one that is asked for.
 /// @param is_asked  of cells; several threads may ask at once
 template <class IsAsked>
-std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked, int threads,
-                                   const Progress* progress) {
+std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_asked,
+                                   const Execution& execution) {
     constexpr std::size_t kChunk = 1 << 15;
     std::vector<std::vector<std::int32_t>> found((model.face_count() + kChunk - 1) / kChunk);
-    parallel_ranges(model.face_count(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
-                            if ((one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other)))
-                                found[begin / kChunk].push_back(static_cast<std::int32_t>(f));
-                        }
-                    });
+    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const std::int32_t one = model.cell(f, 0), other = model.cell(f, 1);
+            if ((one >= 0 && is_asked(one)) || (other >= 0 && is_asked(other)))
+                found[begin / kChunk].push_back(static_cast<std::int32_t>(f));
+        }
+    });
     std::vector<std::int32_t> all;
     for (const auto& chunk : found)
         all.insert(all.end(), chunk.begin(), chunk.end());
@@ -58,13 +57,13 @@ std::vector<std::int32_t> faces_of(const ComplexView& model, const IsAsked& is_a
 
 }  // namespace
 
-CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces, int threads,
-                     const Progress* progress)
+CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces,
+                     const Execution& execution)
     : boxes(model.cell_count()) {
     constexpr std::size_t kChunk = 1 << 14;
     const std::size_t vertices = model.vertex_count();
     std::vector<double> largest((vertices + kChunk - 1) / kChunk, 0);
-    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(vertices, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         double& own = largest[begin / kChunk];
         for (std::size_t i = 3 * begin; i < 3 * end; ++i)
             own = std::max(own, std::abs(model.vertices[i]));
@@ -80,7 +79,7 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
     }
     // of vertices and cells: a bit for each side of that box that something of them is within
     std::vector<std::uint8_t> within(vertices), of_cell(model.cell_count(), 0);
-    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(vertices, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             unsigned bits = 0;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -91,64 +90,60 @@ CellBoxes::CellBoxes(const ComplexView& model, std::span<const NearestSide> surf
             within[v] = static_cast<std::uint8_t>(bits);
         }
     });
-    parallel_ranges(model.face_count(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            std::uint8_t bits = 0;
-                            for (const NodeId v : model.face(f))
-                                bits |= within[index(v)];
-                            for (std::size_t k = 0; k < 2; ++k) {
-                                if (model.cell(f, k) < 0) continue;
-                                const std::atomic_ref own(of_cell[index(model.cell(f, k))]);
-                                if ((own.load(std::memory_order_relaxed) | bits) !=
-                                    own.load(std::memory_order_relaxed))
-                                    own.fetch_or(bits, std::memory_order_relaxed);
-                            }
-                        }
-                    });
+    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            std::uint8_t bits = 0;
+            for (const NodeId v : model.face(f))
+                bits |= within[index(v)];
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (model.cell(f, k) < 0) continue;
+                const std::atomic_ref own(of_cell[index(model.cell(f, k))]);
+                if ((own.load(std::memory_order_relaxed) | bits) !=
+                    own.load(std::memory_order_relaxed))
+                    own.fetch_or(bits, std::memory_order_relaxed);
+            }
+        }
+    });
     constexpr std::uint8_t kAll = 63;
-    parallel_ranges(model.face_count(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            spatial::Box box;
-                            for (std::size_t k = 0; k < 2; ++k) {
-                                const std::int32_t cell = model.cell(f, k);
-                                if (cell < 0 || of_cell[index(cell)] != kAll) continue;
-                                if (box.low[0] > box.high[0]) {
-                                    for (const NodeId v : model.face(f))
-                                        box.include(model.vertex(v));
-                                }
-                                include_at_once(boxes[index(cell)], box);
-                            }
-                        }
-                    });
+    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            spatial::Box box;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::int32_t cell = model.cell(f, k);
+                if (cell < 0 || of_cell[index(cell)] != kAll) continue;
+                if (box.low[0] > box.high[0]) {
+                    for (const NodeId v : model.face(f))
+                        box.include(model.vertex(v));
+                }
+                include_at_once(boxes[index(cell)], box);
+            }
+        }
+    });
 }
 
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
-                                     int threads, const Progress* progress) {
+                                     const Execution& execution) {
     const double margin = margin_of(cells, surface);
     std::vector<std::uint8_t> is_near(cells.boxes.size(), 0);
-    parallel_ranges(is_near.size(), 1 << 12, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            is_near[c] = surface.is_near(cells.boxes[c], margin) ? 1 : 0;
-                    });
+    parallel_ranges(is_near.size(), 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+            is_near[c] = surface.is_near(cells.boxes[c], margin) ? 1 : 0;
+    });
     return is_near;
 }
 
 std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
-                                            std::span<const std::uint8_t> is_near, int threads,
-                                            const Progress* progress) {
+                                            std::span<const std::uint8_t> is_near,
+                                            const Execution& execution) {
     constexpr std::size_t kChunk = 1 << 15;
     DisjointSets joined(model.cell_count());
     const auto is_far = [&](std::int32_t c) { return c >= 0 && is_near[index(c)] == 0; };
-    parallel_ranges(model.face_count(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
-                                joined.join(model.cell(f, 0), model.cell(f, 1));
-                        }
-                    });
+    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
+                joined.join(model.cell(f, 0), model.cell(f, 1));
+        }
+    });
     std::vector<std::int8_t> sides(model.cell_count(), kOn);
     // of the first cell of what is connected: its last face, whose first vertex stands for it
     constexpr std::int32_t kNotFirst = -2, kNone = -1;
@@ -156,21 +151,20 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (is_far(c) && joined.find(c) == c) face[index(c)] = kNone;
     }
-    parallel_ranges(
-        model.face_count(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                for (std::size_t k = 0; k < 2; ++k) {
-                    const std::int32_t cell = model.cell(f, k);
-                    if (cell < 0) continue;
-                    const std::atomic_ref last(face[index(cell)]);
-                    auto known = last.load(std::memory_order_relaxed);
-                    const auto own = static_cast<std::int32_t>(f);
-                    while (known != kNotFirst && known < own &&
-                           !last.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
-                    }
+    parallel_ranges(model.face_count(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::int32_t cell = model.cell(f, k);
+                if (cell < 0) continue;
+                const std::atomic_ref last(face[index(cell)]);
+                auto known = last.load(std::memory_order_relaxed);
+                const auto own = static_cast<std::int32_t>(f);
+                while (known != kNotFirst && known < own &&
+                       !last.compare_exchange_weak(known, own, std::memory_order_relaxed)) {
                 }
             }
-        });
+        }
+    });
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
         if (!is_far(c)) continue;
         if (face[index(c)] == kNotFirst) {
@@ -182,8 +176,8 @@ std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const Near
     return sides;
 }
 
-NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near, int threads,
-                   const Progress* progress)
+NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near,
+                   const Execution& execution)
     : model_(model), number_(model.cell_count(), -1) {
     for (std::int32_t c = 0; index(c) < number_.size(); ++c) {
         if (is_near[index(c)] == 0) continue;
@@ -192,8 +186,7 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         cell_block_.push_back(model.cell_block[index(c)]);
     }
     faces_ = faces_of(
-        model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, threads,
-        progress);
+        model, [is_near](std::int32_t cell) { return is_near[index(cell)] != 0; }, execution);
     // in the model's order: what is decided by numbers does not depend on which faces come first
     std::vector<NodeId> own_vertex(model.vertex_count(), -1);
     for (const std::int32_t face : faces_) {

@@ -51,8 +51,8 @@ private:
 class NearPart {
 public:
     /// @param is_near  of the model's cells: not 0 if it is one of them
-    NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near, int threads,
-             const Progress* progress);
+    NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near,
+             const Execution& execution);
 
     ComplexView view() const;
     /// The model's cell that one of the part is.
@@ -77,8 +77,8 @@ private:
 
 /// Where the cells of a model are that may come near surfaces.
 struct CellBoxes {
-    CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces, int threads,
-              const Progress* progress);
+    CellBoxes(const ComplexView& model, std::span<const NearestSide> surfaces,
+              const Execution& execution);
 
     std::vector<spatial::Box> boxes;  ///< empty of cells that are away from all surfaces
     double rounding = 0;              ///< what vertices may be off by
@@ -87,14 +87,14 @@ struct CellBoxes {
 /// Of cells: 1 where they come near a surface, farther than SurfaceOverlay takes to be near.
 /// @param surface  one of those that the boxes were made for
 std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
-                                     int threads, const Progress* progress);
+                                     const Execution& execution);
 
 /// Of cells that are not near a surface, the side of it that they are on; kOn of the others. What
 /// is connected beside the surface is on one side.
 /// @param is_near  of cells, not 0: near, or not asked for
 std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const NearestSide& surface,
-                                            std::span<const std::uint8_t> is_near, int threads,
-                                            const Progress* progress);
+                                            std::span<const std::uint8_t> is_near,
+                                            const Execution& execution);
 
 template <class Visit>
 void WholePieces::each_of(std::size_t chunk, const Visit& visit) const {

@@ -34,12 +34,11 @@ void SurfaceOverlay::find_active_faces() {
     }
     tree_ = std::make_unique<BoxTree>(std::move(boxes));
     active_.assign(model_.face_count(), 0);
-    parallel_ranges(active_.size(), 1 << 12, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            if (first_passed(model_.face(f)) >= 0) active_[f] = 1;
-                        }
-                    });
+    parallel_ranges(active_.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            if (first_passed(model_.face(f)) >= 0) active_[f] = 1;
+        }
+    });
     for (std::size_t f = 0; f < active_.size(); ++f) {
         if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
     }
@@ -177,7 +176,7 @@ void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
     constexpr std::size_t kFaces = 1 << 9;  // at a time
     std::vector<FaceParts> found((faces.size() + kFaces - 1) / kFaces);
     parallel_ranges(
-        faces.size(), kFaces, threads_, progress_,
+        faces.size(), kFaces, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 divide(faces[i], model_.face(index(faces[i])), found[begin / kFaces]);
@@ -194,20 +193,18 @@ std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
     constexpr std::size_t kTriangles = 1 << 11;  // at a time
     const std::size_t count = parts_.triangles.size() - first;
     std::vector<std::vector<std::array<NodeId, 2>>> found((count + kTriangles - 1) / kTriangles);
-    parallel_ranges(
-        count, kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto& t = parts_.triangles[first + i];
-                bool flat = true;
-                for (std::size_t axis = 0; axis < 3 && flat; ++axis) {
-                    flat = exact::orient2d(points_, axis, vertex_point_[index(t[0])],
-                                           vertex_point_[index(t[1])],
-                                           vertex_point_[index(t[2])]) == 0;
-                }
-                for (std::size_t k = 0; flat && k < 3; ++k)
-                    found[begin / kTriangles].push_back(unordered(t[k], t[(k + 1) % 3]));
+    parallel_ranges(count, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& t = parts_.triangles[first + i];
+            bool flat = true;
+            for (std::size_t axis = 0; axis < 3 && flat; ++axis) {
+                flat = exact::orient2d(points_, axis, vertex_point_[index(t[0])],
+                                       vertex_point_[index(t[1])], vertex_point_[index(t[2])]) == 0;
             }
-        });
+            for (std::size_t k = 0; flat && k < 3; ++k)
+                found[begin / kTriangles].push_back(unordered(t[k], t[(k + 1) % 3]));
+        }
+    });
     std::vector<std::array<NodeId, 2>> edges;
     for (const auto& chunk : found)
         edges.insert(edges.end(), chunk.begin(), chunk.end());

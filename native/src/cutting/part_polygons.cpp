@@ -415,7 +415,7 @@ void PartRounding::divide_bent() {
     // a node that is added moves no other
     std::vector<std::uint8_t> is_whole(pieces_.size());
     parallel_ranges(
-        pieces_.size(), 1 << 12, threads_, progress_,
+        pieces_.size(), 1 << 12, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
                 is_whole[p] =

@@ -17,15 +17,14 @@ using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
-                           const std::array<bool, 2>& touches, int threads,
-                           const Progress* progress, bool joins_models, double least_rounding)
+                           const std::array<bool, 2>& touches, const Execution& execution,
+                           bool joins_models, double least_rounding)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
       half_cells_(half_cells),
       touches_(touches),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       joins_models_(joins_models),
       least_rounding_(least_rounding) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
@@ -61,7 +60,7 @@ template <class IsIt>
 std::size_t PartRounding::first_where(std::size_t count, const IsIt& is_it) const {
     std::atomic<std::size_t> first{count};
     parallel_ranges(
-        count, 1 << 12, threads_, progress_,
+        count, 1 << 12, execution_,
         [&](std::size_t begin, std::size_t end) {
             if (first.load(std::memory_order_relaxed) < begin) return;
             std::size_t i = begin;
@@ -385,7 +384,7 @@ std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doub
     constexpr std::size_t kFar = SIZE_MAX;
     Array<std::size_t> slot(pieces_.size());
     parallel_ranges(
-        pieces_.size(), 1 << 12, threads_, progress_,
+        pieces_.size(), 1 << 12, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces_.polygons[p];

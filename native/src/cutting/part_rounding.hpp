@@ -28,8 +28,8 @@ public:
     /// itself:
     ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
-                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches, int threads,
-                 const Progress* progress, bool joins_models = false, double least_rounding = 0);
+                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
+                 const Execution& execution, bool joins_models = false, double least_rounding = 0);
     void run();
 
 private:
@@ -111,8 +111,7 @@ private:
     Pieces& pieces_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     bool joins_models_;
     double least_rounding_;
 
@@ -131,7 +130,7 @@ private:
 template <class Visit>
 void PartRounding::each_of_parts(std::span<const std::int32_t> parts, const Visit& visit) const {
     constexpr std::size_t kAtOnce = 1 << 6;
-    parallel_workers((parts.size() + kAtOnce - 1) / kAtOnce, threads_, progress_,
+    parallel_workers((parts.size() + kAtOnce - 1) / kAtOnce, execution_,
                      [&] {
                          return [&, memory = Memory()](std::size_t chunk) mutable {
                              const std::size_t end = std::min(parts.size(), (chunk + 1) * kAtOnce);

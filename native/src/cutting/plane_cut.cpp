@@ -57,9 +57,9 @@ std::size_t chunks(std::size_t count, std::size_t size) {
 
 class PlaneCutter {
 public:
-    PlaneCutter(const ComplexView& model, const Plane& plane, int threads, Progress* progress)
-        : model_(model), plane_(checked_plane(plane)), threads_(threads), progress_(progress) {
-        sides_ = vertex_sides(model, plane_, threads, progress);
+    PlaneCutter(const ComplexView& model, const Plane& plane, const Execution& execution)
+        : model_(model), plane_(checked_plane(plane)), execution_(execution) {
+        sides_ = vertex_sides(model, plane_, execution);
     }
 
     Section section() {
@@ -76,10 +76,8 @@ public:
         report(0.7, "putting the halves together");
         std::vector<HalfCell> half_cells;
         number_cells(half_cells);
-        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, threads_,
-                     progress_)
-            .run();
-        return assemble_halves(model_, new_positions_, pieces_, half_cells, threads_, progress_);
+        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, execution_).run();
+        return assemble_halves(model_, new_positions_, pieces_, half_cells, execution_);
     }
 
 private:
@@ -91,9 +89,9 @@ private:
         } while (settle());
     }
     void report(double share, const char* text) {
-        if (progress_ == nullptr) return;
-        progress_->check();
-        progress_->report(share, text);
+        if (execution_.progress == nullptr) return;
+        execution_.progress->check();
+        execution_.progress->report(share, text);
     }
     void mark_sides();
     void find_cuts();
@@ -112,8 +110,7 @@ private:
 
     const ComplexView& model_;
     exact::OrientedPlane plane_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     std::vector<std::int8_t> sides_;
     std::vector<std::uint8_t> face_sides_, cell_sides_;
     std::unique_ptr<EdgeIntersections> cuts_;
@@ -129,7 +126,7 @@ private:
 /// On which sides of the plane faces and cells have corners.
 void PlaneCutter::mark_sides() {
     face_sides_.assign(model_.face_count(), 0);
-    parallel_chunks(chunks(face_sides_.size(), kFaces), threads_, progress_, [&](std::size_t c) {
+    parallel_chunks(chunks(face_sides_.size(), kFaces), execution_, [&](std::size_t c) {
         for (std::size_t f = c * kFaces; f < std::min(face_sides_.size(), (c + 1) * kFaces); ++f) {
             std::uint8_t found = 0;
             for (const NodeId v : model_.face(f)) {
@@ -141,7 +138,7 @@ void PlaneCutter::mark_sides() {
     });
     cell_sides_.assign(model_.cell_block.size(), 0);
     for (std::size_t f = 0; f < face_sides_.size(); ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         for (std::size_t k = 0; k < 2; ++k) {
             if (model_.cell(f, k) >= 0) cell_sides_[index(model_.cell(f, k))] |= face_sides_[f];
         }
@@ -153,7 +150,7 @@ void PlaneCutter::find_cuts() {
         mark_sides();
         std::vector<std::array<NodeId, 2>> edges;
         for (std::size_t f = 0; f < face_sides_.size(); ++f) {
-            poll(progress_, f);
+            poll(execution_.progress, f);
             if (face_sides_[f] != kCut) continue;
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size(); ++i) {
@@ -226,7 +223,7 @@ void PlaneCutter::divide_faces(bool all) {
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
-    parallel_chunks(count, threads_, progress_, [&](std::size_t c) {
+    parallel_chunks(count, execution_, [&](std::size_t c) {
         FaceSplitter splitter(model_, sides_, *cuts_);
         FaceParts parts;
         Pieces& own = found[c];
@@ -293,7 +290,7 @@ void PlaneCutter::cut_cells(bool parts) {
     });
 
     cell_cuts_.assign(count, {});
-    parallel_chunks(chunks(count, kCells), threads_, progress_, [&](std::size_t c) {
+    parallel_chunks(chunks(count, kCells), execution_, [&](std::size_t c) {
         CellCutter cutter(model_, sides_, *cuts_, pieces_, plane_);
         for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
             if (parts) {
@@ -372,7 +369,7 @@ bool PlaneCutter::straighten_walls() {
     std::vector<NodeId> near;
     std::vector<Position> corners;
     for (std::size_t p = 0; p < first_cap_; ++p) {
-        poll(progress_, p);
+        poll(execution_.progress, p);
         const auto face = index(pieces_[p].face);
         if (face_sides_[face] != kCut || model_.face_surface[face] != kWall) continue;
         near.clear();
@@ -394,7 +391,7 @@ bool PlaneCutter::straighten_walls() {
 bool PlaneCutter::settle() {
     bool moved = straighten_walls();
     for (std::size_t i = 0; i < cell_cuts_.size(); ++i) {
-        poll(progress_, i);
+        poll(execution_.progress, i);
         for (std::size_t part = 0; part < cell_cuts_[i].part_side.size(); ++part)
             moved |= settle_part(static_cast<std::int32_t>(part), cell_cuts_[i], cell_pieces_[i]);
     }
@@ -438,15 +435,14 @@ void PlaneCutter::number_cells(std::vector<HalfCell>& half_cells) {
 
 }  // namespace
 
-Cut cut_by_plane(const ComplexView& model, const Plane& plane, int threads, Progress* progress) {
+Cut cut_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution) {
     check_model(model);
-    return PlaneCutter(model, plane, threads, progress).cut();
+    return PlaneCutter(model, plane, execution).cut();
 }
 
-Section section_by_plane(const ComplexView& model, const Plane& plane, int threads,
-                         Progress* progress) {
+Section section_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution) {
     check_model(model);
-    return PlaneCutter(model, plane, threads, progress).section();
+    return PlaneCutter(model, plane, execution).section();
 }
 
 }  // namespace realmodel::cutting

@@ -20,13 +20,12 @@ exact::OrientedPlane checked_plane(const Plane& plane) {
 }
 
 std::vector<std::int8_t> vertex_sides(const ComplexView& model, const exact::OrientedPlane& plane,
-                                      int threads, const Progress* progress) {
+                                      const Execution& execution) {
     std::vector<std::int8_t> sides(model.vertex_count());
-    parallel_ranges(sides.size(), 1 << 14, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t v = begin; v < end; ++v)
-                            sides[v] = plane.side(model.vertex(static_cast<NodeId>(v)));
-                    });
+    parallel_ranges(sides.size(), 1 << 14, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            sides[v] = plane.side(model.vertex(static_cast<NodeId>(v)));
+    });
     return sides;
 }
 

@@ -6,7 +6,7 @@
 
 #include "cutting/polygons.hpp"
 #include "exact/oriented_plane.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {
@@ -16,7 +16,7 @@ exact::OrientedPlane checked_plane(const Plane& plane);
 
 /// The side of every vertex.
 std::vector<std::int8_t> vertex_sides(const ComplexView& model, const exact::OrientedPlane& plane,
-                                      int threads, const Progress* progress);
+                                      const Execution& execution);
 
 /// The points where edges pass through the plane, each a node after the model's vertices.
 class EdgeIntersections {

@@ -36,7 +36,7 @@ public:
         std::atomic<bool> any = false;
         for (const std::vector<Edge>& round : rounds_) {
             constexpr std::size_t kAtOnce = 1 << 3;
-            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, of_.threads_, of_.progress_,
+            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, of_.execution_,
                              [&] {
                                  return [&, memory = Memory()](std::size_t chunk) mutable {
                                      const std::size_t begin = chunk * kAtOnce;
@@ -226,7 +226,7 @@ bool PartRounding::join_short_edges() {
     constexpr std::size_t kPieces = 1 << 12;  // at a time
     std::vector<std::vector<std::array<NodeId, 2>>> found((pieces_.size() + kPieces - 1) / kPieces);
     parallel_ranges(
-        pieces_.size(), kPieces, threads_, progress_,
+        pieces_.size(), kPieces, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const auto nodes = pieces_.polygons[p];

@@ -18,43 +18,46 @@ namespace {
 /// The cut where only the cells that are near take part; nothing where rounding went beyond them.
 std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
                        std::span<const std::uint8_t> is_near,
-                       std::span<const std::int8_t> sides_beside, int threads, Progress* progress) {
-    const NearPart part(model, is_near, threads, progress);
+                       std::span<const std::int8_t> sides_beside, const Execution& execution) {
+    const NearPart part(model, is_near, execution);
     const ComplexView near = part.view();
-    SurfaceOverlay overlay(near, surface, threads, progress);
-    if (progress != nullptr) progress->begin(0.3, 0.5, "finding what the surface goes through");
-    const CutterWinding winding(overlay, progress);
-    const CutterSides sides(overlay, winding, progress);
-    if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
-    SurfaceParts made(overlay, winding, sides, progress);
-    if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches, threads,
-                 progress)
+    SurfaceOverlay overlay(near, surface, execution);
+    if (execution.progress != nullptr)
+        execution.progress->begin(0.3, 0.5, "finding what the surface goes through");
+    const CutterWinding winding(overlay, execution.progress);
+    const CutterSides sides(overlay, winding, execution.progress);
+    if (execution.progress != nullptr)
+        execution.progress->begin(0.5, 0.68, "finding the parts of cells");
+    SurfaceParts made(overlay, winding, sides, execution.progress);
+    if (execution.progress != nullptr)
+        execution.progress->begin(0.85, 0.92, "rounding what was cut");
+    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
+                 execution)
         .run();
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
-    if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
-    Cut halves = assemble_halves(model, overlay.new_positions(), *pieces, made.half_cells, threads,
-                                 progress);
+    if (execution.progress != nullptr)
+        execution.progress->begin(0.95, 1.0, "putting the halves together");
+    Cut halves =
+        assemble_halves(model, overlay.new_positions(), *pieces, made.half_cells, execution);
     halves.below_touches = made.touches[0];
     halves.above_touches = made.touches[1];
     return halves;
 }
 
-Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Progress* progress) {
+Cut cut(const ComplexView& model, const CutterSurface& surface, const Execution& execution) {
     std::vector<std::uint8_t> is_near;
     std::vector<std::int8_t> sides;
     {
         const NearestSide nearest(surface);
-        const CellBoxes cells(model, {&nearest, 1}, threads, progress);
-        is_near = cells_near(cells, nearest, threads, progress);
-        sides = sides_of_far_cells(model, nearest, is_near, threads, progress);
+        const CellBoxes cells(model, {&nearest, 1}, execution);
+        is_near = cells_near(cells, nearest, execution);
+        sides = sides_of_far_cells(model, nearest, is_near, execution);
     }
-    if (auto halves = cut(model, surface, is_near, sides, threads, progress))
-        return *std::move(halves);
+    if (auto halves = cut(model, surface, is_near, sides, execution)) return *std::move(halves);
     is_near.assign(is_near.size(), 1);
     sides.assign(sides.size(), kOn);
-    return *cut(model, surface, is_near, sides, threads, progress);
+    return *cut(model, surface, is_near, sides, execution);
 }
 
 bool is_same(const ComplexView& one, const ComplexView& other) {
@@ -67,7 +70,7 @@ bool is_same(const ComplexView& one, const ComplexView& other) {
 }
 
 /// A model's own block taken out of it: no cell is cut.
-Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Progress* progress) {
+Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution& execution) {
     if (std::find(model.cell_block.begin(), model.cell_block.end(), block) ==
         model.cell_block.end())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
@@ -82,7 +85,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Pro
         cells.push_back({cell, side(cell)});
     }
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
+        poll(execution.progress, f);
         const std::array<std::int32_t, 2> own{model.cell(f, 0), model.cell(f, 1)};
         const std::array<std::int8_t, 2> sides{side(own[0]), side(own[1])};
         const bool bounds = (sides[0] == kBelow) != (sides[1] == kBelow);
@@ -96,23 +99,23 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Pro
         for (std::size_t p = 0; p < polygons.size(); ++p)
             pieces.add(polygons[p], origin);
     }
-    return assemble_halves(model, {}, pieces, cells, threads, progress);
+    return assemble_halves(model, {}, pieces, cells, execution);
 }
 
 }  // namespace
 
-Cut cut_by_surface(const ComplexView& model, const TriangleView& surface, int threads,
-                   Progress* progress) {
+Cut cut_by_surface(const ComplexView& model, const TriangleView& surface,
+                   const Execution& execution) {
     check_model(model);
-    return cut(model, oriented_surface(surface), threads, progress);
+    return cut(model, oriented_surface(surface), execution);
 }
 
 Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_t block,
-                 int threads, Progress* progress) {
+                 const Execution& execution) {
     check_model(model);
     check_model(other);
-    if (is_same(model, other)) return part_by_block(model, block, threads, progress);
-    return cut(model, block_boundary(other, block), threads, progress);
+    if (is_same(model, other)) return part_by_block(model, block, execution);
+    return cut(model, block_boundary(other, block), execution);
 }
 
 }  // namespace realmodel::cutting

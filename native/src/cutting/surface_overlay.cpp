@@ -25,12 +25,11 @@ double computed_ulps(double x) {
 
 }  // namespace
 
-SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
-                               Progress* progress, double least_rounding)
+SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
+                               const Execution& execution, double least_rounding)
     : model_(model),
       surface_(surface),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       arrangement_(points_),
       margin_(least_rounding) {
     find_active_faces();
@@ -166,7 +165,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
     std::vector<std::vector<Place>> places(vertices.size());
     parallel_ranges(
-        vertices.size(), 1 << 10, threads_, progress_,
+        vertices.size(), 1 << 10, execution_,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 places[i] = places_on_surface(model_.vertex(vertices[i]));
@@ -174,7 +173,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
         0.02);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (places[i].empty()) continue;
-        poll(progress_, 16 * i);
+        poll(execution_.progress, 16 * i);
         SpacePointId& point = vertex_point_[index(vertices[i])];
         const auto found = point_on_surface(model_.vertex(vertices[i]), places[i]);
         if (!found || *found == point || is_taken(*found) != 0) continue;
@@ -191,7 +190,8 @@ void SurfaceOverlay::overlay_all() {
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
                                                                       kChunk);
-    if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
+    if (execution_.progress != nullptr)
+        execution_.progress->begin(0.08, 0.15, "finding where surface and faces meet");
     const auto box_of = [this](std::int32_t t) {
         Box box;
         for (const SpacePointId p : arrangement_.corners(t))
@@ -203,7 +203,7 @@ void SurfaceOverlay::overlay_all() {
     std::vector<std::uint8_t> is_beyond(count, 0);
     for (std::size_t t = index(first_cutter_); t < count; ++t)
         is_beyond[t] = box_of(static_cast<std::int32_t>(t)).meets(model_box_) ? 0 : 1;
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             tree_->find(box_of(t), [&](std::int32_t c) {
@@ -214,17 +214,18 @@ void SurfaceOverlay::overlay_all() {
             });
         }
     });
-    if (progress_ != nullptr) progress_->begin(0.15, 0.3, "dividing faces and surface");
+    if (execution_.progress != nullptr)
+        execution_.progress->begin(0.15, 0.3, "dividing faces and surface");
     std::size_t segments = 0;
     for (const auto& intersections : found)
         segments += intersections.size();
     points_.reserve_intersections(segments);  // each is an end of two segments
     for (const auto& intersections : found) {
-        if (progress_ != nullptr) progress_->check();
+        if (execution_.progress != nullptr) execution_.progress->check();
         for (const TriangleArrangement::Intersection& intersection : intersections)
             arrangement_.insert(intersection);
     }
-    arrangement_.divide(threads_, progress_);
+    arrangement_.divide(execution_);
 }
 
 /// The triangles of active faces, then those of the surface.
@@ -246,7 +247,7 @@ void SurfaceOverlay::add_triangles() {
             own[i] = known;
         }
     }
-    arrangement_.add_all(corners, threads_, progress_);
+    arrangement_.add_all(corners, execution_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
@@ -285,7 +286,7 @@ void SurfaceOverlay::sort_new_nodes() {
     std::vector<std::pair<Position, NodeId>> order;
     for (std::size_t i = 0; i < new_positions_.size(); ++i)
         order.push_back({new_positions_[i], static_cast<NodeId>(i)});
-    parallel_sort(order, std::less<>(), threads_, progress_);
+    parallel_sort(order, std::less<>(), execution_);
     std::vector<NodeId> number(order.size());
     std::vector<SpacePointId> exact(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -26,12 +26,12 @@ class SurfaceOverlay {
 public:
     /// @param least_rounding  what coordinates may be off by at least, where the model is a piece
     ///                        of one with larger coordinates
-    SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
-                   Progress* progress, double least_rounding = 0);
+    SurfaceOverlay(const ComplexView& model, const CutterSurface& surface,
+                   const Execution& execution, double least_rounding = 0);
 
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
-    int threads() const { return threads_; }
+    int threads() const { return execution_.threads; }
     std::size_t size() const { return loops_.size(); }
     bool of_cutter(std::size_t region) const {
         return !is_beside(region) && triangle(region) >= first_cutter_;
@@ -143,8 +143,7 @@ private:
 
     const ComplexView& model_;
     const CutterSurface& surface_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
 
     exact::SpacePoints points_;
     arrangement::TriangleArrangement arrangement_;

@@ -145,7 +145,7 @@ void SurfaceParts::make_patches(Progress* progress) {
     constexpr std::size_t kChunk = 1 << 8;
     divided_.resize((active.size() + kChunk - 1) / kChunk);
     parallel_ranges(
-        active.size(), kChunk, overlay_.threads(), progress,
+        active.size(), kChunk, {overlay_.threads(), progress},
         [&](std::size_t begin, std::size_t end) {
             FaceDivider divider(overlay_, winding_);
             for (std::size_t i = begin; i < end; ++i)
@@ -213,7 +213,7 @@ void SurfaceParts::each_use(const Caps& caps, const Visit& visit) const {
     }
 }
 
-void SurfaceParts::collect_uses(const Progress* progress) {
+void SurfaceParts::collect_uses(Progress* progress) {
     constexpr std::size_t kChunk = 1 << 10;
     const std::size_t count = patches_.size() + caps_.size();
     auto sorted = sorted_in_buckets<SlotUse>(
@@ -228,7 +228,7 @@ void SurfaceParts::collect_uses(const Progress* progress) {
                 }
             }
         },
-        overlay_.threads(), progress);
+        {overlay_.threads(), progress});
     uses_ = std::move(sorted.values);
 }
 
@@ -371,7 +371,7 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 
 /// The wall of a hollow that the surface cuts out of a cell bounds the part around it; what
 /// rounding turned inside out goes with the part beside it.
-void SurfaceParts::attach_hollows(const Progress* progress) {
+void SurfaceParts::attach_hollows(Progress* progress) {
     // the slots of each cell that reaches the surface, and what has them
     struct Item {
         std::int32_t slot, patch, region;  // one of the latter, the other -1
@@ -415,7 +415,7 @@ void SurfaceParts::attach_hollows(const Progress* progress) {
         return shells;
     };
     constexpr std::size_t kCells = 1 << 8;
-    parallel_ranges(items.size(), kCells, overlay_.threads(), progress,
+    parallel_ranges(items.size(), kCells, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t cell = begin; cell < end; ++cell)
                             attach_hollows(shells_of(items[cell]));

@@ -94,22 +94,22 @@ private:
     void each_use(const Patch& patch, const Visit& visit) const;
     template <class Visit>
     void each_use(const Caps& caps, const Visit& visit) const;
-    void collect_uses(const Progress* progress);
+    void collect_uses(Progress* progress);
     void pair_caps(Caps& caps);
     void join_parts(Progress* progress);
     void join_across();
     void join_round_edge(std::span<const SlotUse> uses);
     /// By half and first slot.
     using Shells = std::map<std::pair<std::int8_t, std::int32_t>, Shell>;
-    void attach_hollows(const Progress* progress);
+    void attach_hollows(Progress* progress);
     void attach_hollows(const Shells& of_cell);
     void number_parts();
-    void write_patches(const Progress* progress);
-    void write_caps(const Progress* progress);
+    void write_patches(Progress* progress);
+    void write_caps(Progress* progress);
     void divide(const Patch& patch, Polygons& polygons);
     void write(const Polygons& polygons, std::size_t first, std::size_t end, bool reversed,
                std::int32_t face, std::array<std::int32_t, 2> slots, bool level);
-    void find_touches(const Progress* progress);
+    void find_touches(Progress* progress);
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;

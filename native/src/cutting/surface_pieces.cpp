@@ -48,9 +48,9 @@ class DividedInChunks {
 public:
     /// @param divide  divide(i, polygons) adds those of the i-th
     template <class Divide>
-    DividedInChunks(std::size_t count, const Divide& divide, int threads, const Progress* progress)
+    DividedInChunks(std::size_t count, const Divide& divide, const Execution& execution)
         : chunks_((count + kChunk - 1) / kChunk) {
-        parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
             Chunk& own = chunks_[begin / kChunk];
             for (std::size_t i = begin; i < end; ++i) {
                 divide(i, own.polygons);
@@ -171,11 +171,11 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
 }
 
 /// Patches are divided on all threads and written in their order.
-void SurfaceParts::write_patches(const Progress* progress) {
+void SurfaceParts::write_patches(Progress* progress) {
     const DividedInChunks divided(
         patches_.size(),
         [this](std::size_t i, Polygons& polygons) { divide(patches_[i], polygons); },
-        overlay_.threads(), progress);
+        {overlay_.threads(), progress});
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
             write(polygons, first, end, false, patches_[i].face, patches_[i].slots, false);
@@ -185,7 +185,7 @@ void SurfaceParts::write_patches(const Progress* progress) {
 
 /// Between what is on either side of the surface; of cells that overlap or are inside out on one
 /// side, those that make up for each other have the polygon between them.
-void SurfaceParts::write_caps(const Progress* progress) {
+void SurfaceParts::write_caps(Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> outer_face(overlay_.size(), -1);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
@@ -194,18 +194,17 @@ void SurfaceParts::write_caps(const Progress* progress) {
         if (model.cell(face, 1) < 0)
             outer_face[index(winding_.level(r))] = static_cast<std::int32_t>(face);
     }
-    const DividedInChunks in_polygons(
-        caps_.size(),
-        [this](std::size_t i, Polygons& polygons) {
-            const std::size_t region = index(caps_[i].region);
-            const auto& triangle = overlay_.corners(region);
-            std::array<Position, 3> corners;
-            for (std::size_t k = 0; k < 3; ++k)
-                corners[k] = overlay_.points().rounded(triangle[k]);
-            divide_loops(overlay_, polygon_normal(corners), overlay_.loops(region), false,
-                         polygons);
-        },
-        overlay_.threads(), progress);
+    const DividedInChunks in_polygons(caps_.size(),
+                                      [this](std::size_t i, Polygons& polygons) {
+                                          const std::size_t region = index(caps_[i].region);
+                                          const auto& triangle = overlay_.corners(region);
+                                          std::array<Position, 3> corners;
+                                          for (std::size_t k = 0; k < 3; ++k)
+                                              corners[k] = overlay_.points().rounded(triangle[k]);
+                                          divide_loops(overlay_, polygon_normal(corners),
+                                                       overlay_.loops(region), false, polygons);
+                                      },
+                                      {overlay_.threads(), progress});
     Polygons polygons;
     for (std::size_t i = 0; i < caps_.size(); ++i) {
         const Caps& caps = caps_[i];
@@ -253,7 +252,7 @@ void SurfaceParts::write_caps(const Progress* progress) {
     }
 }
 
-void SurfaceParts::find_touches(const Progress* progress) {
+void SurfaceParts::find_touches(Progress* progress) {
     // part and ends; of parts within one cell, two uses of an edge side by side are not too many
     std::vector<std::array<std::int32_t, 3>> edges;
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
@@ -265,7 +264,7 @@ void SurfaceParts::find_touches(const Progress* progress) {
         for (std::size_t i = begin; i < end; ++i)
             edges.push_back({part_[index(uses_[i].slot)], first.use.edge[0], first.use.edge[1]});
     }
-    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(edges, std::less<>(), {overlay_.threads(), progress});
     for (std::size_t i = 2; i < edges.size(); ++i) {
         if (edges[i] == edges[i - 2])
             touches[half_cells[index(edges[i][0])].side == kAbove ? 1 : 0] = true;

@@ -227,7 +227,7 @@ NumberTable read_numbers(std::string_view text, const TableFormat& format, int t
     begins.push_back(text.size());
     std::vector<NumberTable> tables(begins.size() - 1);
     std::vector<std::optional<Wrong>> wrong(tables.size());
-    parallel_chunks(tables.size(), threads, nullptr, [&](std::size_t part) {
+    parallel_chunks(tables.size(), {threads, nullptr}, [&](std::size_t part) {
         wrong[part] = Lines(text, format).read(begins[part], begins[part + 1], tables[part]);
     });
     NumberTable all;

@@ -10,7 +10,7 @@
 namespace realmodel::interpolation {
 
 /// Whether long work should end early; from any thread.
-inline bool cancelled(const Progress* progress) {
+inline bool cancelled(Progress* progress) {
     return progress != nullptr && progress->cancelled();
 }
 
@@ -18,8 +18,7 @@ inline bool cancelled(const Progress* progress) {
 struct NodeLoop {
     std::size_t count;
     std::size_t chunk;  ///< nodes that one thread does in a row
-    int threads;
-    Progress* progress;
+    Execution execution;
     const char* text = nullptr;  ///< what is being done; null keeps the text that was there
     double begin = 0, end = 1;   ///< the fractions of the progress; equal: it is not moved
 
@@ -30,21 +29,21 @@ struct NodeLoop {
     template <class Make, class Work>
     void over_chunks(const Make& make, const Work& work) const {
         assert(chunk > 0);
-        if (progress != nullptr && begin < end) progress->begin(begin, end, text);
+        if (execution.progress != nullptr && begin < end)
+            execution.progress->begin(begin, end, text);
         const auto worker = [&] {
             return [&, own = make()](std::size_t number) mutable {
                 work(own, number * chunk, std::min(count, (number + 1) * chunk));
             };
         };
-        parallel_workers((count + chunk - 1) / chunk, threads, progress, worker,
-                         begin < end ? 1.0 : 0.0);
+        parallel_workers((count + chunk - 1) / chunk, execution, worker, begin < end ? 1.0 : 0.0);
     }
 
     /// Calls work(own, node) for each node, until the caller cancels.
     template <class Make, class Work>
     void over_nodes(const Make& make, const Work& work) const {
         over_chunks(make, [&](auto& own, std::size_t from, std::size_t to) {
-            for (std::size_t node = from; node < to && !cancelled(progress); ++node)
+            for (std::size_t node = from; node < to && !cancelled(execution.progress); ++node)
                 work(own, node);
         });
     }

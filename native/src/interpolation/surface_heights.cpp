@@ -11,8 +11,8 @@ namespace realmodel::interpolation {
 
 std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
                                        std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress) {
+                                       std::span<const std::array<double, 2>> nodes,
+                                       const Execution& execution) {
     require_finite_nodes(nodes);
     std::vector<Position> positions;
     positions.reserve(vertices.size());
@@ -20,7 +20,7 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
         positions.push_back({x, y});
     const spatial::MeshLocator locator(positions, triangles);
     std::vector<double> z(nodes.size());
-    const NodeLoop loop{nodes.size(), 1024, threads, progress};
+    const NodeLoop loop{nodes.size(), 1024, execution};
     loop.over_nodes([] { return 0; },
                     [&](int, std::size_t i) {
                         const auto found = locator.find(nodes[i]);

@@ -261,7 +261,7 @@ private:
 };
 
 /// The same by constrained Delaunay triangulation, corners named by their first appearance.
-Triangles by_region(std::span<const Ring> rings, const Progress* progress) {
+Triangles by_region(std::span<const Ring> rings, Progress* progress) {
     const std::vector<PlanPoint> corners = corners_of(rings);
     const RingTriangulation region = triangulate_region(rings, progress);
     const std::vector<std::int32_t> first = first_equal(corners);
@@ -297,7 +297,7 @@ bool is_plain(std::span<const Ring> rings) {
 
 }  // namespace
 
-Triangles triangulate_polygon(std::span<const Ring> rings, const Progress* progress) {
+Triangles triangulate_polygon(std::span<const Ring> rings, Progress* progress) {
     const Check check = [progress](double) {
         if (progress != nullptr) progress->check();
     };

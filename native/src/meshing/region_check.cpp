@@ -177,7 +177,7 @@ std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangul
 
 }  // namespace
 
-std::vector<Ring> checked_region(std::span<const RegionRing> rings, const Progress* progress) {
+std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* progress) {
     std::vector<Ring> given;
     given.reserve(rings.size());
     for (const RegionRing& ring : rings)

@@ -248,7 +248,7 @@ private:
 }  // namespace
 
 RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constraints,
-                         const Progress* progress) {
+                         Progress* progress) {
     const Check check = [progress](double) {
         if (progress != nullptr) progress->check();
     };

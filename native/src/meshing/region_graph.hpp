@@ -31,6 +31,6 @@ struct RegionGraph {
 /// border or one another (at crossings with a new point, rounded), and what lies outside is left
 /// out. @throws InputError as mesh_region does.
 RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constraints,
-                         const Progress* progress);
+                         Progress* progress);
 
 }  // namespace realmodel::meshing

@@ -24,7 +24,7 @@ struct ConstrainedRings {
 };
 
 /// @throws InputError as ring_graph does, and "outline_crosses"; Cancelled.
-ConstrainedRings constrained_rings(std::span<const Ring> rings, const Progress* progress);
+ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress);
 
 /// Refuses two segments that run along one edge, as "outline_overlaps".
 [[noreturn]] void refuse_overlap(const RingGraph& graph, const CoveredEdge& first,

@@ -151,7 +151,7 @@ void refuse_overlap(const RingGraph& graph, const CoveredEdge& first, const Cove
                  middle(graph.points[first.from], graph.points[first.to]));
 }
 
-ConstrainedRings constrained_rings(std::span<const Ring> rings, const Progress* progress) {
+ConstrainedRings constrained_rings(std::span<const Ring> rings, Progress* progress) {
     ConstrainedRings out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
     const Check check = [progress](double) {
@@ -171,7 +171,7 @@ ConstrainedRings constrained_rings(std::span<const Ring> rings, const Progress* 
     return out;
 }
 
-RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress* progress) {
+RingTriangulation triangulate_region(std::span<const Ring> rings, Progress* progress) {
     ConstrainedRings all = constrained_rings(rings, progress);
     refuse_overlaps(all.graph, all.edges);
     RingTriangulation out{std::move(all.graph), std::move(all.triangulation), {}};

@@ -24,7 +24,7 @@ struct Side {
     bool reversed;  ///< the cell is the face's second
 };
 
-void require_in_range(const ComplexView& complex, const Progress* progress) {
+void require_in_range(const ComplexView& complex, Progress* progress) {
     const auto refuse = [](std::size_t face, const char* what) {
         throw InputError("bad_index", "face " + std::to_string(face) + " " + what, -1,
                          {static_cast<std::int64_t>(face)});
@@ -54,7 +54,7 @@ void require_in_range(const ComplexView& complex, const Progress* progress) {
 /// The sides of all faces by the block of their cell, in the order of the faces.
 /// @param between_blocks  leave out faces that have one block on both sides
 std::vector<std::vector<Side>> sides_by_block(const ComplexView& complex, bool between_blocks,
-                                              const Progress* progress) {
+                                              Progress* progress) {
     std::vector<std::vector<Side>> found(complex.blocks);
     for (std::size_t f = 0; f < complex.face_count(); ++f) {
         poll(progress, f);
@@ -181,7 +181,7 @@ void separate(const ComplexView& complex, std::size_t begin, double shrink, cons
 }
 
 Shell shell_of_cells(const ComplexView& complex, std::vector<Side>& sides, double shrink,
-                     const Position& origin, const Progress* progress) {
+                     const Position& origin, Progress* progress) {
     std::ranges::stable_sort(sides, {}, &Side::cell);
     Shell shell = begun(complex, sides);
     shell.coordinates.reserve(shell.corners.capacity() / 3);
@@ -201,24 +201,24 @@ Shell shell_of_cells(const ComplexView& complex, std::vector<Side>& sides, doubl
 
 }  // namespace
 
-std::vector<Shell> block_shells(const ComplexView& complex, const Position& origin, int threads,
-                                const Progress* progress) {
-    require_in_range(complex, progress);
-    const auto sides = sides_by_block(complex, true, progress);
+std::vector<Shell> block_shells(const ComplexView& complex, const Position& origin,
+                                const Execution& execution) {
+    require_in_range(complex, execution.progress);
+    const auto sides = sides_by_block(complex, true, execution.progress);
     std::vector<Shell> shells(complex.blocks);
-    parallel_chunks(complex.blocks, threads, progress, [&](std::size_t block) {
+    parallel_chunks(complex.blocks, execution, [&](std::size_t block) {
         shells[block] = block_shell(complex, sides[block], origin);
     });
     return shells;
 }
 
 std::vector<Shell> cell_shells(const ComplexView& complex, double shrink, const Position& origin,
-                               int threads, const Progress* progress) {
-    require_in_range(complex, progress);
-    auto sides = sides_by_block(complex, false, progress);
+                               const Execution& execution) {
+    require_in_range(complex, execution.progress);
+    auto sides = sides_by_block(complex, false, execution.progress);
     std::vector<Shell> shells(complex.blocks);
-    parallel_chunks(complex.blocks, threads, progress, [&](std::size_t block) {
-        shells[block] = shell_of_cells(complex, sides[block], shrink, origin, progress);
+    parallel_chunks(complex.blocks, execution, [&](std::size_t block) {
+        shells[block] = shell_of_cells(complex, sides[block], shrink, origin, execution.progress);
         sides[block] = {};
     });
     return shells;

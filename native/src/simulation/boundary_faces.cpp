@@ -152,7 +152,7 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
 }  // namespace
 
 BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int32_t> cell_region,
-                             std::span<const std::uint8_t> kept, int threads, Progress* progress) {
+                             std::span<const std::uint8_t> kept, const Execution& execution) {
     if (cell_region.size() != model.cell_count())
         throw InputError("bad_index", "there must be one region for each cell");
     const auto region = [&](std::int32_t cell) {
@@ -161,11 +161,11 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
         return cell < 0 ? 0 : cell_region[index(cell)] + 1;
     };
     const auto triangles = cutting::triangulate_faces(model.vertices, model.face_offsets,
-                                                      model.face_vertices, threads, progress);
+                                                      model.face_vertices, execution);
     std::vector<KeptFace> faces;
     BoundaryFaces found;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
+        poll(execution.progress, f);
         const std::int32_t behind = region(model.cell(f, 0)), in_front = region(model.cell(f, 1));
         const std::int32_t surface = model.face_surface[f];
         const bool matters =

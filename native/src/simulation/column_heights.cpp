@@ -121,8 +121,7 @@ bool faces_up(const ComplexView& model, std::size_t face) {
 }
 
 ColumnHeights::ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
-                             std::span<const PlanPoint> points, int threads,
-                             const Progress* progress)
+                             std::span<const PlanPoint> points, const Execution& execution)
     : stride_(index(blocks.most()) + 1),
       rock_(points.size(), kOutside),
       height_(points.size() * stride_),
@@ -132,7 +131,7 @@ ColumnHeights::ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
     const spatial::PointBins bins(places);
     const std::size_t chunks = (model.face_count() + kFacesOfChunk - 1) / kFacesOfChunk;
     std::vector<std::vector<Hit>> found(chunks);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         const std::size_t end = std::min(model.face_count(), (chunk + 1) * kFacesOfChunk);
         for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
             if (model.face_surface[f] == kWall) continue;
@@ -157,60 +156,58 @@ ColumnHeights::ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
         }
     });
     found.clear();
-    parallel_ranges(
-        places.size(), 4096, threads, progress, [&](std::size_t begin, std::size_t end) {
-            std::vector<const Hit*> top, bottom;
-            for (std::size_t i = begin; i < end; ++i) {
-                if (hits[i].empty()) continue;
-                const std::int32_t any = std::max(hits[i][0].below, hits[i][0].above);
-                const std::int32_t rock = blocks.rock[index(any)];
-                const auto count = index(blocks.blocks_of(rock));
-                const std::int32_t first = blocks.first[index(rock)];
-                top.assign(count, nullptr);
-                bottom.assign(count, nullptr);
-                bool whole = true;
-                for (const Hit& hit : hits[i]) {
-                    for (const bool is_top : {true, false}) {
-                        const std::int32_t block = is_top ? hit.below : hit.above;
-                        if (block < 0) continue;
-                        const auto at = static_cast<std::size_t>(block - first);
-                        if (block < first || at >= count) {
-                            whole = false;
-                            continue;
-                        }
-                        const Hit*& kept = (is_top ? top : bottom)[at];
-                        whole = whole && kept == nullptr;
-                        kept = &hit;
+    parallel_ranges(places.size(), 4096, execution, [&](std::size_t begin, std::size_t end) {
+        std::vector<const Hit*> top, bottom;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (hits[i].empty()) continue;
+            const std::int32_t any = std::max(hits[i][0].below, hits[i][0].above);
+            const std::int32_t rock = blocks.rock[index(any)];
+            const auto count = index(blocks.blocks_of(rock));
+            const std::int32_t first = blocks.first[index(rock)];
+            top.assign(count, nullptr);
+            bottom.assign(count, nullptr);
+            bool whole = true;
+            for (const Hit& hit : hits[i]) {
+                for (const bool is_top : {true, false}) {
+                    const std::int32_t block = is_top ? hit.below : hit.above;
+                    if (block < 0) continue;
+                    const auto at = static_cast<std::size_t>(block - first);
+                    if (block < first || at >= count) {
+                        whole = false;
+                        continue;
                     }
-                }
-                double* const z = &height_[i * stride_];
-                std::int32_t* const surface = &surface_[i * stride_];
-                const Hit* under =
-                    nullptr;  // the face between the last block present and what follows
-                std::size_t level = 0;
-                for (std::size_t b = 0; b < count && whole; ++b) {
-                    if (top[b] == nullptr && bottom[b] == nullptr) continue;
-                    whole = top[b] != nullptr && bottom[b] != nullptr &&
-                            (under == nullptr || bottom[b] == under);
-                    if (!whole) break;
-                    const Hit* const below = under == nullptr ? bottom[b] : under;
-                    for (; level <= b; ++level) {
-                        z[level] = below->height;
-                        surface[level] = below->surface;
-                    }
-                    under = top[b];
-                    z[level] = std::max(under->height, z[level - 1]);
-                    surface[level] = under->surface;
-                    ++level;
-                }
-                whole = whole && under != nullptr;
-                rock_[i] = whole ? rock : kIncomplete;
-                for (; whole && level < stride_; ++level) {
-                    z[level] = z[level - 1];
-                    surface[level] = surface[level - 1];
+                    const Hit*& kept = (is_top ? top : bottom)[at];
+                    whole = whole && kept == nullptr;
+                    kept = &hit;
                 }
             }
-        });
+            double* const z = &height_[i * stride_];
+            std::int32_t* const surface = &surface_[i * stride_];
+            const Hit* under = nullptr;  // the face between the last block present and what follows
+            std::size_t level = 0;
+            for (std::size_t b = 0; b < count && whole; ++b) {
+                if (top[b] == nullptr && bottom[b] == nullptr) continue;
+                whole = top[b] != nullptr && bottom[b] != nullptr &&
+                        (under == nullptr || bottom[b] == under);
+                if (!whole) break;
+                const Hit* const below = under == nullptr ? bottom[b] : under;
+                for (; level <= b; ++level) {
+                    z[level] = below->height;
+                    surface[level] = below->surface;
+                }
+                under = top[b];
+                z[level] = std::max(under->height, z[level - 1]);
+                surface[level] = under->surface;
+                ++level;
+            }
+            whole = whole && under != nullptr;
+            rock_[i] = whole ? rock : kIncomplete;
+            for (; whole && level < stride_; ++level) {
+                z[level] = z[level - 1];
+                surface[level] = surface[level - 1];
+            }
+        }
+    });
 }
 
 void ColumnHeights::copy(std::size_t to, const ColumnHeights& other, std::size_t from) {

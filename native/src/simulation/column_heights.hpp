@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
@@ -39,7 +39,7 @@ public:
     static constexpr std::int32_t kIncomplete = -2;  ///< rounding leaves no whole column here
 
     ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
-                  std::span<const PlanPoint> points, int threads, const Progress* progress);
+                  std::span<const PlanPoint> points, const Execution& execution);
 
     std::size_t size() const { return rock_.size(); }
     std::int32_t rock(std::size_t point) const { return rock_[point]; }

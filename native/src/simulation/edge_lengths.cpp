@@ -67,7 +67,7 @@ meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& f
 }
 
 double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
-                const std::array<double, 3>& high, double most, const Progress* progress) {
+                const std::array<double, 3>& high, double most, Progress* progress) {
     const double height = high[2] - low[2];
     if (lengths.is_uniform()) {
         const double edge = lengths.largest();

@@ -25,6 +25,6 @@ meshing::SizeField edge_lengths(const ComplexView& model, const BoundaryFaces& f
 /// least. @throws InputError kind too_large (where edges differ in length, and there are more than
 /// `most`); Cancelled
 double cubes_in(meshing::SizeField& lengths, const std::array<double, 3>& low,
-                const std::array<double, 3>& high, double most, const Progress* progress);
+                const std::array<double, 3>& high, double most, Progress* progress);
 
 }  // namespace realmodel::simulation

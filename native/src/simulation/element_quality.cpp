@@ -103,7 +103,7 @@ Face side_face(const PlanPoint& a, const PlanPoint& b, const std::array<double, 
 
 ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& levels,
                                const ColumnFronts& columns, double minimum_thickness,
-                               const Progress* progress)
+                               Progress* progress)
     : plan_(plan),
       levels_(levels),
       columns_(columns),

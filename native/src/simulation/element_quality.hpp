@@ -26,7 +26,7 @@ struct ElementFace {
 class ElementQuality {
 public:
     ElementQuality(const PlanTopology& plan, const PostLevels& levels, const ColumnFronts& columns,
-                   double minimum_thickness, const Progress* progress);
+                   double minimum_thickness, Progress* progress);
 
     double elements() const { return static_cast<double>(columns_.fronts.size()); }
 
@@ -106,7 +106,7 @@ private:
     const PostLevels& levels_;
     const ColumnFronts& columns_;
     const double minimum_thickness_;
-    const Progress* progress_;
+    Progress* progress_;
     std::vector<std::uint8_t> open_sides_;  ///< of each element: a bit for each edge, if outside
 };
 

@@ -89,7 +89,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
         return sides.subspan(begin[c], begin[c + 1] - begin[c]);
     };
     std::vector<std::size_t> first_number((cells + kCells - 1) / kCells);
-    parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(cells, kCells, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         std::size_t total = 0;
         for (std::size_t c = from; c < to; ++c) {
             if (begin[c] > begin[c + 1] || begin[c + 1] > sides.size())
@@ -104,7 +104,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
     });
     made.faces.resize(count_before(first_number));
     std::vector<std::vector<std::int64_t>> vertices(first_number.size());
-    parallel_ranges(cells, kCells, 0, nullptr, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(cells, kCells, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         std::int64_t* number = made.faces.data() + first_number[from / kCells];
         auto& corners = vertices[from / kCells];
         Distinct distinct;
@@ -129,7 +129,7 @@ CellDescriptions describe_cells(const FaceLoops& faces, std::span<const std::uin
     for (const auto& own : vertices)
         first_corner.push_back(own.size());
     made.vertices.resize(count_before(first_corner));
-    parallel_chunks(vertices.size(), 0, nullptr, [&](std::size_t chunk) {
+    parallel_chunks(vertices.size(), {0, nullptr}, [&](std::size_t chunk) {
         std::copy(vertices[chunk].begin(), vertices[chunk].end(),
                   made.vertices.data() + first_corner[chunk]);
         vertices[chunk] = {};
@@ -154,9 +154,9 @@ Array<std::int64_t> inner_faces(std::span<const std::array<std::int32_t, 2>> fac
         }
     };
     const auto sorted = sorted_in_buckets<Inner>(cells, (face_cells.size() + kFaces - 1) / kFaces,
-                                                 produce, 0, nullptr);
+                                                 produce, {0, nullptr});
     Array<std::int64_t> order(sorted.values.size());
-    parallel_ranges(order.size(), kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(order.size(), kFaces, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i)
             order[i] = sorted.values[i].face;
     });
@@ -174,7 +174,7 @@ OrderedFaces ordered_faces(const FaceLoops& faces,
     made.owner.resize(count);
     made.neighbor.resize(count);
     made.turned.resize(count);
-    parallel_ranges(count, kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(count, kFaces, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             made.offsets[i] = static_cast<std::int32_t>(loop_of(faces, order[i]).size());
             const auto [a, b] = face_cells[index(order[i])];
@@ -183,9 +183,9 @@ OrderedFaces ordered_faces(const FaceLoops& faces,
             made.neighbor[i] = made.turned[i] != 0 ? a : b;
         }
     });
-    running_totals(made.offsets, INT32_MAX, 0, nullptr);
+    running_totals(made.offsets, INT32_MAX, {0, nullptr});
     made.vertices.resize(index(made.offsets[count]));
-    parallel_ranges(count, kFaces, 0, nullptr, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(count, kFaces, {0, nullptr}, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const auto loop = loop_of(faces, order[i]);
             std::int32_t* const own = made.vertices.data() + made.offsets[i];

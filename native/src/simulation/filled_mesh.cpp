@@ -119,7 +119,7 @@ public:
     using Intersection = std::tuple<Point_3, Index, int>;
 
     Domain(const ComplexView& model, std::span<const BoundaryTriangle> triangles,
-           const Progress* progress)
+           Progress* progress)
         : progress_(progress) {
         for (const BoundaryTriangle& t : triangles) {
             faces_.push_back(
@@ -247,7 +247,7 @@ private:
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, FaceOfTree>>;
     std::vector<Face> faces_;
     Tree tree_;
-    const Progress* progress_;
+    Progress* progress_;
     mutable std::vector<std::size_t> hits_;
     mutable std::uint64_t asked_ = 0, most_asked_ = UINT64_MAX;
     mutable Point last_from_, last_to_;
@@ -438,37 +438,38 @@ void refine(Complex& complex, const Domain& domain, const Criteria& criteria, st
 
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
-                       std::span<const meshing::LocalLength> sizes, int threads,
-                       Progress* progress) {
-    if (progress != nullptr) progress->begin(0.0, 0.2, "finding boundaries");
-    const BoundaryFaces faces = boundary_faces(model, cell_region, kept, threads, progress);
-    Domain domain(model, faces.triangles, progress);
+                       std::span<const meshing::LocalLength> sizes, const Execution& execution) {
+    if (execution.progress != nullptr) execution.progress->begin(0.0, 0.2, "finding boundaries");
+    const BoundaryFaces faces = boundary_faces(model, cell_region, kept, execution);
+    Domain domain(model, faces.triangles, execution.progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
     auto lengths = edge_lengths(model, faces, edge_length, tolerance, sizes);
-    const std::size_t most = most_points(model, faces, lengths, tolerance, progress);
+    const std::size_t most = most_points(model, faces, lengths, tolerance, execution.progress);
     const auto on_edges = points_on_edges(model, faces.sharp_edges, lengths);
     const auto seeds = surface_seeds(model, faces.triangles, on_edges, lengths, kSeeds);
     const EdgeLength length{&lengths};
     const Criteria criteria(length, tolerance);
     Complex complex;
     try {
-        if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
+        if (execution.progress != nullptr)
+            execution.progress->begin(0.2, 0.7, "dividing into tetrahedra");
         for (const auto& p : on_edges)
             insert(complex, p, kBall * length(point_of(p), 1, 1), 1, 1);
         for (const SurfaceSeed& seed : seeds)
             insert(complex, seed.point, 0, 2,
                    faces.triangles[index(seed.triangle)].surface + kFirstSurface);
         if (complex.triangulation().dimension() < 3) refuse_nothing();
-        refine(complex, domain, criteria, most, progress);
-        if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
+        refine(complex, domain, criteria, most, execution.progress);
+        if (execution.progress != nullptr)
+            execution.progress->begin(0.7, 1.0, "removing flat tetrahedra");
         CGAL::exude_mesh_3(complex, CGAL::parameters::sliver_bound = kSliver);
     } catch (const CGAL::Failure_exception&) {
         refuse_division();
     }
     FilledMesh mesh = arrays_of(complex, domain, kept);
     require_volume(mesh);
-    divide_corner_tetrahedra(mesh, progress);
-    thicken_flat_tetrahedra(mesh, tolerance, progress);
+    divide_corner_tetrahedra(mesh, execution.progress);
+    thicken_flat_tetrahedra(mesh, tolerance, execution.progress);
     return mesh;
 }
 

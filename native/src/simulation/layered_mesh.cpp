@@ -45,7 +45,7 @@ enum class Stage { kWeak, kSteep, kFailing, kSkewed };
 class ColumnFiller {
 public:
     ColumnFiller(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
-                 const PostLevels& levels, LayeredMesh& mesh, const Progress* progress)
+                 const PostLevels& levels, LayeredMesh& mesh, Progress* progress)
         : plan_(plan),
           blocks_(blocks),
           columns_(columns),
@@ -417,7 +417,7 @@ void for_corners(LayeredMesh& mesh, const Visit& visit) {
 class Columns {
 public:
     Columns(const ComplexView& model, const PlanLines& lines, const RockBlocks& blocks,
-            const PlanTopology& plan, const ColumnHeights& heights, const Progress* progress)
+            const PlanTopology& plan, const ColumnHeights& heights, Progress* progress)
         : model_(model),
           lines_(lines),
           blocks_(blocks),
@@ -538,7 +538,7 @@ private:
     const RockBlocks& blocks_;
     const PlanTopology& plan_;
     const ColumnHeights& heights_;
-    const Progress* progress_;
+    Progress* progress_;
     std::vector<std::uint8_t> is_narrow_;
 };
 
@@ -546,17 +546,17 @@ private:
 
 LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t> block_rock,
                          const PlanLines& lines, meshing::PlanarMesh mesh, Layering layering,
-                         int threads, Progress* progress) {
+                         const Execution& execution) {
     const RockBlocks blocks(block_rock);
     PlanTopology plan(lines, std::move(mesh));
-    const ColumnHeights heights = post_columns(model, blocks, lines, plan, threads, progress);
+    const ColumnHeights heights = post_columns(model, blocks, lines, plan, execution);
     std::vector<std::uint8_t> is_free(layering.layers.size(), 0);
     for (std::size_t b = 0; b < is_free.size(); ++b) {
         if (layering.layers[b] != 0 || layering.layer_thickness > 0) continue;
         layering.layers[b] = 1;
         is_free[b] = 1;
     }
-    Columns columns(model, lines, blocks, plan, heights, progress);
+    Columns columns(model, lines, blocks, plan, heights, execution.progress);
     LayeredMesh made;
     for (bool again = true; again;) {
         made = columns.fill(layering);

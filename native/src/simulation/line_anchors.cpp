@@ -151,7 +151,7 @@ std::vector<std::vector<std::int32_t>> chains_of(const Graph& graph,
 
 std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     const std::function<double(const PlanPoint&)>& spacing,
-                                    const Progress* progress) {
+                                    Progress* progress) {
     if (traces.points.empty()) return {};
     const Graph graph(traces);
     double widest = 0;

@@ -14,6 +14,6 @@ namespace realmodel::simulation {
 /// of other lines, and points between them.
 std::vector<PlanPoint> line_anchors(const Traces& traces,
                                     const std::function<double(const PlanPoint&)>& spacing,
-                                    const Progress* progress);
+                                    Progress* progress);
 
 }  // namespace realmodel::simulation

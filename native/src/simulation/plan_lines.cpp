@@ -63,7 +63,7 @@ struct Met {
 /// The anchors that lines run along, and what ends along each pair.
 std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
                                    const meshing::ConstrainedTriangulation& delaunay,
-                                   const Progress* progress) {
+                                   Progress* progress) {
     std::vector<std::vector<std::int32_t>> neighbors(anchors.size());
     for (const auto& t : delaunay.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -133,8 +133,7 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
 std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& blocks,
                                    std::span<const PlanPoint> anchors,
                                    const meshing::ConstrainedTriangulation& delaunay,
-                                   const std::map<Link, Met>& links, int threads,
-                                   const Progress* progress) {
+                                   const std::map<Link, Met>& links, const Execution& execution) {
     constexpr std::array<std::array<double, 3>, 7> kShares{{{1. / 3, 1. / 3, 1. / 3},
                                                             {.6, .2, .2},
                                                             {.2, .6, .2},
@@ -154,7 +153,7 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
             samples.push_back(p);
         }
     }
-    const ColumnHeights columns(model, blocks, samples, threads, progress);
+    const ColumnHeights columns(model, blocks, samples, execution);
     DisjointSets faces(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -243,21 +242,21 @@ std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
 }  // namespace
 
 PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> block_rock,
-                     double edge_length, std::span<const LineLength> lengths, int threads,
-                     Progress* progress) {
+                     double edge_length, std::span<const LineLength> lengths,
+                     const Execution& execution) {
     const RockBlocks blocks(block_rock);
-    const Traces traces = traces_of(model, progress);
+    const Traces traces = traces_of(model, execution.progress);
     const auto spacing = [&](const PlanPoint& p) {
         return kAnchorSpacing * local_length(p, edge_length, lengths);
     };
     PlanLines lines;
-    lines.points = line_anchors(traces, spacing, progress);
+    lines.points = line_anchors(traces, spacing, execution.progress);
     const auto delaunay = meshing::constrained_delaunay(lines.points, {});
     if (delaunay.triangles.empty()) {
         throw InputError("nothing", "the model is smaller in plan than the edge length");
     }
-    auto links = linked_anchors(traces, lines.points, delaunay, progress);
-    const auto rocks = rocks_of(model, blocks, lines.points, delaunay, links, threads, progress);
+    auto links = linked_anchors(traces, lines.points, delaunay, execution.progress);
+    const auto rocks = rocks_of(model, blocks, lines.points, delaunay, links, execution);
     std::map<Link, Link> sides;  // the rock masses left and right of each link
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {

@@ -69,8 +69,8 @@ PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
 }  // namespace
 
 ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
-                           const PlanLines& lines, const PlanTopology& plan, int threads,
-                           const Progress* progress) {
+                           const PlanLines& lines, const PlanTopology& plan,
+                           const Execution& execution) {
     constexpr double kBesideStep = 1 - 1e-9;
     const Steps steps(lines.steps);
     const std::size_t count = plan.post_count();
@@ -107,7 +107,7 @@ ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
         if (beside[index(plan.post_node(p))] != 0)
             place[p] = between(center[p], place[p], free[p] * kBesideStep);
     }
-    ColumnHeights columns(model, blocks, place, threads, progress);
+    ColumnHeights columns(model, blocks, place, execution);
     const auto settled = [&](std::size_t p) { return columns.rock(p) == rock[p] && rock[p] >= 0; };
     // where rounding, or a border that was simplified, leaves nothing: further from the node
     for (const double share : {1 - 1e-6, 0.99, 0.9, 0.7, 0.4, 0.0}) {
@@ -118,7 +118,7 @@ ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
             tried.push_back(between(center[p], plan.mesh().vertices[index(plan.post_node(p))],
                                     std::max(free[p], 0.0) * share));
         }
-        const ColumnHeights found(model, blocks, tried, threads, progress);
+        const ColumnHeights found(model, blocks, tried, execution);
         for (std::size_t i = 0; i < open.size(); ++i) {
             if (found.rock(i) == rock[open[i]]) columns.copy(open[i], found, i);
         }

@@ -10,7 +10,7 @@ namespace realmodel::simulation {
 /// to its node that are on its own side of the steps of the model: lines were simplified, so the
 /// node itself may lie beyond one. Of a post without any its rock is -1.
 ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
-                           const PlanLines& lines, const PlanTopology& plan, int threads,
-                           const Progress* progress);
+                           const PlanLines& lines, const PlanTopology& plan,
+                           const Execution& execution);
 
 }  // namespace realmodel::simulation

@@ -20,7 +20,7 @@ struct BorderEdge {
 
 }  // namespace
 
-Traces traces_of(const ComplexView& model, const Progress* progress) {
+Traces traces_of(const ComplexView& model, Progress* progress) {
     const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
     const auto edges = bucketize<BorderEdge>(model.vertex_count(), [&](const auto& put) {
         for (std::size_t f = 0; f < model.face_count(); ++f) {

@@ -27,6 +27,6 @@ struct Traces {
     std::vector<Segment> segments;  ///< sorted, each once
 };
 
-Traces traces_of(const ComplexView& model, const Progress* progress);
+Traces traces_of(const ComplexView& model, Progress* progress);
 
 }  // namespace realmodel::simulation

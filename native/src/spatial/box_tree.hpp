@@ -59,7 +59,7 @@ struct Box {
 class BoxTree {
 public:
     /// @throws Cancelled
-    explicit BoxTree(std::vector<Box> boxes, const Progress* progress = nullptr) {
+    explicit BoxTree(std::vector<Box> boxes, Progress* progress = nullptr) {
         // the boxes and their middles lie together while they are put in order
         std::vector<Item> items(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -132,7 +132,7 @@ private:
     };
 
     std::size_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::size_t begin,
-                      std::size_t end, const Progress* progress) {
+                      std::size_t end, Progress* progress) {
         constexpr std::size_t kUnasked = 1 << 10;  // so few are soon done
         if (progress != nullptr && end - begin > kUnasked) progress->check();
         const std::size_t number = nodes_.size();

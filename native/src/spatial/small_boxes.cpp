@@ -40,8 +40,7 @@ SmallBoxes::CellBox SmallBoxes::in_cells(const PlanBox& box) const {
 
 std::vector<std::int32_t> SmallBoxes::fill(const std::vector<PlanBox>& boxes,
                                            const std::vector<std::int32_t>& chosen,
-                                           std::size_t cells, int threads,
-                                           const Progress* progress) {
+                                           std::size_t cells, const Execution& execution) {
     if (chosen.empty()) return {};
     cells_ = PlanTiles(box_around(boxes, chosen), cells);
     struct Part {
@@ -67,7 +66,7 @@ std::vector<std::int32_t> SmallBoxes::fill(const std::vector<PlanBox>& boxes,
         }
         parts[chunk] = std::move(part);
     };
-    items_ = bucketize_in_any_order<Item>(cells_.size(), parts.size(), produce, threads, progress);
+    items_ = bucketize_in_any_order<Item>(cells_.size(), parts.size(), produce, execution);
     std::vector<std::int32_t> others;
     for (const Part& part : parts) {
         reach_x_ = std::max(reach_x_, part.reach_x);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/counting_sort.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "spatial/plan_tiles.hpp"
 
 namespace realmodel::spatial {
@@ -22,7 +22,7 @@ public:
     /// Enters those of the chosen boxes that are small enough; returns the others.
     std::vector<std::int32_t> fill(const std::vector<PlanBox>& boxes,
                                    const std::vector<std::int32_t>& chosen, std::size_t cells,
-                                   int threads, const Progress* progress);
+                                   const Execution& execution);
     /// Appends the numbers of all that meet a box; of those that all but meet it, some.
     void append(const PlanBox& box, Array<std::int32_t>& found) const;
 

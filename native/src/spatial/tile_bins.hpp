@@ -20,7 +20,7 @@ public:
     /// meets no wanted tile is left out.
     template <class SpanOf>
     TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, std::size_t count,
-             const SpanOf& span_of, int threads, const Progress* progress)
+             const SpanOf& span_of, const Execution& execution)
         : tiles_(tiles) {
         struct Part {
             std::int32_t reach = 0;
@@ -45,8 +45,8 @@ public:
             }
             parts[chunk] = std::move(part);
         };
-        small_ = bucketize_in_any_order<std::int32_t>(tiles.size(), parts.size(), of_small, threads,
-                                                      progress);
+        small_ =
+            bucketize_in_any_order<std::int32_t>(tiles.size(), parts.size(), of_small, execution);
         std::vector<std::int32_t> larger;
         for (const Part& part : parts) {
             reach_ = std::max(reach_, part.reach);
@@ -62,7 +62,7 @@ public:
             }
         };
         larger_ = bucketize_in_any_order<std::int32_t>(
-            tiles.size(), (larger.size() + kRange - 1) / kRange, of_larger, threads, progress);
+            tiles.size(), (larger.size() + kRange - 1) / kRange, of_larger, execution);
     }
 
     /// Calls test(number) for the things in these tiles and for some beside them, in no order that

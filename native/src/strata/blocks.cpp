@@ -34,13 +34,12 @@ struct Surfaces {
     double largest_height = 0;
     std::size_t tiles = 1;
 
-    void measure(const exact::PlanArrangement& geometry, int threads, const Progress* progress);
+    void measure(const exact::PlanArrangement& geometry, const Execution& execution);
 };
 
 /// Finds the box and heights of all triangles, and how many tiles are right for them: those of the
 /// largest surface of each rock mass.
-void Surfaces::measure(const exact::PlanArrangement& geometry, int threads,
-                       const Progress* progress) {
+void Surfaces::measure(const exact::PlanArrangement& geometry, const Execution& execution) {
     constexpr std::size_t kTriangles = 8192;
     struct Extent {
         PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -52,7 +51,7 @@ void Surfaces::measure(const exact::PlanArrangement& geometry, int threads,
         for (const BlockTiling& tiling : tilings) {
             largest = std::max(largest, tiling.whole.size());
             std::vector<Extent> extents((tiling.whole.size() + kTriangles - 1) / kTriangles);
-            parallel_ranges(tiling.whole.size(), kTriangles, threads, progress,
+            parallel_ranges(tiling.whole.size(), kTriangles, execution,
                             [&](std::size_t begin, std::size_t end) {
                                 Extent& extent = extents[begin / kTriangles];
                                 for (std::size_t t = begin; t < end; ++t) {
@@ -73,16 +72,16 @@ void Surfaces::measure(const exact::PlanArrangement& geometry, int threads,
     tiles = triangles / kTrianglesInTile;
 }
 
-Surfaces make_surfaces(Site& site, int threads, const Progress* progress) {
+Surfaces make_surfaces(Site& site, const Execution& execution) {
     Surfaces surfaces;
     for (EnteredRock& rock : site.rocks) {
         auto& tilings = surfaces.of_rock.emplace_back();
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
-            if (progress != nullptr) progress->check();
+            if (execution.progress != nullptr) execution.progress->check();
             const auto number = rock.first_surface + static_cast<std::int32_t>(k);
             tilings.push_back(make_block_tiling(site.geometry, rock.surfaces[k].triangles,
                                                 std::move(rock.plans[k]), number, surfaces.links,
-                                                threads, progress));
+                                                execution));
             site.surface_of_plane.resize(site.geometry.plane_count(), number);
             rock.surfaces[k] = {};
         }
@@ -90,31 +89,30 @@ Surfaces make_surfaces(Site& site, int threads, const Progress* progress) {
             surfaces.links.border.emplace_back(edge.low, edge.high);
         for (const BorderEdge& edge : rock.window_plan.links.border)
             surfaces.links.border.emplace_back(edge.low, edge.high);
-        if (rock.window)
-            surfaces.in_window.push_back(region_envelope(site, rock, threads, progress));
+        if (rock.window) surfaces.in_window.push_back(region_envelope(site, rock, execution));
     }
     surfaces.links.neighbor.resize(site.geometry.plane_count(), {kNone, kNone, kNone});
-    surfaces.measure(site.geometry, threads, progress);
+    surfaces.measure(site.geometry, execution);
     return surfaces;
 }
 
 /// Turns the surfaces of a rock mass to what its rules leave of them.
 void replay_rules(Site& site, const EnteredRock& rock, const Surfaces& surfaces,
-                  const BorderEdges& borders, std::vector<BlockTiling>& tilings, int threads,
-                  const Progress* progress) {
-    RuleReplay replay(BlockRaising(site.geometry, surfaces.links, borders, surfaces.largest_height,
-                                   threads, progress),
-                      rock.rules);
+                  const BorderEdges& borders, std::vector<BlockTiling>& tilings,
+                  const Execution& execution) {
+    RuleReplay replay(
+        BlockRaising(site.geometry, surfaces.links, borders, surfaces.largest_height, execution),
+        rock.rules);
     for (BlockTiling& tiling : tilings) {
-        if (progress != nullptr) progress->check();
+        if (execution.progress != nullptr) execution.progress->check();
         tiling = replay.add(std::move(tiling));
     }
 }
 
 }  // namespace
 
-BuiltCells build_blocks(Site& site, int threads, Progress* progress) {
-    Surfaces surfaces = make_surfaces(site, threads, progress);
+BuiltCells build_blocks(Site& site, const Execution& execution) {
+    Surfaces surfaces = make_surfaces(site, execution);
     const BorderEdges borders(site.geometry, PlanTiles(surfaces.box, surfaces.tiles),
                               std::move(surfaces.links.border));
     Construction construction;
@@ -128,10 +126,9 @@ BuiltCells build_blocks(Site& site, int threads, Progress* progress) {
         const double share = (kOverlayDone - kInputDone) / std::max(site.surfaces, 1);
         const std::size_t first_node = construction.node_block.size(),
                           first_face = construction.faces.size();
-        if (!rock.is_erosional())
-            replay_rules(site, rock, surfaces, borders, tilings, threads, progress);
+        if (!rock.is_erosional()) replay_rules(site, rock, surfaces, borders, tilings, execution);
         BlockEnvelope envelope(site.geometry, surfaces.links, borders, surfaces.largest_height,
-                               construction, wholes, threads, progress);
+                               construction, wholes, execution);
         if (rock.window) {
             envelope.start_window(rock.region_filling, rock.window_plan.filling.value(),
                                   std::move(surfaces.in_window[window++]));
@@ -139,7 +136,7 @@ BuiltCells build_blocks(Site& site, int threads, Progress* progress) {
             envelope.start_region(rock.region_filling);
         }
         for (std::size_t k = tilings.size(); k-- > 0;) {
-            begin_step(progress, start, share, "intersecting the surfaces");
+            begin_step(execution.progress, start, share, "intersecting the surfaces");
             envelope.add(tilings[k], static_cast<std::int32_t>(k));
             tilings[k] = {};
             start += share;
@@ -147,14 +144,13 @@ BuiltCells build_blocks(Site& site, int threads, Progress* progress) {
         if (rock.base) check_base(rock, envelope.lowest());
         envelope.finish(rock.base);
         construction.count_blocks_from(first_node, rock.first_surface);
-        add_touched_triangles(site.geometry, surfaces.links, wholes, construction.faces, threads,
-                              progress);
+        add_touched_triangles(site.geometry, surfaces.links, wholes, construction.faces, execution);
         if (site.rocks.size() > 1)
-            footprints.add(site.geometry, construction.faces, first_face, progress);
+            footprints.add(site.geometry, construction.faces, first_face, execution.progress);
     }
     const BlockLinks links{surfaces.links, wholes, borders};
     return build_cells(site.geometry, construction, &links, site.surface_of_plane, site.window,
-                       threads, progress);
+                       execution);
 }
 
 }  // namespace realmodel::strata

@@ -8,6 +8,6 @@ namespace realmodel::strata {
 
 /// The complex of all rock masses with a cell for each connected part of a block.
 /// @throws InputError kinds double_valued, base_not_below, rocks_overlap, too_large
-BuiltCells build_blocks(Site& site, int threads, Progress* progress);
+BuiltCells build_blocks(Site& site, const Execution& execution);
 
 }  // namespace realmodel::strata

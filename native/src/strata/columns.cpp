@@ -19,13 +19,13 @@ namespace {
 /// The tilings e_k of a rock mass, from the youngest to the oldest.
 class TilingSequence {
 public:
-    TilingSequence(Site& site, EnteredRock& rock, int threads, const Progress* progress)
-        : site_(site), rock_(rock), threads_(threads), progress_(progress) {
+    TilingSequence(Site& site, EnteredRock& rock, const Execution& execution)
+        : site_(site), rock_(rock), execution_(execution) {
         if (rock.is_erosional() && rock.emptied.empty())
             return;  // e_k is the surface itself, made when it is asked for
-        RuleReplay replay(TilingRaising(site.geometry, threads, progress), rock.rules, rock.fills);
+        RuleReplay replay(TilingRaising(site.geometry, execution), rock.rules, rock.fills);
         for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
-            if (progress != nullptr) progress->check();
+            if (execution.progress != nullptr) execution.progress->check();
             if (std::ranges::binary_search(rock.emptied, k)) {
                 replayed_.clear();
                 if (auto lowest = replay.empty()) replayed_.push_back(std::move(*lowest));
@@ -53,9 +53,8 @@ public:
 private:
     SurfaceTiling surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        SurfaceTiling tiling =
-            make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles, rock_.plans[k],
-                                similar_, number, threads_, progress_);
+        SurfaceTiling tiling = make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles,
+                                                   rock_.plans[k], similar_, number, execution_);
         rock_.surfaces[k] = {};
         rock_.plans[k] = {};
         site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
@@ -64,8 +63,7 @@ private:
 
     Site& site_;
     EnteredRock& rock_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     PolygonPool similar_;
     std::vector<SurfaceTiling> replayed_;
 };
@@ -99,22 +97,22 @@ void finish_rock(const Site& site, const EnteredRock& rock, Envelope& envelope,
 
 /// Adds the columns and faces of a rock mass, going down from its youngest surface.
 void add_rock(Site& site, EnteredRock& rock, Construction& construction, double start, double share,
-              int threads, Progress* progress) {
+              const Execution& execution) {
     const std::size_t first_node = construction.node_block.size();
     const auto count = static_cast<std::int32_t>(rock.surfaces.size());
     const WantedBoxes* wanted = site.wanted ? &*site.wanted : nullptr;
     Envelope envelope;
-    if (rock.region) envelope = region_envelope(site, rock, threads, progress);
-    TilingSequence tilings(site, rock, threads, progress);
+    if (rock.region) envelope = region_envelope(site, rock, execution);
+    TilingSequence tilings(site, rock, execution);
     const std::int32_t oldest = tilings.oldest();
     for (std::int32_t k = count - 1; k >= oldest; --k) {
-        begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,
+        begin_step(execution.progress, start + share * static_cast<double>(count - 1 - k) / count,
                    share / count, "intersecting the surfaces");
         SurfaceTiling tiling = tilings.take(k);
-        if (site.window) clip_to_window(site, rock, tiling, progress);
+        if (site.window) clip_to_window(site, rock, tiling, execution.progress);
         envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
                                         : overlay_columns(site.geometry, envelope, tiling, k,
-                                                          construction, wanted, threads, progress);
+                                                          construction, wanted, execution);
         tilings.give_back(std::move(tiling));
     }
     finish_rock(site, rock, envelope, construction);
@@ -123,7 +121,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
 
 }  // namespace
 
-BuiltCells build_columns(Site& site, int threads, Progress* progress) {
+BuiltCells build_columns(Site& site, const Execution& execution) {
     // of triangulations of these vertices, and one is crossed by a trace here and there
     site.geometry.expect_lines(4 * site.geometry.point_count());
     Construction construction;
@@ -135,13 +133,13 @@ BuiltCells build_columns(Site& site, int threads, Progress* progress) {
         const double share = (kOverlayDone - kInputDone) *
                              static_cast<double>(rock.surfaces.size()) / std::max(site.surfaces, 1);
         const std::size_t first_face = construction.faces.size();
-        add_rock(site, rock, construction, start, share, threads, progress);
+        add_rock(site, rock, construction, start, share, execution);
         start += share;
         if (site.rocks.size() > 1)
-            footprints.add(site.geometry, construction.faces, first_face, progress);
+            footprints.add(site.geometry, construction.faces, first_face, execution.progress);
     }
     return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, site.window,
-                       threads, progress);
+                       execution);
 }
 
 }  // namespace realmodel::strata

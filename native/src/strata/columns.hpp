@@ -8,6 +8,6 @@ namespace realmodel::strata {
 
 /// The complex of all rock masses with a cell for each column.
 /// @throws InputError kinds double_valued, base_not_below, rocks_overlap, too_large
-BuiltCells build_columns(Site& site, int threads, Progress* progress);
+BuiltCells build_columns(Site& site, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -33,31 +33,31 @@ struct Entered {
 
 std::unique_ptr<Site> enter_as_given(std::span<const StackInput> rocks,
                                      const PlanSnapping& snapping, std::vector<Warning>& warnings,
-                                     int threads, Progress* progress) {
-    begin_step(progress, kBordersDone, kInputDone - kBordersDone, "checking the surfaces");
+                                     const Execution& execution) {
+    begin_step(execution.progress, kBordersDone, kInputDone - kBordersDone,
+               "checking the surfaces");
     warnings.clear();
-    return enter_site(rocks, snapping, warnings, threads, progress);
+    return enter_site(rocks, snapping, warnings, execution);
 }
 
 /// Finds which borders are to be joined, and whether any is.
-bool compare_borders(std::span<const StackInput> rocks, Entered& entered, int threads,
-                     Progress* progress) {
-    begin_step(progress, 0.0, kBordersDone, "comparing the borders");
-    entered.snapping = find_snapping(rocks, threads, progress);
-    entered.chains = find_chains(rocks, entered.snapping, threads, progress);
+bool compare_borders(std::span<const StackInput> rocks, Entered& entered,
+                     const Execution& execution) {
+    begin_step(execution.progress, 0.0, kBordersDone, "comparing the borders");
+    entered.snapping = find_snapping(rocks, execution);
+    entered.chains = find_chains(rocks, entered.snapping, execution);
     return !entered.snapping.empty() || !entered.chains.empty();
 }
 
 /// The input with the joins found, unless they break something: whatever is wrong then, what the
 /// user hears is about the input as given.
-void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int threads,
-                      Progress* progress) {
+void enter_with_joins(std::span<const StackInput> rocks, Entered& entered,
+                      const Execution& execution) {
     if (entered.chains.empty()) {
-        entered.site = enter_as_given(rocks, entered.snapping, entered.warnings, threads, progress);
+        entered.site = enter_as_given(rocks, entered.snapping, entered.warnings, execution);
     } else {
-        entered.joined = join_borders(rocks, entered.snapping, entered.chains, progress);
-        entered.site =
-            enter_as_given(entered.joined.rocks, {}, entered.warnings, threads, progress);
+        entered.joined = join_borders(rocks, entered.snapping, entered.chains, execution.progress);
+        entered.site = enter_as_given(entered.joined.rocks, {}, entered.warnings, execution);
     }
     entered.is_joined = entered.site->is_single_valued;
     if (entered.is_joined)
@@ -67,20 +67,18 @@ void enter_with_joins(std::span<const StackInput> rocks, Entered& entered, int t
 /// The input with its borders joined, where that is needed and breaks nothing; else as it is given.
 /// In one plan only borders of its own parts may lie beside each other: they are looked at where
 /// these overlap.
-Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* progress) {
+Entered enter_joined(std::span<const StackInput> rocks, const Execution& execution) {
     Entered entered;
     const auto join = [&] {
-        if (compare_borders(rocks, entered, threads, progress))
-            enter_with_joins(rocks, entered, threads, progress);
+        if (compare_borders(rocks, entered, execution)) enter_with_joins(rocks, entered, execution);
     };
     const bool is_one_plan = share_one_plan(rocks);
     if (!is_one_plan) join();
     if (entered.is_joined) return entered;
-    entered.site = enter_as_given(rocks, {}, entered.warnings, threads, progress);
+    entered.site = enter_as_given(rocks, {}, entered.warnings, execution);
     if (!is_one_plan || entered.site->is_single_valued) return entered;
     join();
-    if (!entered.is_joined)
-        entered.site = enter_as_given(rocks, {}, entered.warnings, threads, progress);
+    if (!entered.is_joined) entered.site = enter_as_given(rocks, {}, entered.warnings, execution);
     return entered;
 }
 
@@ -88,11 +86,11 @@ Entered enter_joined(std::span<const StackInput> rocks, int threads, Progress* p
 /// whole. But where rounding moves them so much that who adds up the cells of a whole model finds
 /// others, over the cells as they are.
 std::vector<double> volumes_of(const BuiltCells& built, std::size_t blocks, bool is_tile,
-                               int threads, const Progress* progress) {
-    std::vector<double> volumes = block_volumes(built.complex, blocks, threads, progress,
+                               const Execution& execution) {
+    std::vector<double> volumes = block_volumes(built.complex, blocks, execution,
                                                 {built.offsets.data(), built.offsets.size()});
     if (is_tile || built.offsets.size() == 0) return volumes;
-    std::vector<double> of_cells = block_volumes(built.complex, blocks, threads, progress);
+    std::vector<double> of_cells = block_volumes(built.complex, blocks, execution);
     double largest = 0;
     for (const double volume : of_cells)
         largest = std::max(largest, std::abs(volume));
@@ -103,40 +101,40 @@ std::vector<double> volumes_of(const BuiltCells& built, std::size_t blocks, bool
     return are_same ? volumes : of_cells;
 }
 
-Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells, int threads,
-                Progress* progress) {
+Tile build_site(Site& site, const std::vector<Warning>& warnings, CellKind cells,
+                const Execution& execution) {
     site.check_regions();
     BuiltCells built;
     CellComplex& result = built.complex;
     if (site.is_empty()) {
         result.face_offsets.push_back(0);
     } else {
-        built = cells == CellKind::kBlocks ? build_blocks(site, threads, progress)
-                                           : build_columns(site, threads, progress);
+        built = cells == CellKind::kBlocks ? build_blocks(site, execution)
+                                           : build_columns(site, execution);
     }
     result.cell_kind = cells;
     result.volumes = volumes_of(built, static_cast<std::size_t>(site.surfaces),
-                                site.window.has_value(), threads, progress);
+                                site.window.has_value(), execution);
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
-    begin_step(progress, 1.0, 0.0, "done");
+    begin_step(execution.progress, 1.0, 0.0, "done");
     return {std::move(result), std::move(built.border)};
 }
 
 }  // namespace
 
-CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
+CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution& execution,
                               CellKind cells, const WantedSpace* wanted, bool is_local) {
     const page_store::Keeper keeper;
-    const Entered entered = enter_joined(rocks, threads, progress);
+    const Entered entered = enter_joined(rocks, execution);
     if (wanted != nullptr) entered.site->wanted.emplace(*wanted);
     entered.site->is_local = is_local;
-    return build_site(*entered.site, entered.warnings, cells, threads, progress).complex;
+    return build_site(*entered.site, entered.warnings, cells, execution).complex;
 }
 
-Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
-                Progress* progress, CellKind cells) {
+Tile build_tile(std::span<const StackInput> rocks, const Window& window, const Execution& execution,
+                CellKind cells) {
     const page_store::Keeper keeper;
     const std::array corners{window.low_x,  window.low_y,  window.high_x, window.low_y,
                              window.high_x, window.high_y, window.low_x,  window.high_y};
@@ -150,13 +148,13 @@ Tile build_tile(std::span<const StackInput> rocks, const Window& window, int thr
         }
     }
     std::vector<Warning> warnings;
-    const auto site = enter_as_given(in_window, {}, warnings, threads, progress);
+    const auto site = enter_as_given(in_window, {}, warnings, execution);
     site->window = window;
-    return build_site(*site, warnings, cells, threads, progress);
+    return build_site(*site, warnings, cells, execution);
 }
 
-CellComplex build_stack(const StackInput& input, int threads, Progress* progress, CellKind cells) {
-    return build_rock_masses({&input, 1}, threads, progress, cells);
+CellComplex build_stack(const StackInput& input, const Execution& execution, CellKind cells) {
+    return build_rock_masses({&input, 1}, execution, cells);
 }
 
 }  // namespace realmodel::strata

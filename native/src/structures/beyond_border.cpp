@@ -84,8 +84,8 @@ bool may_meet(const Prism& prism, const Slab& slab, double near) {
 std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
                                            std::span<const double> low,
                                            std::span<const double> high,
-                                           std::span<const std::int32_t> triangles, int threads,
-                                           const Progress* progress) {
+                                           std::span<const std::int32_t> triangles,
+                                           const Execution& execution) {
     const std::size_t count = triangles.size() / 3;
     std::vector<Prism> prisms(count);
     Box all;
@@ -120,7 +120,7 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
         const auto slab = slab_of(corners);
         if (slab && slab->box.meets(sheet)) slabs.push_back(*slab);
     }
-    parallel_ranges(count, 1 << 6, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(count, 1 << 6, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Prism& prism = prisms[t];
             for (const Slab& slab : slabs) {

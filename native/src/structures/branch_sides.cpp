@@ -105,7 +105,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     }
     for (const auto& met : meetings)
         arrangement.insert(met);
-    arrangement.divide(1, nullptr);
+    arrangement.divide({1, nullptr});
     const cutting::NearestSide nearest(surface.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {

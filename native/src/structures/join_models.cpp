@@ -47,8 +47,8 @@ struct Together {
     CellKind cell_kind = CellKind::kColumns;
 
     Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
-             int threads, const Progress* progress);
-    void share_vertices(int threads, const Progress* progress);
+             const Execution& execution);
+    void share_vertices(const Execution& execution);
     ComplexView view() const {
         return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
                 .face_offsets = face_offsets,
@@ -64,7 +64,7 @@ struct Together {
 
 /// @param places  of the cells of each model
 Together::Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
-                   int threads, const Progress* progress) {
+                   const Execution& execution) {
     // the cells and faces of each model that are wanted: how many, then how many before
     std::vector<std::size_t> positions, cells(models.size()), faces(models.size()),
         corners(models.size());
@@ -84,7 +84,7 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
         surfaces = std::max(surfaces, own.model.surfaces);
         if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
     }
-    parallel_chunks(models.size(), threads, progress, [&](std::size_t m) {
+    parallel_chunks(models.size(), execution, [&](std::size_t m) {
         cells[m] = places[m].size() -
                    static_cast<std::size_t>(std::ranges::count(places[m], Place::kElsewhere));
         std::size_t own_faces = 0, own_corners = 0;
@@ -106,7 +106,7 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
     face_vertices.resize(count_before(corners));
     face_offsets.resize(face_surface.size() + 1);
     face_offsets.back() = static_cast<std::int64_t>(face_vertices.size());
-    parallel_chunks(models.size(), threads, progress, [&](std::size_t m) {
+    parallel_chunks(models.size(), execution, [&](std::size_t m) {
         const ComplexView& model = models[m].model;
         std::vector<std::int32_t> number(model.cell_count(), -1);
         std::size_t cell = cells[m], face = faces[m], corner = corners[m];
@@ -136,7 +136,7 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
 }
 
 /// Equal positions get one vertex, those that no face has none.
-void Together::share_vertices(int threads, const Progress* progress) {
+void Together::share_vertices(const Execution& execution) {
     std::vector<std::uint8_t> is_used(vertices.size(), 0);
     for (const std::int32_t v : face_vertices)
         is_used[index(v)] = 1;
@@ -147,7 +147,7 @@ void Together::share_vertices(int threads, const Progress* progress) {
             x += 0.0;  // both zeros alike
         if (is_used[v] != 0) order.push_back({p, static_cast<std::int32_t>(v)});
     }
-    parallel_sort(order, std::less<>(), threads, progress);
+    parallel_sort(order, std::less<>(), execution);
     std::vector<std::int32_t> number(vertices.size(), -1);
     std::vector<Position> distinct;
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -166,25 +166,25 @@ void begin(Progress* progress, double from, double to, const char* what) {
 /// The faces of what is left of the cells.
 CellComplex assemble(const Together& together, const std::vector<Position>& new_positions,
                      const cutting::WholePieces& pieces, std::span<const cutting::HalfCell> cells,
-                     int threads, const Progress* progress) {
+                     const Execution& execution) {
     CellComplex complex;
     complex.cell_kind = together.cell_kind;
     for (const cutting::HalfCell& cell : cells)
         complex.cell_block.push_back(together.cell_block[index(cell.cell)]);
     const std::size_t own = together.vertices.size();
-    cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(), threads,
-                                    progress);
+    cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(),
+                                    execution);
     const auto is_left = [](const cutting::Piece& piece) {
         return piece.parts[0] >= 0 || piece.parts[1] >= 0;
     };
-    parallel_chunks(pieces.chunks(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
         pieces.each_of(chunk,
                        [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
                            if (is_left(piece)) chunked.count(chunk, nodes.size());
                        });
     });
     chunked.make_room();
-    parallel_chunks(pieces.chunks(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
         cutting::ChunkedComplex::Writer writer(chunked, chunk);
         pieces.each_of(chunk,
                        [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
@@ -205,52 +205,51 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// where rounding went beyond them.
 std::optional<Joined> join(const Together& together, const StructureSurface& surface,
                            std::span<const PartModel> models, std::span<const Structure> structures,
-                           std::span<const std::uint8_t> acts, double least_rounding, int threads,
-                           Progress* progress) {
+                           std::span<const std::uint8_t> acts, double least_rounding,
+                           const Execution& execution) {
     const ComplexView all = together.view();
-    const cutting::NearPart part(all, together.is_near, threads, progress);
+    const cutting::NearPart part(all, together.is_near, execution);
     const ComplexView near = part.view();
     std::vector<std::int32_t> model_of_cell;
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
         model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
-    begin(progress, 0.1, 0.15, "finding faces near structures");
-    SurfaceOverlay overlay(near, surface.surface, threads, progress, least_rounding);
-    begin(progress, 0.3, 0.5, "finding what structures go through");
-    const CutterWinding winding(overlay, progress);
-    const StructureSides sides(overlay, winding, surface, structures, progress);
+    begin(execution.progress, 0.1, 0.15, "finding faces near structures");
+    SurfaceOverlay overlay(near, surface.surface, execution, least_rounding);
+    begin(execution.progress, 0.3, 0.5, "finding what structures go through");
+    const CutterWinding winding(overlay, execution.progress);
+    const StructureSides sides(overlay, winding, surface, structures, execution.progress);
     std::vector<Sides> model_sides;
     for (const PartModel& own : models)
         model_sides.push_back(own.sides);
     const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
-    begin(progress, 0.5, 0.68, "finding the parts of cells");
-    cutting::SurfaceParts made(overlay, winding, wanted, progress);
-    begin(progress, 0.85, 0.92, "rounding what was cut");
+    begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
+    cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
+    begin(execution.progress, 0.85, 0.92, "rounding what was cut");
     cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          threads, progress, true, least_rounding)
+                          execution, true, least_rounding)
         .run();
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
-    begin(progress, 0.95, 1.0, "putting the parts together");
+    begin(execution.progress, 0.95, 1.0, "putting the parts together");
     Joined joined;
     joined.complex =
-        assemble(together, overlay.new_positions(), *pieces, made.half_cells, threads, progress);
+        assemble(together, overlay.new_positions(), *pieces, made.half_cells, execution);
     for (const cutting::HalfCell& cell : made.half_cells)
         joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
-    joined.complex.volumes =
-        strata::block_volumes(joined.complex, together.blocks, threads, progress);
+    joined.complex.volumes = strata::block_volumes(joined.complex, together.blocks, execution);
     return joined;
 }
 
 }  // namespace
 
 std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
-                           int threads, Progress* progress) {
+                           const Execution& execution) {
     cutting::check_model(rock);
     const StructureSurface surface = structure_surface(structures, box_of(rock));
-    SurfaceOverlay overlay(rock, surface.surface, threads, progress);
-    const CutterWinding winding(overlay, progress);
-    const StructureSides sides(overlay, winding, surface, structures, progress);
+    SurfaceOverlay overlay(rock, surface.surface, execution);
+    const CutterWinding winding(overlay, execution.progress);
+    const StructureSides sides(overlay, winding, surface, structures, execution.progress);
     std::map<Sides, Box> boxes;
     const auto include = [&](std::size_t part, const auto& loops) {
         Box& box = boxes[sides.sides(part)];
@@ -279,7 +278,7 @@ std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> s
 }
 
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
-                   std::span<const std::uint8_t> acts, int threads, Progress* progress,
+                   std::span<const std::uint8_t> acts, const Execution& execution,
                    std::span<const ContinuedStructure> continued, double largest) {
     Box rock;
     for (const PartModel& own : models) {
@@ -289,24 +288,23 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     const StructureSurface surface = continued.empty() ? structure_surface(structures, rock)
                                                        : structure_surface(structures, continued);
     const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
-    begin(progress, 0, 0.1, "leaving out what is in other parts");
+    begin(execution.progress, 0, 0.1, "leaving out what is in other parts");
     std::vector<std::vector<Place>> places;
     for (const PartModel& own : models) {
-        places.push_back(
-            places_of_cells(own.model, own.sides, nearest, structures, threads, progress));
+        places.push_back(places_of_cells(own.model, own.sides, nearest, structures, execution));
     }
-    Together together(models, places, threads, progress);
-    together.share_vertices(threads, progress);
+    Together together(models, places, execution);
+    together.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    if (auto joined = join(together, surface, models, structures, acts, least, threads, progress))
+    if (auto joined = join(together, surface, models, structures, acts, least, execution))
         return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
-    return *join(together, surface, models, structures, acts, least, threads, progress);
+    return *join(together, surface, models, structures, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
-                                         std::span<const double> points, int threads,
-                                         const Progress* progress) {
+                                         std::span<const double> points,
+                                         const Execution& execution) {
     Box box;
     for (std::size_t i = 0; i + 2 < points.size(); i += 3)
         box.include(Position{points[i], points[i + 1], points[i + 2]});
@@ -316,16 +314,15 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
     const cutting::CutterSurface own = checked_surface(structures[0], 0);
     const cutting::NearestSide beside(own);
     std::vector<std::int8_t> sides(points.size() / 3);
-    parallel_ranges(sides.size(), 1 << 8, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                            const Position p{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
-                            bool at_border = false;
-                            const std::int8_t side =
-                                structures[0].is_body ? nearest.within(p) : beside(p, &at_border);
-                            sides[i] = at_border ? nearest(p) : side;
-                        }
-                    });
+    parallel_ranges(sides.size(), 1 << 8, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Position p{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
+            bool at_border = false;
+            const std::int8_t side =
+                structures[0].is_body ? nearest.within(p) : beside(p, &at_border);
+            sides[i] = at_border ? nearest(p) : side;
+        }
+    });
     return sides;
 }
 

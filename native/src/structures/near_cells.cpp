@@ -7,12 +7,11 @@ namespace realmodel::structures {
 
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
                                    std::span<const cutting::NearestSide> structures,
-                                   std::span<const Structure> given, int threads,
-                                   const Progress* progress) {
-    const cutting::CellBoxes cells(model, structures, threads, progress);
+                                   std::span<const Structure> given, const Execution& execution) {
+    const cutting::CellBoxes cells(model, structures, execution);
     std::vector<Place> places(model.cell_count(), Place::kInside);
     for (std::size_t s = 0; s < sides.size(); ++s) {
-        auto is_near = cutting::cells_near(cells, structures[s], threads, progress);
+        auto is_near = cutting::cells_near(cells, structures[s], execution);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (places[c] == Place::kElsewhere) {
                 is_near[c] = 1;  // not asked for
@@ -23,14 +22,12 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
         if (sides[s] == 0) continue;  // either side will do
         // some corners of these may lie where the branch is not, and nearest to its other side
         for (const std::int32_t other : given[s].ends_at) {
-            const auto beside =
-                cutting::cells_near(cells, structures[index(other)], threads, progress);
+            const auto beside = cutting::cells_near(cells, structures[index(other)], execution);
             for (std::size_t c = 0; c < places.size(); ++c) {
                 if (beside[c] != 0) is_near[c] = 1;
             }
         }
-        const auto own =
-            cutting::sides_of_far_cells(model, structures[s], is_near, threads, progress);
+        const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, execution);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = Place::kElsewhere;
         }

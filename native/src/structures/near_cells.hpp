@@ -17,7 +17,6 @@ enum class Place : std::uint8_t { kElsewhere, kInside, kNear };
 /// @param given       the same structures
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
                                    std::span<const cutting::NearestSide> structures,
-                                   std::span<const Structure> given, int threads,
-                                   const Progress* progress);
+                                   std::span<const Structure> given, const Execution& execution);
 
 }  // namespace realmodel::structures

@@ -135,7 +135,7 @@ std::vector<std::uint8_t> StructureSides::regions_beyond() const {
 
 /// What bounds one sector around an edge is in one part. This is said of sectors beside the rock,
 /// too, for the sake of cells that rounding flattened away.
-void StructureSides::join_sectors(const Progress* progress) {
+void StructureSides::join_sectors(Progress* progress) {
     const std::vector<std::uint8_t> is_beyond = regions_beyond();
     cutting::join_beside_surface(overlay_, winding_, near_, progress,
                                  [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
@@ -171,7 +171,7 @@ void StructureSides::join_sectors(const Progress* progress) {
             join_all((b + 1) % fan.blades(), false);
         }
     };
-    parallel_ranges(winding_.edge_count(), 1 << 10, overlay_.threads(), progress,
+    parallel_ranges(winding_.edge_count(), 1 << 10, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e)
                             join_around(e);

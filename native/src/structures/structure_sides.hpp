@@ -56,7 +56,7 @@ private:
     void name_structures();
     bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
     std::vector<std::uint8_t> regions_beyond() const;
-    void join_sectors(const Progress* progress);
+    void join_sectors(Progress* progress);
     void number_parts();
     void find_neighbors();
     void find_sides(std::int32_t s);

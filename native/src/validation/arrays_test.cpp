@@ -105,7 +105,7 @@ void check_vertex(const ComplexView& m, std::size_t v, Findings& found) {
 
 }  // namespace
 
-Findings check_arrays(const ComplexView& m, int threads, const Progress* progress) {
+Findings check_arrays(const ComplexView& m, const Execution& execution) {
     Findings found = check_lengths(m);
     if (!found.passed()) return found;
     std::vector<std::uint8_t> has_face(m.cell_count(), 0);
@@ -121,9 +121,9 @@ Findings check_arrays(const ComplexView& m, int threads, const Progress* progres
         for (std::size_t v = begin; v < end; ++v)
             check_vertex(m, v, own);
     };
-    found = in_chunks(m.face_count(), threads, progress, faces);
-    found.append(in_chunks(m.cell_count(), threads, progress, cells));
-    found.append(in_chunks(m.vertex_count(), threads, progress, vertices));
+    found = in_chunks(m.face_count(), execution, faces);
+    found.append(in_chunks(m.cell_count(), execution, cells));
+    found.append(in_chunks(m.vertex_count(), execution, vertices));
     found.examined = static_cast<std::int64_t>(m.face_count());
     return found;
 }

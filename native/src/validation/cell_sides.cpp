@@ -8,7 +8,7 @@
 
 namespace realmodel::validation {
 
-CellSides::CellSides(const ComplexView& model, int threads, const Progress* progress) {
+CellSides::CellSides(const ComplexView& model, const Execution& execution) {
     const std::size_t sides = model.face_cells.size(), cells = model.cell_count();
     const auto produce = [&](std::size_t chunk, const auto& put) {
         for (std::size_t i = chunk * kItemsOfChunk, end = std::min(sides, i + kItemsOfChunk);
@@ -18,12 +18,11 @@ CellSides::CellSides(const ComplexView& model, int threads, const Progress* prog
         }
     };
     const std::size_t chunks = (sides + kItemsOfChunk - 1) / kItemsOfChunk;
-    sides_ = bucketize_in_any_order<Side>(cells, chunks, produce, threads, progress);
-    parallel_ranges(cells, kItemsOfChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            std::ranges::sort(sides_[c]);
-                    });
+    sides_ = bucketize_in_any_order<Side>(cells, chunks, produce, execution);
+    parallel_ranges(cells, kItemsOfChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+            std::ranges::sort(sides_[c]);
+    });
 }
 
 }  // namespace realmodel::validation

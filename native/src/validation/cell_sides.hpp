@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/counting_sort.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::validation {
@@ -23,7 +23,7 @@ inline bool is_reversed(Side side) {
 /// The sides of every cell, ascending.
 class CellSides {
 public:
-    CellSides(const ComplexView& model, int threads, const Progress* progress);
+    CellSides(const ComplexView& model, const Execution& execution);
 
     std::span<const Side> operator[](std::size_t cell) const { return sides_[cell]; }
 

@@ -15,10 +15,10 @@ inline constexpr std::size_t kItemsOfChunk = 8192;
 /// Calls work(begin, end, findings) for chunks of 0 .. count on several threads; the findings of
 /// all chunks, in order.
 template <class Work>
-Findings in_chunks(std::size_t count, int threads, const Progress* progress, const Work& work) {
+Findings in_chunks(std::size_t count, const Execution& execution, const Work& work) {
     const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
     std::vector<Findings> found(chunks);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         work(chunk * kItemsOfChunk, std::min(count, (chunk + 1) * kItemsOfChunk), found[chunk]);
     });
     Findings all;

@@ -44,7 +44,7 @@ std::size_t count_edges(const ComplexView& model, std::span<const Side> sides) {
 
 /// The edges of a large cell in buckets that fit the cache, each edge with all its uses in one.
 Buckets<DirectedEdge> edge_buckets(const ComplexView& model, std::span<const Side> sides,
-                                   int threads, const Progress* progress) {
+                                   const Execution& execution) {
     constexpr std::size_t kUsesOfBucket = 8192, kMost = std::size_t{1} << 16;
     const std::size_t buckets =
         std::min(kMost, std::bit_ceil(count_edges(model, sides) / kUsesOfBucket + 1));
@@ -60,7 +60,7 @@ Buckets<DirectedEdge> edge_buckets(const ComplexView& model, std::span<const Sid
         }
     };
     const std::size_t chunks = (sides.size() + kItemsOfChunk - 1) / kItemsOfChunk;
-    return bucketize_in_order<DirectedEdge>(buckets, chunks, produce, threads, progress);
+    return bucketize_in_order<DirectedEdge>(buckets, chunks, produce, execution);
 }
 
 }  // namespace
@@ -75,11 +75,11 @@ std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side>
 }
 
 std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
-                                               std::span<const Side> sides, int threads,
-                                               const Progress* progress) {
-    const auto buckets = edge_buckets(model, sides, threads, progress);
+                                               std::span<const Side> sides,
+                                               const Execution& execution) {
+    const auto buckets = edge_buckets(model, sides, execution);
     std::vector<std::optional<EdgeUse>> open(buckets.size());
-    parallel_chunks(buckets.size(), threads, progress, [&](std::size_t b) {
+    parallel_chunks(buckets.size(), execution, [&](std::size_t b) {
         EdgeTable table;
         table.reset(buckets[b].size(), model.cell_kind == CellKind::kBlocks);
         for (const auto& [from, to] : buckets[b])

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "validation/cell_sides.hpp"
 #include "validation/edge_table.hpp"
@@ -17,7 +17,7 @@ std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side>
 
 /// The same of a cell of many faces, on several threads.
 std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
-                                               std::span<const Side> sides, int threads,
-                                               const Progress* progress);
+                                               std::span<const Side> sides,
+                                               const Execution& execution);
 
 }  // namespace realmodel::validation

@@ -14,9 +14,9 @@ using Position = std::array<double, 3>;
 
 /// A corner of each cell.
 std::vector<std::int32_t> cell_origins(const ComplexView& model, const CellSides& sides,
-                                       int threads, const Progress* progress) {
+                                       const Execution& execution) {
     std::vector<std::int32_t> origin(model.cell_count());
-    in_chunks(origin.size(), threads, progress, [&](std::size_t begin, std::size_t end, Findings&) {
+    in_chunks(origin.size(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
         for (std::size_t c = begin; c < end; ++c)
             origin[c] = model.face(face_of(sides[c].front())).front();
     });
@@ -35,14 +35,13 @@ Position coordinate_steps(const ComplexView& model) {
 
 }  // namespace
 
-FaceMeasures::FaceMeasures(const ComplexView& model, const CellSides& sides, int threads,
-                           const Progress* progress)
+FaceMeasures::FaceMeasures(const ComplexView& model, const CellSides& sides,
+                           const Execution& execution)
     : measures_(model.face_count()) {
-    const auto origin = cell_origins(model, sides, threads, progress);
+    const auto origin = cell_origins(model, sides, execution);
     const Position step = coordinate_steps(model);
     findings_ = in_chunks(
-        model.face_count(), threads, progress,
-        [&](std::size_t begin, std::size_t end, Findings& found) {
+        model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings& found) {
             FaceShape shape(model);
             for (std::size_t f = begin; f < end; ++f) {
                 shape.load(f);

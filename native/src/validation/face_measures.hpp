@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
 #include "validation/cell_sides.hpp"
@@ -23,8 +23,7 @@ struct FaceMeasure {
 /// should be, and its share in volumes.
 class FaceMeasures {
 public:
-    FaceMeasures(const ComplexView& model, const CellSides& sides, int threads,
-                 const Progress* progress);
+    FaceMeasures(const ComplexView& model, const CellSides& sides, const Execution& execution);
 
     const FaceMeasure& operator[](std::size_t face) const { return measures_[face]; }
     const FaceMeasure* data() const { return measures_.data(); }

@@ -34,7 +34,7 @@ void keep_lowest(std::int32_t& kept, std::int32_t number) {
 }  // namespace
 
 InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
-                           const PlanRounding& rounding, int threads, const Progress* progress)
+                           const PlanRounding& rounding, const Execution& execution)
     : near_edge_(probes.probes.size(), 0) {
     std::vector<PlanPosition> places;
     for (const Probe& probe : probes.probes)
@@ -48,8 +48,7 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
     const auto look = [&](std::span<const double> vertices, std::size_t columns,
                           std::span<const std::int32_t> triangles, const auto& visit) {
         in_chunks(
-            triangles.size() / 3, threads, progress,
-            [&](std::size_t begin, std::size_t end, Findings&) {
+            triangles.size() / 3, execution, [&](std::size_t begin, std::size_t end, Findings&) {
                 for (std::size_t t = begin; t < end; ++t) {
                     std::array<PlanPosition, 3> p;
                     for (std::size_t i = 0; i < 3; ++i) {

@@ -12,7 +12,7 @@ namespace realmodel::validation {
 class InputColumns {
 public:
     InputColumns(const ModelInput& input, const Probes& probes, const PlanRounding& rounding,
-                 int threads, const Progress* progress);
+                 const Execution& execution);
 
     std::size_t surface_count() const { return surfaces_; }
     /// The triangle of a surface (counted through all rock masses) there, -1 where it has none or

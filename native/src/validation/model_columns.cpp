@@ -78,7 +78,7 @@ bool same_stretch(const WallSample& wall, const PlanPosition& p, const PlanPosit
 }  // namespace
 
 ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
-                           const PlanRounding& rounding, int threads, const Progress* progress)
+                           const PlanRounding& rounding, const Execution& execution)
     : near_edge_(probes.probes.size(), 0), coincident_(probes.walls.size(), 0) {
     const std::size_t count = probes.probes.size();
     std::vector<PlanPosition> places;
@@ -90,41 +90,40 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
     const double beside = rounding.step + rounding.near;
     std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
                                              kItemsOfChunk);
-    in_chunks(
-        model.face_count(), threads, progress, [&](std::size_t begin, std::size_t end, Findings&) {
-            auto& own = found[begin / kItemsOfChunk];
-            FaceInPlan face(model);
-            const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
-                for (std::size_t k = 0; k < face.plan.size(); ++k) {
-                    const PlanPosition& p = face.plan[k];
-                    const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
-                    if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach)) return true;
-                }
-                return false;
-            };
-            for (std::size_t f = begin; f < end; ++f) {
-                face.load(f);
-                const spatial::PlanBox box{face.low[0], face.low[1], face.high[0], face.high[1]};
-                bins.within(box.widened(beside), [&](std::size_t i, const PlanPosition&) {
-                    if (i >= count) {
-                        const WallSample& wall = probes.walls[i - count];
-                        const auto its_own = [&](const auto& p, const auto& q) {
-                            return same_stretch(wall, p, q);
-                        };
-                        if (edge_passes(i, beside, its_own)) mark(coincident_[i - count]);
-                        return;
-                    }
-                    const auto none = [](const auto&, const auto&) { return false; };
-                    if (edge_passes(i, rounding.near, none)) mark(near_edge_[i]);
-                    const int turns = winding(face.plan, places[i]);
-                    if (turns == 0) return;
-                    const bool up = turns > 0;
-                    own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
-                                   model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
-                                   face.height(places[i])});
-                });
+    in_chunks(model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
+        auto& own = found[begin / kItemsOfChunk];
+        FaceInPlan face(model);
+        const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
+            for (std::size_t k = 0; k < face.plan.size(); ++k) {
+                const PlanPosition& p = face.plan[k];
+                const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
+                if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach)) return true;
             }
-        });
+            return false;
+        };
+        for (std::size_t f = begin; f < end; ++f) {
+            face.load(f);
+            const spatial::PlanBox box{face.low[0], face.low[1], face.high[0], face.high[1]};
+            bins.within(box.widened(beside), [&](std::size_t i, const PlanPosition&) {
+                if (i >= count) {
+                    const WallSample& wall = probes.walls[i - count];
+                    const auto its_own = [&](const auto& p, const auto& q) {
+                        return same_stretch(wall, p, q);
+                    };
+                    if (edge_passes(i, beside, its_own)) mark(coincident_[i - count]);
+                    return;
+                }
+                const auto none = [](const auto&, const auto&) { return false; };
+                if (edge_passes(i, rounding.near, none)) mark(near_edge_[i]);
+                const int turns = winding(face.plan, places[i]);
+                if (turns == 0) return;
+                const bool up = turns > 0;
+                own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
+                               model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
+                               face.height(places[i])});
+            });
+        }
+    });
     crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
         for (const auto& part : found) {
             for (const Crossing& c : part)

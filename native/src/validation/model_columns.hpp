@@ -21,7 +21,7 @@ struct Crossing {
 class ModelColumns {
 public:
     ModelColumns(const ComplexView& model, const Probes& probes, const PlanRounding& rounding,
-                 int threads, const Progress* progress);
+                 const Execution& execution);
 
     /// In the order of their faces.
     std::span<const Crossing> of_probe(std::size_t probe) const { return crossings_[probe]; }

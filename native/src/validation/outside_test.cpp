@@ -38,14 +38,14 @@ bool same_corners(std::span<const std::int32_t> a, std::span<const std::int32_t>
 
 }  // namespace
 
-Findings check_outside(const ComplexView& model, int threads, const Progress* progress) {
+Findings check_outside(const ComplexView& model, const Execution& execution) {
     std::vector<OuterFace> outer;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        poll(progress, f);
+        poll(execution.progress, f);
         if (model.cell(f, 1) < 0)
             outer.push_back({corners_in_any_order(model.face(f)), static_cast<std::int32_t>(f)});
     }
-    parallel_sort(outer, std::less<>(), threads, progress);
+    parallel_sort(outer, std::less<>(), execution);
     Findings found;
     found.examined = static_cast<std::int64_t>(outer.size());
     for (std::size_t i = 1; i < outer.size(); ++i) {

@@ -277,7 +277,7 @@ double largest_plan_coordinate(const ComplexView& model, const ModelInput& input
 }
 
 Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int64_t places,
-                     std::uint64_t seed, const PlanRounding& rounding, const Progress* progress) {
+                     std::uint64_t seed, const PlanRounding& rounding, Progress* progress) {
     std::vector<std::int32_t> walls, others;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);

@@ -49,6 +49,6 @@ double largest_plan_coordinate(const ComplexView& model, const ModelInput& input
 
 /// Chooses the places; the same for the same seed.
 Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int64_t places,
-                     std::uint64_t seed, const PlanRounding& rounding, const Progress* progress);
+                     std::uint64_t seed, const PlanRounding& rounding, Progress* progress);
 
 }  // namespace realmodel::validation

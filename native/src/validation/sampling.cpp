@@ -266,28 +266,28 @@ void require_vertices(const ModelInput& input) {
 }  // namespace
 
 std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput& input,
-                                      std::int64_t places, std::uint64_t seed, int threads,
-                                      Progress* progress) {
+                                      std::int64_t places, std::uint64_t seed,
+                                      const Execution& execution) {
     const auto start = std::chrono::steady_clock::now();
     const auto report = [&](double fraction, const char* text) {
-        if (progress == nullptr) return;
-        progress->check();
-        progress->report(fraction, text);
+        if (execution.progress == nullptr) return;
+        execution.progress->check();
+        execution.progress->report(fraction, text);
     };
     report(0.0, "choosing test points");
     require_vertices(input);
     const PlanRounding rounding(largest_plan_coordinate(model, input));
-    const Probes probes = choose_probes(model, input, places, seed, rounding, progress);
+    const Probes probes = choose_probes(model, input, places, seed, rounding, execution.progress);
     report(0.1, "finding the faces at the test points");
-    const ModelColumns model_columns(model, probes, rounding, threads, progress);
+    const ModelColumns model_columns(model, probes, rounding, execution);
     report(0.5, "finding the surfaces at the test points");
-    const InputColumns input_columns(input, probes, rounding, threads, progress);
+    const InputColumns input_columns(input, probes, rounding, execution);
     report(0.7, "comparing with the closed form");
     const Comparison comparison(model, input, probes, rounding, model_columns, input_columns);
     constexpr std::size_t kProbesOfChunk = 64;
     const std::size_t count = probes.probes.size();
     std::vector<SampleFindings> found((count + kProbesOfChunk - 1) / kProbesOfChunk);
-    parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kProbesOfChunk;
              i < std::min(count, (chunk + 1) * kProbesOfChunk); ++i)
             comparison.look(i, found[chunk]);

@@ -53,10 +53,9 @@ struct CellFindings {
 class CellTests {
 public:
     CellTests(const ComplexView& model, const CellSides& sides, const FaceMeasures& faces,
-              int threads, const Progress* progress)
+              const Execution& execution)
         : model_(model),
-          threads_(threads),
-          progress_(progress),
+          execution_(execution),
           sides_(sides),
           faces_(faces),
           volume_(model.cell_count()) {}
@@ -65,7 +64,7 @@ public:
         const std::size_t chunks = (model_.cell_count() + kCellsOfChunk - 1) / kCellsOfChunk;
         std::vector<CellFindings> found(chunks);
         std::vector<std::vector<std::size_t>> large(chunks);
-        parallel_chunks(chunks, threads_, progress_, [&](std::size_t chunk) {
+        parallel_chunks(chunks, execution_, [&](std::size_t chunk) {
             EdgeTable table;
             const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
             for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {
@@ -83,8 +82,7 @@ public:
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
             all.append(found[chunk]);
             for (const std::size_t c : large[chunk])
-                closed(c, open_edge_of_large_cell(model_, sides_[c], threads_, progress_),
-                       all.closed);
+                closed(c, open_edge_of_large_cell(model_, sides_[c], execution_), all.closed);
         }
         all.closed.examined = all.volumes.examined = static_cast<std::int64_t>(model_.cell_count());
         return all;
@@ -154,8 +152,7 @@ private:
     }
 
     const ComplexView& model_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     const CellSides& sides_;
     const FaceMeasures& faces_;
     std::vector<double> volume_;
@@ -210,29 +207,29 @@ private:
 
 }  // namespace
 
-std::vector<TestResult> check_topology(const ComplexView& model, int threads, Progress* progress) {
+std::vector<TestResult> check_topology(const ComplexView& model, const Execution& execution) {
     std::vector<TestResult> results;
     Clock clock;
     const auto add = [&](const char* name, const char* unit, Findings&& findings) {
         results.push_back({name, unit, std::move(findings), clock.lap()});
     };
     const auto report = [&](double fraction, const char* text) {
-        if (progress == nullptr) return;
-        progress->check();
-        progress->report(fraction, text);
+        if (execution.progress == nullptr) return;
+        execution.progress->check();
+        execution.progress->report(fraction, text);
     };
     report(0.0, "checking the arrays");
-    add("arrays", "faces", check_arrays(model, threads, progress));
+    add("arrays", "faces", check_arrays(model, execution));
     if (!results.back().findings.passed()) return results;
     report(0.1, "checking every face");
-    add("loops", "faces", check_loops(model, threads, progress));
-    add("vertices", "vertices", check_vertices(model, threads, progress));
-    add("outside", "faces", check_outside(model, threads, progress));
-    const CellSides sides(model, threads, progress);
-    FaceMeasures faces(model, sides, threads, progress);
+    add("loops", "faces", check_loops(model, execution));
+    add("vertices", "vertices", check_vertices(model, execution));
+    add("outside", "faces", check_outside(model, execution));
+    const CellSides sides(model, execution);
+    FaceMeasures faces(model, sides, execution);
     add("faces", "faces", std::move(faces.findings()));
     report(0.5, "checking every cell");
-    CellTests tests(model, sides, faces, threads, progress);
+    CellTests tests(model, sides, faces, execution);
     CellFindings cells = tests.run();
     add("closed", "cells", std::move(cells.closed));  // its time is that of the volumes, too
     add("volumes", "cells", std::move(cells.volumes));

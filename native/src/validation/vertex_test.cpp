@@ -33,29 +33,28 @@ std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
 }
 
 /// How many vertices ascend before one does not.
-std::size_t count_ascending(const ComplexView& model, int threads, const Progress* progress) {
+std::size_t count_ascending(const ComplexView& model, const Execution& execution) {
     std::atomic<std::size_t> ascending{model.vertex_count()};
-    in_chunks(model.vertex_count(), threads, progress,
-              [&](std::size_t begin, std::size_t end, Findings&) {
-                  for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
-                      if (model.vertex(static_cast<std::int32_t>(v - 1)) <
-                          model.vertex(static_cast<std::int32_t>(v)))
-                          continue;
-                      std::size_t least = ascending.load();
-                      while (v < least && !ascending.compare_exchange_weak(least, v)) {
-                      }
-                      return;
-                  }
-              });
+    in_chunks(model.vertex_count(), execution, [&](std::size_t begin, std::size_t end, Findings&) {
+        for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
+            if (model.vertex(static_cast<std::int32_t>(v - 1)) <
+                model.vertex(static_cast<std::int32_t>(v)))
+                continue;
+            std::size_t least = ascending.load();
+            while (v < least && !ascending.compare_exchange_weak(least, v)) {
+            }
+            return;
+        }
+    });
     return ascending;
 }
 
 /// Whether all vertices are distinct, as the builder's own are, which ascend, and few others behind
 /// them. Where they are not in this order it says no: then they are compared by a hash of their
 /// positions.
-bool are_distinct_in_order(const ComplexView& model, int threads, const Progress* progress) {
+bool are_distinct_in_order(const ComplexView& model, const Execution& execution) {
     constexpr std::size_t kFew = 64;  // at most one in so many behind
-    const std::size_t ascending = count_ascending(model, threads, progress);
+    const std::size_t ascending = count_ascending(model, execution);
     std::vector<std::array<double, 3>> behind;
     if (model.vertex_count() - ascending > ascending / kFew) return false;
     for (std::size_t v = ascending; v < model.vertex_count(); ++v) {
@@ -86,8 +85,7 @@ struct HashedVertex {
 };
 
 /// Vertices in buckets by a hash of their positions; equal ones are in one bucket.
-Buckets<HashedVertex> position_buckets(const ComplexView& model, int threads,
-                                       const Progress* progress) {
+Buckets<HashedVertex> position_buckets(const ComplexView& model, const Execution& execution) {
     constexpr std::size_t kVerticesOfBucket = 4096, kMost = std::size_t{1} << 16;
     const std::size_t count = model.vertex_count();
     const std::size_t buckets = std::min(kMost, std::bit_ceil(count / kVerticesOfBucket + 1));
@@ -100,7 +98,7 @@ Buckets<HashedVertex> position_buckets(const ComplexView& model, int threads,
         }
     };
     const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
-    return bucketize_in_order<HashedVertex>(buckets, chunks, produce, threads, progress);
+    return bucketize_in_order<HashedVertex>(buckets, chunks, produce, execution);
 }
 
 /// Of each position that several vertices of a bucket have, all but the first with the one before.
@@ -119,11 +117,11 @@ std::vector<EqualPair> equal_pairs(const ComplexView& model, std::span<HashedVer
     return pairs;
 }
 
-Findings check_distinct(const ComplexView& model, int threads, const Progress* progress) {
-    if (are_distinct_in_order(model, threads, progress)) return {};
-    auto buckets = position_buckets(model, threads, progress);
+Findings check_distinct(const ComplexView& model, const Execution& execution) {
+    if (are_distinct_in_order(model, execution)) return {};
+    auto buckets = position_buckets(model, execution);
     std::vector<std::vector<EqualPair>> pairs(buckets.size());
-    parallel_chunks(buckets.size(), threads, progress,
+    parallel_chunks(buckets.size(), execution,
                     [&](std::size_t b) { pairs[b] = equal_pairs(model, buckets[b]); });
     std::vector<EqualPair> all;
     for (const auto& part : pairs)
@@ -142,9 +140,9 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
     return found;
 }
 
-Findings check_used(const ComplexView& model, int threads, const Progress* progress) {
+Findings check_used(const ComplexView& model, const Execution& execution) {
     std::vector<std::uint8_t> used(model.vertex_count(), 0);
-    in_chunks(model.face_vertices.size(), threads, progress,
+    in_chunks(model.face_vertices.size(), execution,
               [&](std::size_t begin, std::size_t end, Findings&) {
                   for (std::size_t i = begin; i < end; ++i)
                       mark(used[index(model.face_vertices[i])]);
@@ -182,17 +180,16 @@ std::int32_t repeated_vertex(std::span<const std::int32_t> loop,
 
 }  // namespace
 
-Findings check_vertices(const ComplexView& model, int threads, const Progress* progress) {
-    Findings found = check_distinct(model, threads, progress);
-    found.append(check_used(model, threads, progress));
+Findings check_vertices(const ComplexView& model, const Execution& execution) {
+    Findings found = check_distinct(model, execution);
+    found.append(check_used(model, execution));
     found.examined = static_cast<std::int64_t>(model.vertex_count());
     return found;
 }
 
-Findings check_loops(const ComplexView& model, int threads, const Progress* progress) {
+Findings check_loops(const ComplexView& model, const Execution& execution) {
     Findings found = in_chunks(
-        model.face_count(), threads, progress,
-        [&](std::size_t begin, std::size_t end, Findings& own) {
+        model.face_count(), execution, [&](std::size_t begin, std::size_t end, Findings& own) {
             std::vector<std::int32_t> sorted;
             for (std::size_t f = begin; f < end; ++f) {
                 const std::int32_t v = repeated_vertex(model.face(f), sorted);

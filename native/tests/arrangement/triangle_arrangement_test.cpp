@@ -23,7 +23,7 @@ public:
                 if (const auto found = triangles.intersection(i, j)) triangles.insert(*found);
             }
         }
-        triangles.divide(1, nullptr);
+        triangles.divide({1, nullptr});
     }
     std::vector<Region> regions_of(std::int32_t triangle) const {
         std::vector<Region> found;
@@ -166,7 +166,7 @@ TEST(TriangleArrangement, ALargeTriangleIsDividedAsSmallOnesAreOnAnyNumberOfThre
             a.add({{{-99, 1.0 * i, -1}, {700, 1.0 * i, -1}, {300, 1.0 * i - 0.4, 99}}});
         for (std::int32_t other = 1; other <= kAlong + kAcross; ++other)
             a.triangles.insert(a.triangles.intersection(level, other).value());
-        a.triangles.divide(threads, nullptr);
+        a.triangles.divide({threads, nullptr});
         const auto regions = a.regions_of(level);
         ASSERT_EQ(regions.size(), 1U + (kAlong - 1) * (kAcross - 1));
         std::vector<std::vector<SpacePointId>> loops;

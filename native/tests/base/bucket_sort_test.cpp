@@ -13,8 +13,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-Numbers sorted(const Numbers& numbers, double low, double high, int threads,
-               const Progress* progress = nullptr) {
+Numbers sorted(const Numbers& numbers, double low, double high, const Execution& execution = {}) {
     const auto share = [=](double v) { return std::clamp((v - low) / (high - low), 0.0, 1.0); };
     constexpr std::size_t kChunks = 7;
     const auto produce = [&](std::size_t chunk, const auto& take) {
@@ -22,12 +21,12 @@ Numbers sorted(const Numbers& numbers, double low, double high, int threads,
             take(numbers[i]);
     };
     const auto result = BucketSort<double, decltype(share), std::less<>>(share, {}).sorted(
-        kChunks, numbers.size(), produce, threads, progress);
+        kChunks, numbers.size(), produce, execution);
     return {result.begin(), result.end()};
 }
 
 void expect_sorted(Numbers numbers, double low = 0, double high = 1) {
-    const Numbers one = sorted(numbers, low, high, 1), three = sorted(numbers, low, high, 3);
+    const Numbers one = sorted(numbers, low, high, {1}), three = sorted(numbers, low, high, {3});
     std::sort(numbers.begin(), numbers.end());
     EXPECT_EQ(one, numbers);
     EXPECT_EQ(three, numbers);
@@ -67,7 +66,7 @@ TEST(BucketSort, SortsWhatIsAllInOneBucket) {
 TEST(BucketSort, CanBeCancelled) {
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(sorted({1, 0}, 0, 1, 2, &progress), Cancelled);
+    EXPECT_THROW(sorted({1, 0}, 0, 1, {2, &progress}), Cancelled);
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ TEST(CountingSort, NothingFallsIntoNoBuckets) {
     EXPECT_TRUE(bucketize<int>(3, nothing)[2].empty());
     EXPECT_EQ(Buckets<int>().size(), 0u);
     const auto of_chunk = [](std::size_t, const auto&) {};
-    EXPECT_EQ(bucketize_in_order<int>(2, 0, of_chunk, 2, nullptr).size(), 2u);
-    EXPECT_EQ(bucketize_in_any_order<int>(2, 0, of_chunk, 2, nullptr).size(), 2u);
+    EXPECT_EQ(bucketize_in_order<int>(2, 0, of_chunk, {2, nullptr}).size(), 2u);
+    EXPECT_EQ(bucketize_in_any_order<int>(2, 0, of_chunk, {2, nullptr}).size(), 2u);
 }
 
 TEST(CountingSort, SeveralThreadsFindTheSame) {
@@ -53,10 +53,10 @@ TEST(CountingSort, SeveralThreadsFindTheSame) {
         for (std::size_t chunk = 0; chunk < kChunks; ++chunk)
             produce(chunk, put);
     });
-    const auto ordered = bucketize_in_order<int>(kBuckets, kChunks, produce, 3, nullptr);
+    const auto ordered = bucketize_in_order<int>(kBuckets, kChunks, produce, {3, nullptr});
     EXPECT_EQ(ordered.offsets, expected.offsets);
     EXPECT_EQ(ordered.values, expected.values);
-    auto any = bucketize_in_any_order<int>(kBuckets, kChunks, produce, 3, nullptr);
+    auto any = bucketize_in_any_order<int>(kBuckets, kChunks, produce, {3, nullptr});
     EXPECT_EQ(any.offsets, expected.offsets);
     for (std::size_t b = 0; b < kBuckets; ++b) {
         auto sorted = listed(expected[b]);
@@ -64,7 +64,7 @@ TEST(CountingSort, SeveralThreadsFindTheSame) {
         std::sort(any[b].begin(), any[b].end());
         EXPECT_EQ(listed(any[b]), sorted);
     }
-    const auto in_order = sorted_in_buckets<int>(kBuckets, kChunks, produce, 3, nullptr);
+    const auto in_order = sorted_in_buckets<int>(kBuckets, kChunks, produce, {3, nullptr});
     EXPECT_EQ(in_order.offsets, expected.offsets);
     EXPECT_EQ(in_order.values, any.values);
 }

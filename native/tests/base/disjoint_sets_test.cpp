@@ -38,7 +38,7 @@ TEST(DisjointSets, ManyThreadsJoinTheSameSets) {
     DisjointSets expected(kCount), parts(kCount);
     for (const auto& [a, b] : pairs)
         expected.join(a, b);
-    parallel_ranges(kPairs, 64, 4, nullptr, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(kPairs, 64, {4, nullptr}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             parts.join(pairs[i].first, pairs[i].second);
             // between two questions another thread may join the set to one with a lower member

@@ -20,7 +20,7 @@ TEST(ParallelCounts, RunningTotalsAreThoseOfASimpleLoop) {
             sum += counts[i];
         }
         expected.push_back(sum);
-        running_totals(counts, UINT32_MAX, 3, nullptr);
+        running_totals(counts, UINT32_MAX, {3, nullptr});
         EXPECT_EQ(std::vector<std::uint32_t>(counts.begin(), counts.end()), expected);
     }
 }
@@ -30,7 +30,7 @@ TEST(ParallelCounts, TotalsThatAreTooLargeAreRefused) {
     counts[0] = INT32_MAX;
     counts[1] = 1;
     try {
-        running_totals(counts, INT32_MAX, 1, nullptr);
+        running_totals(counts, INT32_MAX, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "too_large");
@@ -39,9 +39,9 @@ TEST(ParallelCounts, TotalsThatAreTooLargeAreRefused) {
 
 TEST(ParallelCounts, EachItemIsCountedOnce) {
     constexpr std::size_t kItems = 100000;
-    auto counters = zeros<std::uint32_t>(7, 3, nullptr);
+    auto counters = zeros<std::uint32_t>(7, {3, nullptr});
     std::vector<std::uint32_t> number(kItems);
-    parallel_ranges(kItems, 1000, 3, nullptr, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(kItems, 1000, {3, nullptr}, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             number[i] = count_one(counters[i % 7]);
     });

@@ -20,7 +20,7 @@ TEST(ParallelSort, SortsAnyNumberOfElements) {
                 v = number(random);
             auto expected = values;
             std::sort(expected.begin(), expected.end());
-            parallel_sort(values, std::less<>(), 3, nullptr);
+            parallel_sort(values, std::less<>(), {3, nullptr});
             EXPECT_EQ(values, expected);
         }
     }
@@ -30,7 +30,7 @@ TEST(ParallelSort, CanBeCancelled) {
     Progress progress;
     progress.cancel();
     std::vector<int> values(10, 1);
-    EXPECT_THROW(parallel_sort(values, std::less<>(), 2, &progress), Cancelled);
+    EXPECT_THROW(parallel_sort(values, std::less<>(), {2, &progress}), Cancelled);
 }
 
 }  // namespace

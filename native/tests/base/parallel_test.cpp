@@ -20,9 +20,11 @@ using Loop = std::function<void(std::size_t count, const std::function<void(std:
 
 std::vector<Loop> loops() {
     return {
-        [](std::size_t count, const auto& work) { parallel_chunks(count, 3, nullptr, work); },
         [](std::size_t count, const auto& work) {
-            parallel_workers(count, 3, nullptr, [&] { return work; });
+            parallel_chunks(count, {3, nullptr}, work);
+        },
+        [](std::size_t count, const auto& work) {
+            parallel_workers(count, {3, nullptr}, [&] { return work; });
         },
         [](std::size_t count, const auto& work) { parallel_even(count, 3, work); },
     };
@@ -41,7 +43,7 @@ TEST(Parallel, EveryChunkRunsOnce) {
 TEST(Parallel, RangesCoverEverythingOnce) {
     for (const std::size_t count : {0, 1, 99, 100, 101, 1000}) {
         std::vector<int> seen(count, 0);
-        parallel_ranges(count, 100, 3, nullptr, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(count, 100, {3, nullptr}, [&](std::size_t begin, std::size_t end) {
             EXPECT_EQ(begin % 100, 0u);
             EXPECT_LE(end - begin, 100u);
             for (std::size_t i = begin; i < end; ++i)
@@ -78,7 +80,7 @@ TEST(Parallel, ChunksAboveAFailedOneAreSkipped) {
         ++runs;
         throw std::bad_alloc();
     };
-    EXPECT_THROW(parallel_chunks(1000000, 3, nullptr, fail), std::bad_alloc);
+    EXPECT_THROW(parallel_chunks(1000000, {3, nullptr}, fail), std::bad_alloc);
     EXPECT_LE(runs, 3u);  // one by each thread
     EXPECT_THROW(parallel_even(1000000, 1, fail), std::bad_alloc);
     EXPECT_LE(runs, 4u);
@@ -87,7 +89,7 @@ TEST(Parallel, ChunksAboveAFailedOneAreSkipped) {
 TEST(Parallel, EachThreadHasAWorkerOfItsOwn) {
     std::atomic<int> workers{0};
     std::vector<const int*> scratch_of(1000);
-    parallel_workers(scratch_of.size(), 3, nullptr, [&] {
+    parallel_workers(scratch_of.size(), {3, nullptr}, [&] {
         ++workers;
         return [&, scratch = std::vector<int>(1, 0)](std::size_t chunk) mutable {
             EXPECT_EQ(scratch.front()++, 0);  // nobody else is using it
@@ -103,8 +105,8 @@ TEST(Parallel, EachThreadHasAWorkerOfItsOwn) {
 
 TEST(Parallel, AWorkerThatCannotBeMadeFailsTheLoop) {
     const auto make = []() -> std::function<void(std::size_t)> { throw std::bad_alloc(); };
-    EXPECT_THROW(parallel_workers(100, 3, nullptr, make), std::bad_alloc);
-    EXPECT_NO_THROW(parallel_workers(0, 3, nullptr, make));
+    EXPECT_THROW(parallel_workers(100, {3, nullptr}, make), std::bad_alloc);
+    EXPECT_NO_THROW(parallel_workers(0, {3, nullptr}, make));
 }
 
 TEST(Parallel, StopsWhereItIsCancelled) {
@@ -115,9 +117,9 @@ TEST(Parallel, StopsWhereItIsCancelled) {
         if (chunk == 5) progress.cancel();
         if (chunk == 6) throw std::runtime_error("the caller no longer wants to know");
     };
-    EXPECT_THROW(parallel_chunks(1000000, 1, &progress, work), Cancelled);
+    EXPECT_THROW(parallel_chunks(1000000, {1, &progress}, work), Cancelled);
     EXPECT_EQ(runs, 6u);
-    EXPECT_THROW(parallel_chunks(1000000, 3, &progress, work), Cancelled);
+    EXPECT_THROW(parallel_chunks(1000000, {3, &progress}, work), Cancelled);
     EXPECT_EQ(runs, 6u);
     EXPECT_THROW(poll(&progress, 0), Cancelled);
     EXPECT_NO_THROW(poll(&progress, 1));
@@ -126,7 +128,7 @@ TEST(Parallel, StopsWhereItIsCancelled) {
 TEST(Parallel, LongWorkMayAskForItself) {
     Progress progress;
     std::thread canceller([&] { progress.cancel(); });
-    EXPECT_THROW(parallel_chunks(2, 2, &progress,
+    EXPECT_THROW(parallel_chunks(2, {2, &progress},
                                  [&](std::size_t) {
                                      for (;;)
                                          progress.check();
@@ -139,10 +141,10 @@ TEST(Parallel, ChunksAreCountedIntoTheProgress) {
     Progress progress;
     progress.begin(0.2, 0.6, "half of it");
     parallel_chunks(
-        8, 3, &progress, [](std::size_t) {}, 0.5);
+        8, {3, &progress}, [](std::size_t) {}, 0.5);
     EXPECT_DOUBLE_EQ(progress.fraction(), 0.4);
     parallel_ranges(
-        800, 100, 3, &progress, [](std::size_t, std::size_t) {}, 1.0);
+        800, 100, {3, &progress}, [](std::size_t, std::size_t) {}, 1.0);
     EXPECT_DOUBLE_EQ(progress.fraction(), 0.6);
 }
 

@@ -15,7 +15,7 @@ namespace realmodel {
 namespace {
 
 TEST(Progress, StartsAtNothing) {
-    const Progress progress;
+    Progress progress;
     EXPECT_EQ(progress.fraction(), 0.0);
     EXPECT_EQ(progress.text(), "");
     EXPECT_FALSE(progress.cancelled());
@@ -125,7 +125,7 @@ TEST(CountedLoop, TakesTheShareThatItIsGiven) {
 }
 
 TEST(CountedLoop, OutsideOfPartsAndWithoutProgressCountsNothing) {
-    const Progress progress;
+    Progress progress;
     CountedLoop outside(&progress, 3);
     outside.count();
     EXPECT_EQ(progress.fraction(), 0.0);

@@ -52,10 +52,10 @@ Made made_of(const std::vector<OwnedSurface>& surfaces, std::vector<strata::Rule
         input.surfaces.push_back(surface.view());
     input.rules = std::move(rules);
     input.base_elevation = base;
-    Made made{strata::build_stack(input, threads, nullptr), {}, {}};
+    Made made{strata::build_stack(input, {threads, nullptr}), {}, {}};
     made.polygons = sides_of(made.complex);
     const History history{input.surfaces, input.rules, input.base_elevation};
-    made.bedding = bedding_of(made.complex, {&history, 1}, made.polygons, {}, threads);
+    made.bedding = bedding_of(made.complex, {&history, 1}, made.polygons, {}, {threads});
     return made;
 }
 
@@ -161,12 +161,13 @@ TEST(BeddingTest, NumbersOutOfRangeAreRefused) {
     const History history;
     for (const Polygon& bad : {Polygon{-1, false, 0, -1}, Polygon{0, false, 1, -1},
                                Polygon{0, false, 0, 0}, Polygon{9999, false, 0, -1}}) {
-        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&bad, 1}, {}, 1), InputError);
+        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&bad, 1}, {}, {1}), InputError);
     }
     const Polygon good{0, false, 0, -1};
     const std::vector<std::int32_t> few{0}, wrong{0, 0, 1};
     for (const auto& histories : {few, wrong}) {
-        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&good, 1}, histories, 1), InputError);
+        EXPECT_THROW(bedding_of(made.complex, {&history, 1}, {&good, 1}, histories, {1}),
+                     InputError);
     }
 }
 

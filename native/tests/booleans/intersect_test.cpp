@@ -179,7 +179,8 @@ TEST(Intersect, WhatIsInsideOfASolidThatOverlapsItself) {
 
 TEST(Intersect, TheSameForAnyNumberOfThreads) {
     const Mesh a = sphere({0, 0, 0}, 1, 24), b = sphere({0.3, 0.2, 0.1}, 0.9, 31);
-    const Refinement one = intersect(a.view(), b.view(), 1), two = intersect(a.view(), b.view(), 2);
+    const Refinement one = intersect(a.view(), b.view(), {1}),
+                     two = intersect(a.view(), b.view(), {2});
     EXPECT_EQ(one.vertices, two.vertices);
     EXPECT_EQ(one.triangles, two.triangles);
     const Volumes v = volumes(one);

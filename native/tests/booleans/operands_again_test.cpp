@@ -95,8 +95,8 @@ TEST(OperandsAgain, TheSameForAnyNumberOfThreads) {
     const Mesh a = scan(8), b = jittered(a, 1e-6);
     const Refinement first = intersect(a.view(), b.view());
     const Mesh both = mesh_of(first, first.boundary(Operation::kUnion));
-    const Refinement one = intersect(both.view(), a.view(), 1),
-                     five = intersect(both.view(), a.view(), 5);
+    const Refinement one = intersect(both.view(), a.view(), {1}),
+                     five = intersect(both.view(), a.view(), {5});
     EXPECT_EQ(one.vertices, five.vertices);
     EXPECT_EQ(one.triangles, five.triangles);
     EXPECT_EQ(one.is_in, five.is_in);

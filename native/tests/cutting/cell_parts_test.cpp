@@ -18,7 +18,7 @@ public:
         : complex_(std::move(complex)),
           model_(complex_.view()),
           plane_(checked_plane({{0, 0, height}, {0, 0, 1}})),
-          sides_(vertex_sides(model_, plane_, 1, nullptr)),
+          sides_(vertex_sides(model_, plane_, {1, nullptr})),
           cuts_(model_, plane_, cut_edges()) {
         FaceSplitter splitter(model_, sides_, cuts_);
         for (std::size_t f = 0; f < model_.face_count(); ++f) {

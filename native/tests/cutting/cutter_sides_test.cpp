@@ -17,7 +17,7 @@ struct Sided {
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
 };

@@ -25,7 +25,7 @@ struct Wound {
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
 };
 
@@ -101,7 +101,7 @@ TEST(CutterWinding, AnInsideOutCellGoesRoundMinusOnce) {
     wound.cubes.loops[1] = {7, 6, 5, 4};
     wound.cubes.add_face({7, 6, 5, 4}, 0, -1, 0);
     const ComplexView inside_out = wound.cubes.view();
-    SurfaceOverlay overlay(inside_out, wound.surface, 1, nullptr);
+    SurfaceOverlay overlay(inside_out, wound.surface, {1, nullptr});
     const CutterWinding winding(overlay, nullptr);
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (!winding.counts(r) || !winding.touches_model(r)) continue;

@@ -18,7 +18,7 @@ using Parts = std::map<NodeLoop, int>;  // with their sides
 Parts parts_of_front(validation::OwnedComplex prism, const Plane& plane) {
     const ComplexView model = prism.view();
     const auto oriented = checked_plane(plane);
-    const auto sides = vertex_sides(model, oriented, 1, nullptr);
+    const auto sides = vertex_sides(model, oriented, {1, nullptr});
     std::vector<std::array<NodeId, 2>> edges;
     const auto& front = prism.loops[0];
     for (std::size_t i = 0; i < front.size(); ++i) {

@@ -15,7 +15,7 @@ const std::vector<std::int64_t> kOffsets = {0, 5, 8};
 const std::vector<std::int32_t> kCorners = {0, 1, 2, 3, 4, 2, 5, 3};
 
 TEST(FaceTriangles, AFaceWithCornersInOneLineHasTrianglesOfPositiveArea) {
-    const FaceTriangles found = triangulate_faces(kVertices, kOffsets, kCorners, 1, nullptr);
+    const FaceTriangles found = triangulate_faces(kVertices, kOffsets, kCorners, {1, nullptr});
     EXPECT_EQ(found.offsets, (std::vector<std::int64_t>{0, 3, 4}));
     double area = 0;
     for (const auto& t : found.triangles) {
@@ -33,10 +33,10 @@ TEST(FaceTriangles, AFaceWithCornersInOneLineHasTrianglesOfPositiveArea) {
 TEST(FaceTriangles, CornersThatDoNotExistAreRefused) {
     std::vector<std::int32_t> corners = kCorners;
     corners[6] = 6;
-    EXPECT_THROW(triangulate_faces(kVertices, kOffsets, corners, 1, nullptr), InputError);
+    EXPECT_THROW(triangulate_faces(kVertices, kOffsets, corners, {1, nullptr}), InputError);
     const std::vector<std::int64_t> offsets = {0, 5, 9};
-    EXPECT_THROW(triangulate_faces(kVertices, offsets, kCorners, 1, nullptr), InputError);
-    EXPECT_TRUE(triangulate_faces(kVertices, {}, kCorners, 1, nullptr).triangles.empty());
+    EXPECT_THROW(triangulate_faces(kVertices, offsets, kCorners, {1, nullptr}), InputError);
+    EXPECT_TRUE(triangulate_faces(kVertices, {}, kCorners, {1, nullptr}).triangles.empty());
 }
 
 }  // namespace

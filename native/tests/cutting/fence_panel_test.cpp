@@ -16,7 +16,7 @@ using PlanPosition = std::array<double, 2>;
 /// Through two unit cubes, one on the other.
 Section panel(const PlanPosition& start, const PlanPosition& end) {
     auto cubes = validation::two_cubes();
-    return fence_panel(cubes.view(), start, end, 1, nullptr);
+    return fence_panel(cubes.view(), start, end, {1, nullptr});
 }
 
 Position normal(const Section& section, std::size_t polygon) {

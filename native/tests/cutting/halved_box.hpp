@@ -50,8 +50,8 @@ protected:
         pieces_.add(std::array{8, 9, 11, 10}, {-1, {0, 0}, {kBelow, kAbove}, true, {0, 1}});
     }
     Cut rounded() {
-        PartRounding(model_, new_, pieces_, parts_, {false, false}, 1, nullptr).run();
-        return assemble_halves(model_, new_, pieces_, parts_, 1, nullptr);
+        PartRounding(model_, new_, pieces_, parts_, {false, false}, {1, nullptr}).run();
+        return assemble_halves(model_, new_, pieces_, parts_, {1, nullptr});
     }
     static void expect_distinct(const CellComplex& half) {
         const std::set<Position> found(half.vertices.begin(), half.vertices.end());

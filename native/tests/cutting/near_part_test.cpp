@@ -43,7 +43,8 @@ double middle_of(const CellComplex& model, std::int32_t cell) {
 std::vector<std::uint8_t> near_cells(const CellComplex& model, double x, int threads) {
     const CutterSurface surface = upright(x);
     const NearestSide nearest(surface);
-    return cells_near(CellBoxes(model, {&nearest, 1}, threads, nullptr), nearest, threads, nullptr);
+    return cells_near(CellBoxes(model, {&nearest, 1}, {threads, nullptr}), nearest,
+                      {threads, nullptr});
 }
 
 TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
@@ -61,8 +62,8 @@ TEST(NearPart, OnlyCellsThatMayBeNearHaveABox) {
     const CellComplex model = row();
     const CutterSurface surface = upright(1.5), other = upright(3.5);
     const std::array nearest{NearestSide(surface), NearestSide(other)};
-    const CellBoxes of_one(model, {nearest.data(), 1}, 2, nullptr);
-    const CellBoxes of_both(model, nearest, 1, nullptr);
+    const CellBoxes of_one(model, {nearest.data(), 1}, {2, nullptr});
+    const CellBoxes of_both(model, nearest, {1, nullptr});
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         const spatial::Box& box = of_both.boxes[index(c)];
@@ -76,9 +77,9 @@ TEST(NearPart, TheOthersAreOnOneSideEach) {
     const CellComplex model = row();
     const CutterSurface surface = upright(1.5);
     const NearestSide nearest(surface);
-    const CellBoxes cells(model, {&nearest, 1}, 1, nullptr);
+    const CellBoxes cells(model, {&nearest, 1}, {1, nullptr});
     const auto sides =
-        sides_of_far_cells(model, nearest, cells_near(cells, nearest, 1, nullptr), 2, nullptr);
+        sides_of_far_cells(model, nearest, cells_near(cells, nearest, {1, nullptr}), {2, nullptr});
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         EXPECT_EQ(sides[index(c)], x < 1 ? kAbove : x < 2 ? kOn : kBelow);
@@ -89,7 +90,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
     const CellComplex model = row();
     const ComplexView all = model;
     const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near, 2, nullptr);
+    const NearPart part(model, is_near, {2, nullptr});
     const ComplexView near = part.view();
     ASSERT_EQ(near.cell_count(), 2U);
     Pieces pieces;
@@ -131,7 +132,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
 TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
     const CellComplex model = row();
     const auto is_near = near_cells(model, 1.5, 1);
-    const NearPart part(model, is_near, 2, nullptr);
+    const NearPart part(model, is_near, {2, nullptr});
     Pieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;
     const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);

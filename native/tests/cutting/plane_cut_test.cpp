@@ -50,14 +50,14 @@ double area(const Section& s) {
 }
 
 Cut checked_cut(const CellComplex& c, const Plane& plane, bool blocks = false) {
-    const Cut cut = cut_by_plane(c, plane, 1, nullptr);
+    const Cut cut = cut_by_plane(c, plane, {1, nullptr});
     strata::expect_valid(cut.above, blocks);
     strata::expect_valid(cut.below, blocks);
     for (std::size_t b = 0; b < c.volumes.size(); ++b) {
         EXPECT_NEAR(cut.above.volumes[b] + cut.below.volumes[b], c.volumes[b],
                     1e-12 * (1 + c.volumes[b]));
     }
-    EXPECT_NEAR(area(section_by_plane(c, plane, 1, nullptr)), area(cut.section), 1e-12);
+    EXPECT_NEAR(area(section_by_plane(c, plane, {1, nullptr})), area(cut.section), 1e-12);
     return cut;
 }
 
@@ -186,8 +186,8 @@ TEST(PlaneCut, TheSameForAnyNumberOfThreads) {
         {grid(20, 20, 0, 0, 3, 3, wave),
          grid(17, 19, 0, 0, 3, 3, [](double x, double y) { return 0.5 + std::cos(2 * x + y); })});
     const Plane plane{{1.3, 1.1, 0.2}, {1, 2, 0.3}};
-    const Cut one = cut_by_plane(c, plane, 1, nullptr);
-    const Cut four = cut_by_plane(c, plane, 4, nullptr);
+    const Cut one = cut_by_plane(c, plane, {1, nullptr});
+    const Cut four = cut_by_plane(c, plane, {4, nullptr});
     EXPECT_EQ(one.above.vertices, four.above.vertices);
     EXPECT_EQ(one.above.face_vertices, four.above.face_vertices);
     EXPECT_EQ(one.below.face_cells, four.below.face_cells);
@@ -200,7 +200,7 @@ TEST(PlaneCut, FarFromTheOriginTheVolumesAddUp) {
         {grid(7, 7, 4.5e6, 5.3e6, 4.5e6 + 30, 5.3e6 + 30, far),
          grid(5, 6, 4.5e6, 5.3e6, 4.5e6 + 30, 5.3e6 + 30, [](double, double) { return 402.0; })});
     const Plane plane{{4.5e6 + 13, 5.3e6 + 11, 401}, {0.3, 0.7, 0.2}};
-    const Cut cut = cut_by_plane(c, plane, 1, nullptr);
+    const Cut cut = cut_by_plane(c, plane, {1, nullptr});
     strata::expect_valid(cut.above);
     strata::expect_valid(cut.below);
     EXPECT_NEAR(sum(cut.above.volumes) + sum(cut.below.volumes), sum(c.volumes),
@@ -227,7 +227,7 @@ TEST(PlaneCut, CornersOfCapsLieInThePlaneHoweverLongTheEdges) {
 
 TEST(PlaneCut, FencePanelEndsWhereItIsToldTo) {
     const CellComplex c = level_layers({0, 1, 3}, 3);
-    const Section s = fence_panel(c, {0.5, 1.25}, {1.75, 1.25}, 1, nullptr);
+    const Section s = fence_panel(c, {0.5, 1.25}, {1.75, 1.25}, {1, nullptr});
     EXPECT_NEAR(area(s), 1.25 * 3, 1e-14);
     for (const auto& v : s.vertices) {
         EXPECT_DOUBLE_EQ(v[1], 1.25);
@@ -240,7 +240,7 @@ TEST(PlaneCut, RefusesPlanesAndModelsThatAreNone) {
     const CellComplex c = level_layers({0, 1});
     const auto kind = [&](const ComplexView& model, const Plane& plane) -> std::string {
         try {
-            cut_by_plane(model, plane, 1, nullptr);
+            cut_by_plane(model, plane, {1, nullptr});
         } catch (const InputError& error) {
             return error.kind;
         }
@@ -260,8 +260,8 @@ TEST(PlaneCut, Cancels) {
     const CellComplex c = level_layers({0, 1});
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(cut_by_plane(c, {{0, 0, 0.5}, {0, 0, 1}}, 1, &progress), Cancelled);
-    EXPECT_THROW(section_by_plane(c, {{0, 0, 0.5}, {0, 0, 1}}, 1, &progress), Cancelled);
+    EXPECT_THROW(cut_by_plane(c, {{0, 0, 0.5}, {0, 0, 1}}, {1, &progress}), Cancelled);
+    EXPECT_THROW(section_by_plane(c, {{0, 0, 0.5}, {0, 0, 1}}, {1, &progress}), Cancelled);
 }
 
 }  // namespace

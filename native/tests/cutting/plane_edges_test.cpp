@@ -30,7 +30,7 @@ TEST(PlaneEdges, APlaneNeedsAPointAndADirection) {
 TEST(PlaneEdges, VerticesLieOnThePlaneOrBesideItByAsLittleAsADouble) {
     auto cubes = validation::two_cubes();  // heights 0, 1 and 2
     const auto middle_side = [&](const Plane& plane) {
-        const auto sides = vertex_sides(cubes.view(), checked_plane(plane), 1, nullptr);
+        const auto sides = vertex_sides(cubes.view(), checked_plane(plane), {1, nullptr});
         EXPECT_EQ(sides.size(), 12U);
         EXPECT_EQ(sides[0], -sides[11]);
         return sides[4];

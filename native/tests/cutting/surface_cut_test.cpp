@@ -43,12 +43,12 @@ Cut checked(const CellComplex& c, const Cut& cut) {
 }
 
 Cut checked_cut(const CellComplex& c, const OwnedSurface& s) {
-    return checked(c, cut_by_surface(c, view(s), 1, nullptr));
+    return checked(c, cut_by_surface(c, view(s), {1, nullptr}));
 }
 
 std::string refusal(const CellComplex& c, const OwnedSurface& s) {
     try {
-        cut_by_surface(c, view(s), 1, nullptr);
+        cut_by_surface(c, view(s), {1, nullptr});
     } catch (const InputError& error) {
         return error.kind;
     }
@@ -116,7 +116,7 @@ TEST(SurfaceCut, AlongASurfaceOfTheModelNoCellIsCut) {
 TEST(SurfaceCut, AClosedSurfaceWithinACellLeavesAHollow) {
     const CellComplex c = strata::merge_columns(level_layers({0, 3}, 3, 1));
     const OwnedSurface s = box({1, 1, 1}, {2, 2, 2});
-    const Cut cut = checked(c, cut_by_surface(c, view(s), 1, nullptr));
+    const Cut cut = checked(c, cut_by_surface(c, view(s), {1, nullptr}));
     EXPECT_EQ(cut.below.cell_block.size(), 1u);
     EXPECT_EQ(cut.above.cell_block.size(), 1u);
     EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 1.0);
@@ -200,7 +200,7 @@ TEST(SurfaceCut, AModelWhoseFacesCrossByRoundingIsCut) {
     }
     for (const double z : {0.25, 0.5, 0.75, 1.0}) {
         const Cut cut = cut_by_surface(
-            c, view(grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; })), 1, nullptr);
+            c, view(grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; })), {1, nullptr});
         strata::expect_valid(cut.above, true);
         strata::expect_valid(cut.below, true);
     }
@@ -217,8 +217,8 @@ TEST(SurfaceCut, TheSameForAnyNumberOfThreads) {
     const OwnedSurface cutter = grid(20, 20, -0.1, -0.1, 1.2, 1.2, wavy(0.25));
     const OwnedSurface shaft = box({0.25, 0.25, -2}, {0.5, 0.75, 2});
     for (const OwnedSurface& s : {cutter, shaft}) {
-        const Cut one = cut_by_surface(c, view(s), 1, nullptr);
-        const Cut four = cut_by_surface(c, view(s), 4, nullptr);
+        const Cut one = cut_by_surface(c, view(s), {1, nullptr});
+        const Cut four = cut_by_surface(c, view(s), {4, nullptr});
         for (const auto half : {&Cut::below, &Cut::above}) {
             EXPECT_TRUE(std::ranges::equal((one.*half).vertices, (four.*half).vertices));
             EXPECT_TRUE(std::ranges::equal((one.*half).face_vertices, (four.*half).face_vertices));
@@ -239,11 +239,11 @@ TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
 
 TEST(SurfaceCut, BlocksOfItsOwnAndOfAnotherModel) {
     const CellComplex c = level_layers({0, 1, 3}, 2, 3);
-    const Cut own = checked(c, cut_by_block(c, c, 1, 1, nullptr));
+    const Cut own = checked(c, cut_by_block(c, c, 1, {1, nullptr}));
     EXPECT_EQ(own.below.volumes, (std::vector<double>{0, 4, 0}));
     EXPECT_EQ(own.below.cell_block.size() + own.above.cell_block.size(), c.cell_block.size());
     const CellComplex other = level_layers({0.5, 2}, 1, 2);
-    const Cut cut = checked(c, cut_by_block(c, other, 1, 1, nullptr));
+    const Cut cut = checked(c, cut_by_block(c, other, 1, {1, nullptr}));
     EXPECT_DOUBLE_EQ(cut.below.volumes[1], 0.5);
     EXPECT_DOUBLE_EQ(cut.below.volumes[2], 1.0);
 }
@@ -285,7 +285,7 @@ TEST(SurfaceCut, ALargeModelGivesTheSameHalvesOnAnyNumberOfThreads) {
     });
     std::optional<Cut> first;
     for (const int threads : {1, 2, 5}) {
-        const Cut cut = cut_by_surface(c, view(sheet), threads, nullptr);
+        const Cut cut = cut_by_surface(c, view(sheet), {threads, nullptr});
         for (const CellComplex* half : {&cut.below, &cut.above}) {
             // vertices are numbered in the order in which they come up
             std::int32_t next = 0;

@@ -37,7 +37,7 @@ struct Overlaid {
     validation::OwnedComplex cubes = validation::two_cubes();
     ComplexView model = cubes.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
 };
 
 TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
@@ -65,7 +65,7 @@ TEST(SurfaceOverlay, WhatIsBesideTheSurfaceStaysInOnePiece) {
     auto owned = prism({{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}});
     const ComplexView model = owned.view();
     const CutterSurface surface = level_cutter(1.5);
-    SurfaceOverlay overlay(model, surface, 1, nullptr);
+    SurfaceOverlay overlay(model, surface, {1, nullptr});
     std::map<std::size_t, std::size_t> regions, polygons;
     std::map<std::array<NodeId, 2>, int> sum;
     const auto add = [&sum](std::span<const NodeId> loop) {

@@ -38,7 +38,7 @@ struct Parted {
     validation::OwnedComplex complex;
     ComplexView model = complex.view();
     CutterSurface surface;
-    SurfaceOverlay overlay{model, surface, 1, nullptr};
+    SurfaceOverlay overlay{model, surface, {1, nullptr}};
     CutterWinding winding{overlay, nullptr};
     CutterSides sides{overlay, winding, nullptr};
     SurfaceParts parts{overlay, winding, sides, nullptr};
@@ -112,7 +112,7 @@ TEST(SurfacePieces, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
     auto u = u_shape();
     const ComplexView model = u.view();
     const CutterSurface surface = level_cutter(9);
-    SurfaceOverlay overlay(model, surface, 1, nullptr);
+    SurfaceOverlay overlay(model, surface, {1, nullptr});
     const std::vector<NodeLoop> front{loop_of({0, 1, 2, 3, 4, 5, 6, 7})};
     arrangement::LoopTable<NodeId> loops;
     loops.add_loop(front[0]);

@@ -35,7 +35,7 @@ StackCase crossing_stack() {
 
 CellComplex built() {
     const StackCase stack = crossing_stack();
-    return strata::build_rock_masses(views_of(stack), 1, nullptr);
+    return strata::build_rock_masses(views_of(stack), {1, nullptr});
 }
 
 std::vector<std::string> kinds_of(const CellComplex& complex) {

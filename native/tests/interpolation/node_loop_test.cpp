@@ -17,7 +17,7 @@ TEST(NodeLoop, EachNodeOnceAndTheProgressToItsEnd) {
     for (const int threads : {1, 3}) {
         Progress progress;
         std::vector<std::atomic<int>> seen(1001);
-        const NodeLoop loop{seen.size(), 10, threads, &progress, "nodes", 0.25, 0.75};
+        const NodeLoop loop{seen.size(), 10, {threads, &progress}, "nodes", 0.25, 0.75};
         loop.over_nodes([] { return 0; }, [&](int, std::size_t i) { ++seen[i]; });
         for (const auto& times : seen)
             EXPECT_EQ(times, 1);

@@ -22,11 +22,11 @@ TEST(SurfaceHeights, EveryVertexIsFoundAtUtmCoordinates) {
         triangles.push_back({i, i + 1, i + n});
         triangles.push_back({i + 1, i + n + 1, i + n});
     }
-    const std::vector<double> z = heights_on_surface(vertices, triangles, positions, 0);
+    const std::vector<double> z = heights_on_surface(vertices, triangles, positions, {0});
     for (std::size_t i = 0; i < z.size(); ++i)
         EXPECT_NEAR(z[i], vertices[i][2], 1e-6);
-    EXPECT_TRUE(std::isnan(heights_on_surface(vertices, triangles, Nodes{{0, 0}}, 1)[0]));
-    EXPECT_TRUE(std::isnan(heights_on_surface(vertices, {}, Nodes{{0, 0}}, 1)[0]));
+    EXPECT_TRUE(std::isnan(heights_on_surface(vertices, triangles, Nodes{{0, 0}}, {1})[0]));
+    EXPECT_TRUE(std::isnan(heights_on_surface(vertices, {}, Nodes{{0, 0}}, {1})[0]));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ double volume_of(const Shell& shell) {
 TEST(Shells, BlocksHaveTheirVolumesFarFromTheOriginToo) {
     for (const double x0 : {0.0, 4.5e6}) {
         const auto c = landscape(x0);
-        const auto shells = block_shells(c, {x0, 0, 0}, 1);
+        const auto shells = block_shells(c, {x0, 0, 0}, {1});
         ASSERT_EQ(shells.size(), c.volumes.size());
         for (std::size_t b = 0; b < shells.size(); ++b)
             EXPECT_NEAR(volume_of(shells[b]), c.volumes[b], 1e-5 * c.volumes[b]);
@@ -69,7 +69,7 @@ TEST(Shells, BlocksHaveTheirVolumesFarFromTheOriginToo) {
 TEST(Shells, CellsStandByThemselvesAndShrink) {
     const auto c = landscape(0);
     for (const double shrink : {1.0, 0.5}) {
-        const auto shells = cell_shells(c, shrink, {0, 0, 0}, 1);
+        const auto shells = cell_shells(c, shrink, {0, 0, 0}, {1});
         for (std::size_t b = 0; b < shells.size(); ++b) {
             EXPECT_NEAR(volume_of(shells[b]), std::pow(shrink, 3) * c.volumes[b],
                         1e-5 * c.volumes[b]);
@@ -94,8 +94,8 @@ TEST(Shells, CellsStandByThemselvesAndShrink) {
 
 TEST(Shells, AreTheSameForAnyNumberOfThreads) {
     const auto c = landscape(0);
-    const auto one = cell_shells(c, 0.9, {1, 2, 3}, 1);
-    const auto three = cell_shells(c, 0.9, {1, 2, 3}, 3);
+    const auto one = cell_shells(c, 0.9, {1, 2, 3}, {1});
+    const auto three = cell_shells(c, 0.9, {1, 2, 3}, {3});
     for (std::size_t b = 0; b < one.size(); ++b) {
         EXPECT_EQ(one[b].coordinates, three[b].coordinates);
         EXPECT_EQ(one[b].corners, three[b].corners);
@@ -107,7 +107,7 @@ TEST(Shells, ABlockWithoutCellsIsEmpty) {
     const auto c = landscape(0);
     ComplexView view = c;
     ++view.blocks;
-    const auto shells = block_shells(view, {0, 0, 0}, 2);
+    const auto shells = block_shells(view, {0, 0, 0}, {2});
     EXPECT_TRUE(shells.back().faces.empty());
     EXPECT_EQ(shells.back().offsets, std::vector<std::int32_t>{0});
 }
@@ -134,7 +134,7 @@ TEST(Shells, RefuseNumbersOutOfRange) {
     const auto refuses = [](const auto& spoil) {
         auto c = landscape(0);
         spoil(c);
-        EXPECT_THROW(block_shells(c, {0, 0, 0}, 1), InputError);
+        EXPECT_THROW(block_shells(c, {0, 0, 0}, {1}), InputError);
     };
     refuses([](auto& c) { c.face_vertices[3] = -1; });
     refuses([](auto& c) { c.face_cells[3][1] = 1 << 20; });

@@ -47,7 +47,7 @@ struct Tower {
         surface.push_back(on);
     }
     CleanedCells cleaned(double tolerance, const std::vector<std::int32_t>& kinds = {}) const {
-        return clean_cells(view, kinds, tolerance, 1, nullptr);
+        return clean_cells(view, kinds, tolerance, {1, nullptr});
     }
 };
 

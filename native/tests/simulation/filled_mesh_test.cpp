@@ -60,7 +60,7 @@ struct DividedBox {
                       const std::vector<std::int32_t>& regions = {0, 1},
                       const std::vector<meshing::LocalLength>& sizes = {}) const {
         return filled_mesh(view, regions, std::vector<std::uint8_t>{1, 0, 0}, edge_length,
-                           tolerance, sizes, 1, nullptr);
+                           tolerance, sizes, {1, nullptr});
     }
 };
 

@@ -32,7 +32,7 @@ struct Model {
         strata::StackInput input;
         for (const Plane& plane : planes)
             input.surfaces.push_back(plane.view());
-        complex = strata::build_stack(input, 1, nullptr);
+        complex = strata::build_stack(input, {1, nullptr});
         for (std::int32_t& block : complex.cell_block)
             --block;
         block_rock.assign(planes.size() - 1, 0);
@@ -40,7 +40,7 @@ struct Model {
         view.blocks = block_rock.size();
     }
     PlanLines lines(double edge_length) const {
-        return plan_lines(view, block_rock, edge_length, {}, 1, nullptr);
+        return plan_lines(view, block_rock, edge_length, {}, {1, nullptr});
     }
     LayeredMesh mesh(double edge_length, const Layering& layering) const {
         const PlanLines found = lines(edge_length);
@@ -52,7 +52,7 @@ struct Model {
                                                      found.points[static_cast<std::size_t>(s.to)]});
         }
         return layered_mesh(view, block_rock, found, meshing::mesh_region(found.rings, request),
-                            layering, 1, nullptr);
+                            layering, {1, nullptr});
     }
 };
 
@@ -116,7 +116,7 @@ TEST(LayeredMeshTest, AModelSmallerThanTheEdgeLengthIsRefused) {
 TEST(LayeredMeshTest, BlocksOfOneRockMassStandTogether) {
     const Model model({{0, 0}, {4, 4}, {6, 6}, {8, 8}});
     const std::vector<std::int32_t> mixed{0, 1, 0};
-    EXPECT_THROW(plan_lines(model.view, mixed, 1, {}, 1, nullptr), InputError);
+    EXPECT_THROW(plan_lines(model.view, mixed, 1, {}, {1, nullptr}), InputError);
 }
 
 TEST(LayeredMeshTest, ThinLayersEndAtSteepWalls) {

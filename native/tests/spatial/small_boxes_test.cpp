@@ -34,7 +34,7 @@ TEST(SmallBoxes, AllThatMeetABoxAreFoundOnceOrLeftOut) {
             std::iota(chosen.begin(), chosen.end(), 0);
             for (const std::size_t cells : {0, 1, 200, 3000}) {
                 SmallBoxes small;
-                const auto others = small.fill(boxes, chosen, cells, 2, nullptr);
+                const auto others = small.fill(boxes, chosen, cells, {2, nullptr});
                 const auto is_other = [&](std::int32_t i) {
                     return std::binary_search(others.begin(), others.end(), i);
                 };
@@ -62,7 +62,7 @@ TEST(SmallBoxes, FewOfThoseFarAwayAreFound) {
     std::vector<std::int32_t> chosen(boxes.size());
     std::iota(chosen.begin(), chosen.end(), 0);
     SmallBoxes small;
-    small.fill(boxes, chosen, boxes.size() / 2, 1, nullptr);
+    small.fill(boxes, chosen, boxes.size() / 2, {1, nullptr});
     for (const PlanBox& box : draw_boxes(100, false, 0, random)) {
         Array<std::int32_t> found;
         small.append(box, found);

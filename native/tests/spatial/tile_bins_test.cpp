@@ -45,7 +45,7 @@ TEST(TileBins, FindsEverythingThatMeetsTheSpan) {
         const TileSpan wanted{5, 25, 2, 17};
         std::vector<std::uint8_t> is_wanted(tiles.size(), 0);
         tiles.for_each(wanted, [&](std::size_t tile) { is_wanted[tile] = 1; });
-        const TileBins bins(tiles, is_wanted, things.size(), span_of, 3, nullptr);
+        const TileBins bins(tiles, is_wanted, things.size(), span_of, {3, nullptr});
         for (int query = 0; query < 100; ++query) {
             TileSpan span = random.next(4);
             if (!meet(span, wanted)) continue;
@@ -68,9 +68,8 @@ TEST(TileBins, FindsEverythingThatMeetsTheSpan) {
 TEST(TileBins, StopsWhereTheTestFails) {
     const PlanTiles tiles({0, 0, 30, 20}, 600);
     const std::vector<TileSpan> things{{0, 1, 0, 1}, {1, 1, 1, 1}, {0, 20, 0, 15}};
-    const TileBins bins(
-        tiles, std::vector<std::uint8_t>(tiles.size(), 1), things.size(),
-        [&](std::size_t i) { return &things[i]; }, 1, nullptr);
+    const TileBins bins(tiles, std::vector<std::uint8_t>(tiles.size(), 1), things.size(),
+                        [&](std::size_t i) { return &things[i]; }, {1, nullptr});
     for (const std::int32_t last : {0, 1, 2}) {
         bool asked_again = false, failed = false;
         EXPECT_FALSE(bins.all({1, 1, 1, 1}, [&](std::int32_t i) {

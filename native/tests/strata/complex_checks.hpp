@@ -75,7 +75,7 @@ inline CellComplex build(const std::vector<OwnedSurface>& surfaces,
     for (const OwnedSurface& s : surfaces)
         input.surfaces.push_back(s.view());
     input.base_elevation = base;
-    return build_stack(input, threads, nullptr);
+    return build_stack(input, {threads, nullptr});
 }
 
 /// The validity that docs/dev/geometry.md promises: cells closed, vertices distinct and in use, no

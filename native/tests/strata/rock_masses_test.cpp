@@ -24,7 +24,7 @@ CellComplex build_rocks(const std::vector<OwnedRock>& rocks, CellKind cells = Ce
         one.base_elevation = rock.base;
         input.push_back(one);
     }
-    return build_rock_masses(input, 2, nullptr, cells);
+    return build_rock_masses(input, {2, nullptr}, cells);
 }
 
 /// Area of the vertical faces between cells of two rock masses, the second from surface `second`

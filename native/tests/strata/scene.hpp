@@ -18,18 +18,18 @@ struct Scene {
         for (const OwnedSurface& s : surfaces)
             input.surfaces.push_back(s.view());
         std::vector<Warning> warnings;
-        site = enter_site({&input, 1}, {}, warnings, 1, nullptr);
+        site = enter_site({&input, 1}, {}, warnings, {1, nullptr});
     }
     exact::PlanArrangement& geometry() { return site->geometry; }
     SurfaceTiling tiling(std::size_t k) {
         EnteredRock& rock = site->rocks[0];
         return make_surface_tiling(geometry(), rock.surfaces[k].triangles, rock.plans[k], {},
-                                   static_cast<int>(k), 1, nullptr);
+                                   static_cast<int>(k), {1, nullptr});
     }
     BlockTiling block_tiling(std::size_t k, TriangleLinks& links) {
         EnteredRock& rock = site->rocks[0];
         return make_block_tiling(geometry(), rock.surfaces[k].triangles, std::move(rock.plans[k]),
-                                 static_cast<std::int32_t>(k), links, 1, nullptr);
+                                 static_cast<std::int32_t>(k), links, {1, nullptr});
     }
 };
 

@@ -177,7 +177,7 @@ TEST(Stack, TheRegionClips) {
         4, 4, 0, 0, 1, 1, [](double, double y) { return 2 + y; }, true);
     input.surfaces = {lower.view(), upper.view()};
     input.region = RegionView{corners, triangles};
-    const auto c = build_stack(input, 1, nullptr);
+    const auto c = build_stack(input, {1, nullptr});
     expect_valid(c);
     EXPECT_DOUBLE_EQ(c.volumes[1], 0.25 * 2.0);
     for (const auto& v : c.vertices) {
@@ -364,7 +364,7 @@ TEST(Stack, ACancelledBuildThrows) {
     StackInput input;
     const auto s = flat(0), t = flat(1);
     input.surfaces = {s.view(), t.view()};
-    EXPECT_THROW(build_stack(input, 1, &progress), Cancelled);
+    EXPECT_THROW(build_stack(input, {1, &progress}), Cancelled);
 }
 
 TEST(Stack, VolumesOfThinLayersHighUp) {
@@ -379,7 +379,7 @@ TEST(Stack, VolumesOfThinLayersHighUp) {
         StackInput input;
         input.surfaces = {low.view(), high.view()};
         input.rules.assign(2, Rule::kErosional);
-        const auto c = build_stack(input, 1, nullptr, kind);
+        const auto c = build_stack(input, {1, nullptr}, kind);
         EXPECT_NEAR(c.volumes[1], 64 * thin, 64 * thin * 1e-13);
     }
 }
@@ -394,7 +394,7 @@ TEST(Stack, TrianglesBesideABorderStayWholeInBlocks) {
         StackInput input;
         input.surfaces = {low.view(), top.view()};
         input.rules.assign(2, Rule::kErosional);
-        const auto c = build_stack(input, 1, nullptr, CellKind::kBlocks);
+        const auto c = build_stack(input, {1, nullptr}, CellKind::kBlocks);
         EXPECT_EQ(c.cell_block.size(), 1u);
         return std::count_if(c.face_surface.begin(), c.face_surface.end(),
                              [](std::int32_t s) { return s >= 0; });
@@ -422,7 +422,7 @@ TEST(Stack, WallsEndWhereACellTouchesItself) {
     StackInput input;
     input.surfaces = {pierced.view()};
     input.base_elevation = -1.0;
-    const auto blocks = build_stack(input, 1, nullptr, CellKind::kBlocks);
+    const auto blocks = build_stack(input, {1, nullptr}, CellKind::kBlocks);
     expect_valid(blocks, true);
     EXPECT_EQ(blocks.cell_block.size(), 1u);
     std::size_t along = 0;  // walls that have the vertical edge there
@@ -454,7 +454,7 @@ TEST(Stack, BlocksAreMergedColumns) {
     for (const OwnedSurface& s : surfaces)
         input.surfaces.push_back(s.view());
     input.base_elevation = -1.0;
-    const auto blocks = build_stack(input, 1, nullptr, CellKind::kBlocks);
+    const auto blocks = build_stack(input, {1, nullptr}, CellKind::kBlocks);
     expect_valid(blocks, true);
     EXPECT_EQ(cells_of_blocks(blocks), cells_of_blocks(merged));
     for (std::size_t k = 0; k < 4; ++k)
@@ -467,7 +467,7 @@ TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
     const std::vector<std::int32_t> triangle{0, 1, 2};
     const auto refusal = [](const StackInput& input) -> std::string {
         try {
-            build_stack(input, 1, nullptr);
+            build_stack(input, {1, nullptr});
         } catch (const InputError& e) {
             EXPECT_EQ(e.kind, "not_finite");
             return e.what();
@@ -554,7 +554,7 @@ TEST(Stack, WhatIsLocalFollowsFromTheTrianglesNearIt) {
             input.surfaces.push_back(s.view());
         input.base_elevation = -3;
         const CellComplex complex =
-            build_rock_masses({&input, 1}, 2, nullptr, CellKind::kColumns, nullptr, is_local);
+            build_rock_masses({&input, 1}, {2, nullptr}, CellKind::kColumns, nullptr, is_local);
         expect_valid(complex, false);
         return complex;
     };

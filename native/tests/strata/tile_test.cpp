@@ -38,12 +38,12 @@ TEST_P(TileOf, FourTilesHaveTheVolumesOfTheWhole) {
     const Input owned;
     for (const bool has_region : {true, false}) {
         const StackInput input = owned.view(has_region);
-        const CellComplex whole = build_stack(input, 1, nullptr, GetParam());
+        const CellComplex whole = build_stack(input, {1, nullptr}, GetParam());
         std::vector<double> sum(whole.volumes.size());
         for (const auto& [x0, x1] : {std::pair{-2.0, 2.3}, std::pair{2.3, 8.0}}) {
             for (const auto& [y0, y1] : {std::pair{-2.0, 1.7}, std::pair{1.7, 8.0}}) {
                 const CellComplex tile =
-                    build_tile({&input, 1}, {x0, y0, x1, y1}, 2, nullptr, GetParam()).complex;
+                    build_tile({&input, 1}, {x0, y0, x1, y1}, {2, nullptr}, GetParam()).complex;
                 expect_valid(tile, GetParam() == CellKind::kBlocks);
                 for (const auto& v : tile.vertices) {
                     EXPECT_TRUE(v[0] >= x0 && v[0] <= x1 && v[1] >= y0 && v[1] <= y1);
@@ -68,10 +68,10 @@ TEST(ColumnsOfTiles, DoNotCompoundAlongTheirBorder) {
     for (const OwnedSurface& s : surfaces)
         input.surfaces.push_back(s.view());
     input.base_elevation = -10;
-    const std::size_t whole = build_stack(input, 1, nullptr).cell_block.size();
+    const std::size_t whole = build_stack(input, {1, nullptr}).cell_block.size();
     std::size_t in_tiles = 0;
     for (const Window& window : {Window{-2, -2, 2.3, 8}, Window{2.3, -2, 8, 8}}) {
-        const CellComplex tile = build_tile({&input, 1}, window, 1, nullptr).complex;
+        const CellComplex tile = build_tile({&input, 1}, window, {1, nullptr}).complex;
         expect_valid(tile, false);
         in_tiles += tile.cell_block.size();
     }
@@ -82,7 +82,8 @@ TEST(ColumnsOfTiles, DoNotCompoundAlongTheirBorder) {
 TEST_P(TileOf, AWindowBesideTheRegionIsEmpty) {
     const Input owned;
     const StackInput input = owned.view(true);
-    const CellComplex tile = build_tile({&input, 1}, {5, 5, 7, 7}, 1, nullptr, GetParam()).complex;
+    const CellComplex tile =
+        build_tile({&input, 1}, {5, 5, 7, 7}, {1, nullptr}, GetParam()).complex;
     EXPECT_TRUE(tile.cell_block.empty());
     EXPECT_EQ(tile.volumes, std::vector<double>(3, 0.0));
 }
@@ -104,8 +105,8 @@ TEST_P(TileOf, NeighborsHaveTheSameExactPlacesOnTheirLine) {
     const Input owned;
     for (const bool has_region : {true, false}) {
         const StackInput input = owned.view(has_region);
-        const Tile west = build_tile({&input, 1}, {-2, -2, 2.3, 8}, 1, nullptr, GetParam()),
-                   east = build_tile({&input, 1}, {2.3, -2, 8, 8}, 1, nullptr, GetParam());
+        const Tile west = build_tile({&input, 1}, {-2, -2, 2.3, 8}, {1, nullptr}, GetParam()),
+                   east = build_tile({&input, 1}, {2.3, -2, 8, 8}, {1, nullptr}, GetParam());
         const auto one = on_line(west), other = on_line(east);
         std::size_t both = 0;
         for (const auto& [exact, at] : one) {

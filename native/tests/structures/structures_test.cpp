@@ -70,9 +70,9 @@ std::size_t faces_on(const CellComplex& c, std::int32_t surface) {
 
 Joined joined(std::span<const PartModel> models, std::span<const Structure> structures,
               std::span<const std::uint8_t> acts) {
-    Joined one = join_models(models, structures, acts, 1, nullptr);
+    Joined one = join_models(models, structures, acts, {1, nullptr});
     strata::expect_valid(one.complex, false);
-    const Joined two = join_models(models, structures, acts, 3, nullptr);
+    const Joined two = join_models(models, structures, acts, {3, nullptr});
     EXPECT_TRUE(std::ranges::equal(one.complex.vertices, two.complex.vertices));
     EXPECT_TRUE(std::ranges::equal(one.complex.face_vertices, two.complex.face_vertices));
     EXPECT_TRUE(std::ranges::equal(one.complex.face_cells, two.complex.face_cells));
@@ -93,7 +93,7 @@ const std::vector<std::uint8_t> kAllAct(64, 1);
 TEST(PartsOf, AFaultLeavesTwoBesideIt) {
     const CellComplex rock = layers({0, 3});
     const OwnedSurface upright = sheet(1, 0);
-    const auto parts = parts_of(with(rock, 1), std::array{fault(upright)}, 1, nullptr);
+    const auto parts = parts_of(with(rock, 1), std::array{fault(upright)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     // the box of either part ends at the fault
@@ -110,7 +110,7 @@ TEST(PartsOf, FaultsThatCrossLeaveFour) {
         other.vertex(x, 2 + z / 8, z);
     other.triangle(0, 1, 2);
     other.triangle(0, 2, 3);
-    const auto parts = parts_of(with(rock, 2), std::array{fault(one), fault(other)}, 1, nullptr);
+    const auto parts = parts_of(with(rock, 2), std::array{fault(one), fault(other)}, {1, nullptr});
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}));
 }
 
@@ -125,7 +125,7 @@ TEST(PartsOf, ABranchEndsAtTheOtherFault) {
     branch.triangle(0, 2, 3);
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
     ASSERT_EQ(parts.size(), 3U);
     EXPECT_EQ(std::ranges::count_if(parts, [](const Part& p) { return p.sides[1] == 0; }), 1);
     const auto whole = std::ranges::find_if(parts, [](const Part& p) { return p.sides[1] == 0; });
@@ -138,7 +138,7 @@ TEST(PartsOf, OneThatMissesTheFaultThatItIsToEndAtIsRefused) {
     Structure ends = fault(far);
     ends.ends_at = {0};
     EXPECT_EQ(refusal([&] {
-                  parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+                  parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
               }),
               "does_not_meet");
 }
@@ -157,16 +157,16 @@ TEST(PartsOf, ABranchMayMeetItsFaultAwayFromTheRock) {
     }
     Structure ends = fault(branch);
     ends.ends_at = {0};
-    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, {1, nullptr});
     const std::int8_t side =
-        sides_of_points(std::array{fault(trunk)}, std::array{0.0, 0.0, 0.0}, 1, nullptr)[0];
+        sides_of_points(std::array{fault(trunk)}, std::array{0.0, 0.0, 0.0}, {1, nullptr})[0];
     EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{side, -1}, {side, 1}}));
 }
 
 TEST(PartsOf, ABodyHasAnInside) {
     const CellComplex rock = layers({0, 3});
     const OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
-    const auto parts = parts_of(with(rock, 1), std::array{body(chest)}, 1, nullptr);
+    const auto parts = parts_of(with(rock, 1), std::array{body(chest)}, {1, nullptr});
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].sides, Sides{-1});
     EXPECT_EQ(parts[0].low, (std::array<double, 3>{1, 1, 1}));
@@ -178,7 +178,7 @@ TEST(PartsOf, ABodyThatIsNotClosedIsRefusedWithThePlace) {
     OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
     chest.triangles.resize(chest.triangles.size() - 3);
     try {
-        parts_of(with(rock, 1), std::array{body(chest)}, 1, nullptr);
+        parts_of(with(rock, 1), std::array{body(chest)}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "not_closed");
@@ -193,7 +193,7 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
     const OwnedSurface upright = sheet(1, 0);
     const std::array structures{fault(upright)};
     const std::int8_t east_side =
-        sides_of_points(std::span(structures).first(1), std::array{3.0, 2.0, 1.0}, 1, nullptr)[0];
+        sides_of_points(std::span(structures).first(1), std::array{3.0, 2.0, 1.0}, {1, nullptr})[0];
     const auto west_side = static_cast<std::int8_t>(-east_side);
     const Joined j = joined(
         std::array<PartModel, 2>{{{with(west, 1), {west_side}}, {with(east, 1), {east_side}}}},
@@ -227,8 +227,8 @@ TEST(JoinModels, StructuresMayBeContinuedBefore) {
     dying.dies_out = true;
     const std::array structures{dying, fault(other)};
     const auto side = [&](std::size_t s, double x) {
-        return sides_of_points(std::span(structures).subspan(s, 1), std::array{x, 2.0, 1.0}, 1,
-                               nullptr)[0];
+        return sides_of_points(std::span(structures).subspan(s, 1), std::array{x, 2.0, 1.0},
+                               {1, nullptr})[0];
     };
     std::vector<PartModel> models;
     for (const double x : {0.5, 2.0, 3.8})
@@ -238,7 +238,7 @@ TEST(JoinModels, StructuresMayBeContinuedBefore) {
     ASSERT_EQ(continued.size(), 2U);
     EXPECT_GT(std::ranges::count(continued[0].is_continuation, 1), 0);
     EXPECT_EQ(std::ranges::count(continued[1].is_continuation, 1), 0);  // it divides the rock
-    const Joined there = join_models(models, structures, kAllAct, 1, nullptr, continued);
+    const Joined there = join_models(models, structures, kAllAct, {1, nullptr}, continued);
     EXPECT_TRUE(std::ranges::equal(here.complex.vertices, there.complex.vertices));
     EXPECT_TRUE(std::ranges::equal(here.complex.face_vertices, there.complex.face_vertices));
     EXPECT_TRUE(std::ranges::equal(here.complex.face_cells, there.complex.face_cells));
@@ -260,7 +260,7 @@ TEST(ContinuedStructures, ABranchHasTheSideOnWhichItRemains) {
     const auto continued = continued_structures(structures, {{{0, 0, 0}, {4, 4, 2}}});
     EXPECT_TRUE(continued[0].kept.empty());
     const std::int8_t west =
-        sides_of_points(std::span(structures).first(1), std::array{0.5, 2.0, 1.0}, 1, nullptr)[0];
+        sides_of_points(std::span(structures).first(1), std::array{0.5, 2.0, 1.0}, {1, nullptr})[0];
     EXPECT_EQ(continued[1].kept, (std::vector<std::int8_t>{west}));
 }
 
@@ -286,7 +286,7 @@ TEST(JoinModels, AReverseFaultHasASurfaceTwiceAtOnePlace) {
     const OwnedSurface inclined = sheet(0.5, 1);  // 45 degrees
     const std::array structures{fault(inclined)};
     const std::int8_t above =
-        sides_of_points(std::span(structures).first(1), std::array{0.0, 2.0, 2.0}, 1, nullptr)[0];
+        sides_of_points(std::span(structures).first(1), std::array{0.0, 2.0, 2.0}, {1, nullptr})[0];
     EXPECT_EQ(above, 1);
     const Joined j = joined(std::array<PartModel, 2>{{{with(high, 1), {1}}, {with(low, 1), {-1}}}},
                             structures, kAllAct);
@@ -318,7 +318,7 @@ TEST(JoinModels, AFaultThatEndsInRockThatDiffersIsRefusedWithThePlace) {
         ends.dies_out = dies_out;
         try {
             join_models(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
-                        std::array{ends}, kAllAct, 1, nullptr);
+                        std::array{ends}, kAllAct, {1, nullptr});
             FAIL();
         } catch (const InputError& error) {
             EXPECT_EQ(error.kind, "ends_inside");
@@ -333,10 +333,12 @@ TEST(JoinModels, AFaultThatEndsInTheRockMustSayThatItDiesOut) {
     const OwnedSurface half = sheet(1.3, 0.3, -9, 2);
     Structure ends = fault(half);
     const std::array<PartModel, 2> models{{{with(rock, 1), {1}}, {with(rock, 1), {-1}}}};
-    EXPECT_EQ(refusal([&] { join_models(models, std::array{ends}, kAllAct, 1, nullptr); }),
+    EXPECT_EQ(refusal([&] {
+                  join_models(models, std::array{ends}, kAllAct, {1, nullptr});
+              }),
               "ends_inside");
     ends.dies_out = true;
-    EXPECT_NO_THROW(join_models(models, std::array{ends}, kAllAct, 1, nullptr));
+    EXPECT_NO_THROW(join_models(models, std::array{ends}, kAllAct, {1, nullptr}));
 }
 
 TEST(PartsOf, AFaultThatIsContinuedAcrossAnotherIsCrossedAllThrough) {
@@ -356,7 +358,7 @@ TEST(PartsOf, AFaultThatIsContinuedAcrossAnotherIsCrossedAllThrough) {
     small.triangle(0, 2, 3);
     Structure dies = fault(small);
     dies.dies_out = true;
-    EXPECT_EQ(parts_of(with(rock, 2), std::array{fault(slanted), dies}, 1, nullptr).size(), 4U);
+    EXPECT_EQ(parts_of(with(rock, 2), std::array{fault(slanted), dies}, {1, nullptr}).size(), 4U);
 }
 
 TEST(JoinModels, AFaultThatDiesOutIsASlit) {
@@ -418,7 +420,7 @@ TEST(JoinModels, AVoidBodyLeavesNothing) {
 TEST(SidesOfPoints, AboveAFaultsBorderAreThoseOfWhatIsStraightAboveIt) {
     const OwnedSurface inclined = sheet(0, 1, -9, 9, -1, 1);  // 45 degrees, from x = -1 to 1
     EXPECT_EQ(sides_of_points(std::array{fault(inclined)}, std::array{0.5, 0.0, 3.0, 1.5, 0.0, 3.0},
-                              1, nullptr),
+                              {1, nullptr}),
               (std::vector<std::int8_t>{1, -1}));
 }
 
@@ -426,11 +428,11 @@ TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
     const OwnedSurface inclined = sheet(0, 1);
     const auto sides =
         sides_of_points(std::array{fault(inclined)},
-                        std::array{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, 1, nullptr);
+                        std::array{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, {1, nullptr});
     EXPECT_EQ(sides, (std::vector<std::int8_t>{1, -1, 1}));  // the last lies on it
     const OwnedSurface chest = box({0, 0, 0}, {1, 1, 1});
-    EXPECT_EQ(sides_of_points(std::array{body(chest)}, std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.5}, 2,
-                              nullptr),
+    EXPECT_EQ(sides_of_points(std::array{body(chest)}, std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.5},
+                              {2, nullptr}),
               (std::vector<std::int8_t>{-1, 1}));
 }
 
@@ -439,11 +441,11 @@ TEST(SidesOfPoints, BeyondTheFaultThatItEndsAtAFaultGoesOnInItsPlane) {
     const OwnedSurface branch = sheet(0, 1, -9, 9, -9, 0.5);  // x = z, until x = 0.5
     const std::array points{1.0, 0.0, 1.25, 1.0, 0.0, 0.75};
     Structure alone = fault(branch);
-    EXPECT_EQ(sides_of_points(std::array{alone}, points, 1, nullptr),
+    EXPECT_EQ(sides_of_points(std::array{alone}, points, {1, nullptr}),
               (std::vector<std::int8_t>{-1, -1}));  // beside what goes straight up
     Structure ends = fault(branch);
     ends.ends_at = {1};
-    EXPECT_EQ(sides_of_points(std::array{ends, fault(trunk)}, points, 1, nullptr),
+    EXPECT_EQ(sides_of_points(std::array{ends, fault(trunk)}, points, {1, nullptr}),
               (std::vector<std::int8_t>{1, -1}));
 }
 
@@ -454,12 +456,12 @@ TEST(TrianglesBeyond, AreMetWhereAFaultThatDiesOutWouldGoOn) {
     // beside the fault, across its tip, beyond it, and with an edge in its plane beyond it
     const std::vector<double> low{1, 0, 0, 3, 0, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 2, 4, 0, 2, 5, 0};
     const std::vector<std::int32_t> triangles{0, 1, 2, 0, 1, 4, 2, 4, 3, 3, 5, 6};
-    EXPECT_EQ(triangles_beyond(std::array{dying}, low, low, triangles, 1, nullptr),
+    EXPECT_EQ(triangles_beyond(std::array{dying}, low, low, triangles, {1, nullptr}),
               (std::vector<std::uint8_t>{0, 0, 2, 1}));
     std::vector<double> high = low;
     for (std::size_t v = 0; v < 7; ++v)
         high[3 * v + 2] = 100;  // its upper border is at 9
-    EXPECT_EQ(triangles_beyond(std::array{dying}, low, high, triangles, 1, nullptr),
+    EXPECT_EQ(triangles_beyond(std::array{dying}, low, high, triangles, {1, nullptr}),
               (std::vector<std::uint8_t>{2, 2, 2, 1}));
 }
 
@@ -576,7 +578,7 @@ TEST(ContinuationOf, PartsOfAFaultThatDiesOutMayNotLieBesideEachOther) {
     Structure dying = fault(two);
     dying.dies_out = true;
     try {
-        parts_of(layers({0, 4}), std::array{dying}, 1, nullptr);
+        parts_of(layers({0, 4}), std::array{dying}, {1, nullptr});
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(error.kind, "folded");

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::string> texts(const ComplexView& model) {
     std::vector<std::string> texts;
-    for (const Offender& offender : check_arrays(model, 1, nullptr).first)
+    for (const Offender& offender : check_arrays(model, {1, nullptr}).first)
         texts.push_back(offender.text);
     return texts;
 }
@@ -27,7 +27,7 @@ using Texts = std::vector<std::string>;
 
 TEST(ArraysTest, SoundArraysPass) {
     auto cubes = two_cubes();
-    const Findings found = check_arrays(cubes.view(), 2, nullptr);
+    const Findings found = check_arrays(cubes.view(), {2, nullptr});
     EXPECT_TRUE(found.passed());
     EXPECT_EQ(found.examined, 11);
 }

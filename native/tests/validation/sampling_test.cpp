@@ -47,7 +47,7 @@ std::vector<strata::StackInput> views(const std::vector<OwnedRock>& rocks) {
 }
 
 OwnedComplex model_of(const std::vector<OwnedRock>& rocks, bool blocks = false) {
-    auto built = strata::build_rock_masses(views(rocks), 1, nullptr);
+    auto built = strata::build_rock_masses(views(rocks), {1, nullptr});
     if (blocks) built = strata::merge_columns(built);
     OwnedComplex model = owned(built, blocks);
     std::size_t first = 0;
@@ -64,7 +64,7 @@ std::vector<TestResult> sample(OwnedComplex& model, const std::vector<OwnedRock>
     std::vector<std::int32_t> block(static_cast<std::size_t>(model.surfaces));
     std::iota(block.begin(), block.end(), 0);
     const auto input = views(rocks);
-    return check_samples(model.view(), {input, block}, places, seed, threads, nullptr);
+    return check_samples(model.view(), {input, block}, places, seed, {threads, nullptr});
 }
 
 OwnedSurface level(double x0, double x1, double y0, double y1, double z, int n = 1) {
@@ -248,7 +248,7 @@ TEST(Sampling, FindsACutThroughTheInside) {
     cubes.cells[1][1] = -1;
     cubes.add_face({4, 7, 6}, 1, -1, 0);
     cubes.add_face({4, 6, 5}, 1, -1, 0);
-    EXPECT_EQ(failed(check_topology(cubes.view(), 1, nullptr)), Names{});
+    EXPECT_EQ(failed(check_topology(cubes.view(), {1, nullptr})), Names{});
     const auto results = sample(cubes, rocks);
     ASSERT_EQ(failed(results), Names{"places"});
     EXPECT_NE(findings(results, "places").first[0].text.find("lies apart from what is below it"),

@@ -14,7 +14,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 std::vector<TestResult> check(OwnedComplex& complex, int threads = 1) {
-    return check_topology(complex.view(), threads, nullptr);
+    return check_topology(complex.view(), {threads, nullptr});
 }
 
 /// The one offender that a test must have named.
@@ -310,11 +310,11 @@ TEST(Topology, ReadsNothingOutOfRangeInWrongOffsets) {
     auto view = cubes.view();
     for (const std::int64_t wrong : {-1, 3, 40, 1000}) {
         cubes.offsets[3] = wrong;
-        EXPECT_EQ(failed(check_topology(view, 1, nullptr)), Names{"arrays"}) << wrong;
+        EXPECT_EQ(failed(check_topology(view, {1, nullptr})), Names{"arrays"}) << wrong;
     }
     cubes.offsets[3] = 12;
     view.face_offsets = view.face_offsets.subspan(1);
-    EXPECT_EQ(failed(check_topology(view, 1, nullptr)), Names{"arrays"});
+    EXPECT_EQ(failed(check_topology(view, {1, nullptr})), Names{"arrays"});
 }
 
 /// A model of about `n` x `n` x 4 cells: as columns, or as blocks that are large cells.
@@ -372,7 +372,7 @@ TEST(Topology, CanBeCancelled) {
     auto model = terrain(20, false);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(check_topology(model.view(), 2, &progress), Cancelled);
+    EXPECT_THROW(check_topology(model.view(), {2, &progress}), Cancelled);
 }
 
 }  // namespace

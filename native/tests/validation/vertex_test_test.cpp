@@ -30,7 +30,7 @@ Texts about_vertices(const std::vector<std::array<double, 3>>& vertices) {
     std::vector<std::int32_t> loop(vertices.size());
     std::iota(loop.begin(), loop.end(), 0);
     complex.add_face(loop, 0, -1, 0);
-    const Findings found = check_vertices(complex.view(), 1, nullptr);
+    const Findings found = check_vertices(complex.view(), {1, nullptr});
     EXPECT_EQ(found.examined, static_cast<std::int64_t>(vertices.size()));
     return texts(found);
 }
@@ -75,16 +75,16 @@ TEST(VertexTest, OfManyInOnePlaceEachButTheFirstIsCounted) {
     EXPECT_EQ(about_vertices(std::vector(9, std::array{1.0, 2.0, 3.0})).size(), Findings::kMost);
     OwnedComplex complex;
     complex.vertices.assign(9, {1, 2, 3});
-    EXPECT_EQ(check_vertices(complex.view(), 1, nullptr).failed, 8 + 9);  // and no face has any
+    EXPECT_EQ(check_vertices(complex.view(), {1, nullptr}).failed, 8 + 9);  // and no face has any
 }
 
 TEST(VertexTest, AVertexOfNoFaceIsFound) {
     auto cubes = two_cubes();
-    EXPECT_TRUE(check_vertices(cubes.view(), 1, nullptr).passed());
+    EXPECT_TRUE(check_vertices(cubes.view(), {1, nullptr}).passed());
     cubes.loops[2] = {8, 9, 10};
     for (std::size_t wall : {9U, 10U})
         cubes.loops[wall] = {5, 6, 10, 9};
-    const Findings found = check_vertices(cubes.view(), 1, nullptr);
+    const Findings found = check_vertices(cubes.view(), {1, nullptr});
     EXPECT_EQ(texts(found), Texts{"vertex 11 belongs to no face"});
     EXPECT_EQ(found.first[0].vertex, 11);
     EXPECT_EQ(found.first[0].place, (std::array<double, 3>{0, 1, 2}));
@@ -99,7 +99,7 @@ Texts about_loop(std::int32_t corners, std::int32_t last) {
     loop.back() = last;
     complex.add_face({0, 1, 2}, 0, -1, 0);
     complex.add_face(loop, 0, -1, 0);
-    return texts(check_loops(complex.view(), 1, nullptr));
+    return texts(check_loops(complex.view(), {1, nullptr}));
 }
 
 TEST(VertexTest, ALoopMayNotPassAVertexTwiceHoweverLongItIs) {

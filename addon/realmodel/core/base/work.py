@@ -14,18 +14,22 @@ import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from . import missing_native
 from .errors import BuildFailed, Cancelled
 
+if TYPE_CHECKING:
+    from ..._native import Native
+
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
+Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
-_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or the name of the extension in Blender
+_PACKAGE = __package__.removesuffix(".core.base")  # "realmodel", or the name of the extension in Blender
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
@@ -34,7 +38,7 @@ class Work:
 
     def __init__(self):
         self._lock = threading.Lock()
-        self._control = None
+        self._control: Native.Control | None = None
         self._works: list[Work] = []  # of the items of `each`, while it runs
         self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
         self._part = 0.0, 1.0
@@ -83,15 +87,17 @@ class Work:
         if self._cancelled:
             raise Cancelled("cancelled")
 
-    def native(self, function: Callable[..., Result], *arguments, **options) -> Result:
+    def native(
+        self, function: Callable[Arguments, Result], *arguments: Arguments.args, **options: Arguments.kwargs
+    ) -> Result:
         """Calls a native function that takes a `control`, as the present phase."""
-        native = native_module()
+        native, call = native_module(), cast(Callable[..., Result], function)
         control = native.Control()
         with self._lock:
             self._control = control
         try:
             self.check()
-            return function(*arguments, control=control, **options)
+            return call(*arguments, control=control, **options)
         except native.Cancelled as error:
             raise Cancelled("cancelled") from error
         except MemoryError as error:
@@ -308,11 +314,11 @@ def _waiting_threads_sleep():
         os.environ.pop(name, None)
 
 
-def native_module():
+def native_module() -> Native:
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
     try:
         with _waiting_threads_sleep():
-            from ... import _native  # type: ignore[attr-defined]  # compiled: it has no stub
+            from ... import _native
     except ImportError as error:
         raise BuildFailed(missing_native.explanation(error)) from error
-    return _native
+    return cast("Native", _native)

@@ -122,7 +122,7 @@ class Reach:
         return inside
 
     def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
-        beyond = native_module().structure_continuation(fault.native(), self.structures.box)
+        beyond = native_module().structure_continuation(fault.native(), self.structures.divided_box())
         own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
         part = _hanging_together(~(own | beyond))
         beside = _wider(own) & (part >= 0)

@@ -216,16 +216,16 @@ def intersect(
 
 def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Intersection:
     """`intersect` as the first part of a job, which takes this share of its progress."""
-    given = [*_checked(a, 0), *_checked(b, 1)]
+    first, second = _checked(a, 0), _checked(b, 1)
     native = native_module()
     with work.phase(0.0, share, "intersecting"):
         try:
-            return Intersection(work.native(native.intersect, *given, threads=threads))
+            return Intersection(work.native(native.intersect, *first, *second, threads=threads))
         except native.InputError as error:
             raise _refused(error) from error
 
 
-def _checked(surface, number: int):
+def _checked(surface, number: int) -> tuple[np.ndarray, np.ndarray]:
     try:
         vertices, triangles = surface
     except (TypeError, ValueError) as error:

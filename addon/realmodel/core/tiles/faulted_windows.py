@@ -107,7 +107,7 @@ class Windows:
         ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.divided().sheets]
         self._ends = min(low for low, _ in ends), max(high for _, high in ends)
         given = structures.native()
-        self._continued = native_module().continued_structures(given, structures.box)
+        self._continued = native_module().continued_structures(given, structures.divided_box())
         corners = [triangles.reshape(-1, 3, 3) for triangles, _, _ in self._continued]
         self._extents = [extents(each) for each in corners]
         self._sides: dict[int, np.ndarray] = {}  # of faults, at the middles of all tiles

@@ -40,10 +40,9 @@ public:
 
 private:
     friend class CountedLoop;
-    void advance(double fraction) const noexcept;
+    void advance(double fraction) noexcept;
 
-    // Counting is no more than telling: who may only check() may count as well.
-    mutable std::atomic<double> fraction_{0.0};
+    std::atomic<double> fraction_{0.0};
     std::atomic<double> part_end_{0.0};
     std::atomic<bool> cancelled_{false};
     mutable std::mutex text_mutex_;
@@ -59,12 +58,12 @@ public:
     /// @param progress  null: nothing is counted
     /// @param rounds    how many there will be
     /// @param share     of what is left of the part, 0 .. 1
-    CountedLoop(const Progress* progress, std::size_t rounds, double share = 0.5) noexcept;
+    CountedLoop(Progress* progress, std::size_t rounds, double share = 0.5) noexcept;
     /// One round more is done. From any thread.
     void count() noexcept;
 
 private:
-    const Progress* progress_;
+    Progress* progress_;
     double from_ = 0.0, step_ = 0.0;
     std::atomic<std::size_t> done_{0};
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "realmodel/base/array.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/strata/stack.hpp"
 
@@ -50,7 +50,7 @@ struct Bedding {
 /// @throws Cancelled
 Bedding bedding_of(const ComplexView& complex, std::span<const History> histories,
                    std::span<const Polygon> polygons,
-                   std::span<const std::int32_t> histories_of_corners, int threads,
-                   const Progress* progress = nullptr);
+                   std::span<const std::int32_t> histories_of_corners,
+                   const Execution& execution = {});
 
 }  // namespace realmodel::bedding

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::booleans {
 
@@ -79,7 +79,7 @@ struct Refinement {
 /// @throws InputError kinds not_finite, bad_index (surface: which; items: the vertex or triangle),
 ///         no_triangles (surface: which), too_large, too_close (rounding does not settle);
 ///         Cancelled
-Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int threads = 0,
-                     Progress* progress = nullptr);
+Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
+                     const Execution& execution = {});
 
 }  // namespace realmodel::booleans

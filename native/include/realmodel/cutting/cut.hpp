@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
@@ -45,11 +45,10 @@ struct Cut {
 /// half a unit in the last place of the plane are contracted to it.
 /// @throws InputError kinds not_finite, bad_plane (the normal is zero), bad_model
 /// @throws Cancelled
-Cut cut_by_plane(const ComplexView& model, const Plane& plane, int threads, Progress* progress);
+Cut cut_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution);
 
 /// The section alone, in a fraction of the time.
-Section section_by_plane(const ComplexView& model, const Plane& plane, int threads,
-                         Progress* progress);
+Section section_by_plane(const ComplexView& model, const Plane& plane, const Execution& execution);
 
 /// Triangles in any position, either orientation.
 struct TriangleView {
@@ -67,14 +66,14 @@ struct TriangleView {
 ///         branching, one_sided, ends_inside (it does not part the model; the place), two_sides (a
 ///         place is above one part of it and below another)
 /// @throws Cancelled
-Cut cut_by_surface(const ComplexView& model, const TriangleView& surface, int threads,
-                   Progress* progress);
+Cut cut_by_surface(const ComplexView& model, const TriangleView& surface,
+                   const Execution& execution);
 
 /// Cuts a model by the boundary of a block of another, or of its own: below is what is inside.
 /// @throws InputError kinds no_block, bad_model
 /// @throws Cancelled
 Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_t block,
-                 int threads, Progress* progress);
+                 const Execution& execution);
 
 /// The vertical section over a stretch in plan, from `start` to `end`: one panel of a fence
 /// diagram. Above is to its right, so that polygons turn counter-clockwise where distance runs to
@@ -82,7 +81,7 @@ Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_
 /// @throws InputError kinds not_finite, bad_plane (both ends are the same), bad_model
 /// @throws Cancelled
 Section fence_panel(const ComplexView& model, const std::array<double, 2>& start,
-                    const std::array<double, 2>& end, int threads, Progress* progress);
+                    const std::array<double, 2>& end, const Execution& execution);
 
 /// Faces divided into triangles of their corners; those of face f are triangles offsets[f] to
 /// offsets[f + 1].
@@ -97,7 +96,7 @@ struct FaceTriangles {
 /// @throws InputError kind bad_index (items: the face); Cancelled
 FaceTriangles triangulate_faces(std::span<const double> vertices,
                                 std::span<const std::int64_t> face_offsets,
-                                std::span<const std::int32_t> face_vertices, int threads,
-                                Progress* progress);
+                                std::span<const std::int32_t> face_vertices,
+                                const Execution& execution);
 
 }  // namespace realmodel::cutting

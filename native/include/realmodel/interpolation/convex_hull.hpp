@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -39,7 +37,7 @@ std::vector<std::int32_t> hull_border(std::span<const std::array<double, 2>> pos
 /// @throws InputError kind "not_finite"
 /// @throws Cancelled
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress = nullptr);
+                                       std::span<const std::array<double, 2>> nodes,
+                                       const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

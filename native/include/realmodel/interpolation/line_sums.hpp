@@ -5,9 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -26,6 +24,6 @@ struct Lines {
 /// @throws InputError kind "option" where lengths disagree or the step is not positive,
 ///         "not_finite"; Cancelled
 std::vector<double> line_sums(std::span<const std::array<double, 2>> nodes, const Lines& lines,
-                              int threads, Progress* progress = nullptr);
+                              const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

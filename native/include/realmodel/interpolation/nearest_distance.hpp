@@ -5,9 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -18,7 +16,7 @@ namespace realmodel::interpolation {
 /// @throws InputError kind "no_points", "not_finite", "too_large"
 /// @throws Cancelled
 std::vector<double> nearest_distances(std::span<const std::array<double, 3>> points,
-                                      std::span<const std::array<double, 2>> nodes, int threads = 0,
-                                      Progress* progress = nullptr);
+                                      std::span<const std::array<double, 2>> nodes,
+                                      const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

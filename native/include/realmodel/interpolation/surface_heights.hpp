@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -22,7 +20,7 @@ namespace realmodel::interpolation {
 /// @throws Cancelled
 std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
                                        std::span<const std::array<std::int32_t, 3>> triangles,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress = nullptr);
+                                       std::span<const std::array<double, 2>> nodes,
+                                       const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

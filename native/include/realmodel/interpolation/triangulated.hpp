@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -23,7 +21,7 @@ namespace realmodel::interpolation {
 /// @throws Cancelled
 std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3>> points,
                                             std::span<const std::array<double, 2>> nodes,
-                                            int threads, Progress* progress = nullptr);
+                                            const Execution& execution = {});
 
 /// Natural neighbor interpolation: the mean of the points whose Voronoi cells a node would take
 /// area from, weighted by that area (Sibson 1981, "A brief description of natural neighbor
@@ -31,8 +29,8 @@ std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3
 /// and where a node is so near its border that rounding spoils the areas, as
 /// linear_on_triangulation. The same arguments, result and errors.
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
-                                      std::span<const std::array<double, 2>> nodes, int threads,
-                                      Progress* progress = nullptr);
+                                      std::span<const std::array<double, 2>> nodes,
+                                      const Execution& execution = {});
 
 /// What a part of some points has to know of all of them: those on the border of their hull
 /// (hull_border) and the box around them; the box of which the part has all points, and whether
@@ -55,10 +53,9 @@ struct PartValues {
 /// for what of them is outside the hull of all: no other point can be in them.
 PartValues linear_on_part(std::span<const std::array<double, 3>> points,
                           std::span<const std::array<double, 2>> nodes, const PointsAround& around,
-                          int threads, Progress* progress = nullptr);
+                          const Execution& execution = {});
 PartValues natural_neighbors_of_part(std::span<const std::array<double, 3>> points,
                                      std::span<const std::array<double, 2>> nodes,
-                                     const PointsAround& around, int threads,
-                                     Progress* progress = nullptr);
+                                     const PointsAround& around, const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

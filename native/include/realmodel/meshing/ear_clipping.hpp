@@ -32,6 +32,6 @@ namespace realmodel::meshing {
 ///
 /// @throws InputError as that does; Cancelled. `progress` may be null.
 std::vector<std::array<std::int32_t, 3>> triangulate_polygon(std::span<const Ring> rings,
-                                                             const Progress* progress = nullptr);
+                                                             Progress* progress = nullptr);
 
 }  // namespace realmodel::meshing

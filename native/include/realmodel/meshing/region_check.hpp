@@ -31,7 +31,6 @@ struct RegionRing {
 /// - and of kind
 /// - "hole_outside" (items: the ring, a corner of it; place),
 /// - "no_area" (the polygons take each other away).
-std::vector<Ring> checked_region(std::span<const RegionRing> rings,
-                                 const Progress* progress = nullptr);
+std::vector<Ring> checked_region(std::span<const RegionRing> rings, Progress* progress = nullptr);
 
 }  // namespace realmodel::meshing

@@ -40,7 +40,6 @@ struct RingTriangulation {
 /// - "outline_crosses" (items: ring and corner where the one edge starts, ring and corner of the
 ///   other; place),
 /// - "outline_overlaps" (two edges share a stretch; items and place likewise).
-RingTriangulation triangulate_region(std::span<const Ring> rings,
-                                     const Progress* progress = nullptr);
+RingTriangulation triangulate_region(std::span<const Ring> rings, Progress* progress = nullptr);
 
 }  // namespace realmodel::meshing

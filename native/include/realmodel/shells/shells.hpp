@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::shells {
@@ -41,12 +41,12 @@ struct Shell {
 /// @throws InputError kind bad_index (items: the face) where the numbers are out of range
 /// @throws Cancelled
 std::vector<Shell> block_shells(const ComplexView& complex, const std::array<double, 3>& origin,
-                                int threads, const Progress* progress = nullptr);
+                                const Execution& execution = {});
 
 /// For each block the boundaries of all its cells, cell after cell; every cell has vertices of its
 /// own, drawn towards their mean by the factor `shrink`. Otherwise as block_shells.
 std::vector<Shell> cell_shells(const ComplexView& complex, double shrink,
-                               const std::array<double, 3>& origin, int threads,
-                               const Progress* progress = nullptr);
+                               const std::array<double, 3>& origin,
+                               const Execution& execution = {});
 
 }  // namespace realmodel::shells

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::simulation {
@@ -36,6 +36,6 @@ struct CleanedCells {
 ///                      not vanish between two cells
 /// @throws InputError kind bad_index; Cancelled
 CleanedCells clean_cells(const ComplexView& model, std::span<const std::int32_t> surface_kind,
-                         double tolerance, int threads, Progress* progress);
+                         double tolerance, const Execution& execution);
 
 }  // namespace realmodel::simulation

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 
@@ -37,7 +37,6 @@ struct FilledMesh {
 /// is left), flat (place), endless (refinement was given up); Cancelled
 FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> cell_region,
                        std::span<const std::uint8_t> kept, double edge_length, double tolerance,
-                       std::span<const meshing::LocalLength> sizes, int threads,
-                       Progress* progress);
+                       std::span<const meshing::LocalLength> sizes, const Execution& execution);
 
 }  // namespace realmodel::simulation

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
@@ -47,8 +47,8 @@ struct PlanLines {
 /// first
 /// @throws InputError kinds not_layered (place), nothing; Cancelled
 PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> block_rock,
-                     double edge_length, std::span<const LineLength> lengths, int threads,
-                     Progress* progress);
+                     double edge_length, std::span<const LineLength> lengths,
+                     const Execution& execution);
 
 /// How columns are divided.
 struct Layering {
@@ -97,6 +97,6 @@ struct LayeredMesh {
 /// @throws InputError kinds not_layered (place), too_large; Cancelled
 LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t> block_rock,
                          const PlanLines& lines, meshing::PlanarMesh plan, Layering layering,
-                         int threads, Progress* progress);
+                         const Execution& execution);
 
 }  // namespace realmodel::simulation

@@ -21,7 +21,7 @@ namespace realmodel::strata {
 /// @throws Cancelled
 std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_t, 2>> face_cells,
                                           std::span<const std::int32_t> cell_block,
-                                          const Progress* progress = nullptr);
+                                          Progress* progress = nullptr);
 
 /// The sides of each cell: the faces that bound it, and whether it lies on their far side.
 struct CellSides {
@@ -32,6 +32,6 @@ struct CellSides {
 /// @throws InputError kinds bad_index where a face refers to a cell that does not exist, too_large
 /// @throws Cancelled
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
-                     const Progress* progress = nullptr);
+                     Progress* progress = nullptr);
 
 }  // namespace realmodel::strata

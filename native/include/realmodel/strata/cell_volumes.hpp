@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::strata {
 
@@ -19,7 +19,6 @@ std::vector<double> cell_volumes(std::span<const std::array<double, 3>> vertices
                                  std::span<const std::int64_t> face_offsets,
                                  std::span<const std::int32_t> face_vertices,
                                  std::span<const std::array<std::int32_t, 2>> face_cells,
-                                 std::size_t cells, int threads,
-                                 const Progress* progress = nullptr);
+                                 std::size_t cells, const Execution& execution = {});
 
 }  // namespace realmodel::strata

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {
@@ -33,16 +33,15 @@ public:
     /// that are not divided keep their numbers.
     /// @throws InputError not_finite, bad_index, vertical_triangle; as above then
     /// @throws Cancelled
-    std::optional<JoinedMesh> mesh(const SurfaceView& surface, int threads = 1,
-                                   Progress* progress = nullptr) const;
-    std::optional<JoinedMesh> mesh(const RegionView& region, int threads = 1,
-                                   Progress* progress = nullptr) const;
+    std::optional<JoinedMesh> mesh(const SurfaceView& surface,
+                                   const Execution& execution = {}) const;
+    std::optional<JoinedMesh> mesh(const RegionView& region, const Execution& execution = {}) const;
 
 private:
     struct Found;
     explicit Joins(std::shared_ptr<const Found> found) : found_(std::move(found)) {}
     friend std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
-                                           int threads, Progress* progress);
+                                           const Execution& execution);
 
     std::shared_ptr<const Found> found_;
 };
@@ -53,6 +52,6 @@ private:
 /// @throws InputError too_large
 /// @throws Cancelled
 std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders = true,
-                                int threads = 1, Progress* progress = nullptr);
+                                const Execution& execution = {});
 
 }  // namespace realmodel::strata

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::strata {
@@ -106,7 +106,7 @@ using realmodel::Warning;
 ///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all
 ///         rock masses
 /// @throws Cancelled
-CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
+CellComplex build_rock_masses(std::span<const StackInput> rocks, const Execution& execution,
                               CellKind cells = CellKind::kColumns,
                               const WantedSpace* wanted = nullptr, bool is_local = false);
 
@@ -129,11 +129,11 @@ struct Tile {
 /// line. Borders are taken as they are: whoever divides a model has joined them in all of it
 /// (find_joins), so that all its tiles have the same.
 /// @throws as build_rock_masses
-Tile build_tile(std::span<const StackInput> rocks, const Window& window, int threads,
-                Progress* progress, CellKind cells = CellKind::kColumns);
+Tile build_tile(std::span<const StackInput> rocks, const Window& window, const Execution& execution,
+                CellKind cells = CellKind::kColumns);
 
 /// build_rock_masses of one.
-CellComplex build_stack(const StackInput& input, int threads, Progress* progress,
+CellComplex build_stack(const StackInput& input, const Execution& execution,
                         CellKind cells = CellKind::kColumns);
 
 }  // namespace realmodel::strata

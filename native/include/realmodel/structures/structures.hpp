@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/cutting/cut.hpp"
 
@@ -37,7 +37,7 @@ struct Part {
 ///         that dies out, whose border crosses itself seen at right angles to its mean plane)
 /// @throws Cancelled
 std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
-                           int threads, Progress* progress);
+                           const Execution& execution);
 
 /// A structure with what continues it beyond its border, found once for models that are joined
 /// piece by piece: each piece has the triangles near it.
@@ -79,7 +79,7 @@ struct Joined {
 ///                     it ends though the rock on both sides differs)
 /// @throws Cancelled
 Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
-                   std::span<const std::uint8_t> acts, int threads, Progress* progress,
+                   std::span<const std::uint8_t> acts, const Execution& execution,
                    std::span<const ContinuedStructure> continued = {}, double largest = 0);
 
 /// The side of a structure that points are on: of a fault that of the triangle nearest to each,
@@ -89,8 +89,8 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 /// @param points  3 P coordinates
 /// @throws InputError  as parts_of does
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
-                                         std::span<const double> points, int threads,
-                                         const Progress* progress);
+                                         std::span<const double> points,
+                                         const Execution& execution);
 
 /// Which triangles of a sheet a fault's continuation beyond its border may touch, 1, or pass, 2,
 /// wherever the sheet lies between two heights: none too few, perhaps some too many.
@@ -101,8 +101,8 @@ std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
 std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
                                            std::span<const double> low,
                                            std::span<const double> high,
-                                           std::span<const std::int32_t> triangles, int threads,
-                                           const Progress* progress);
+                                           std::span<const std::int32_t> triangles,
+                                           const Execution& execution);
 
 /// The triangles by which a fault is continued beyond its border, farther than a box around the
 /// rock (two corners) reaches.

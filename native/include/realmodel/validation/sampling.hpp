@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "realmodel/validation/findings.hpp"
@@ -26,7 +26,7 @@ struct ModelInput {
 /// same places and findings for any number of threads.
 /// @throws Cancelled, InputError (bad_index)
 std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput& input,
-                                      std::int64_t places, std::uint64_t seed, int threads,
-                                      Progress* progress);
+                                      std::int64_t places, std::uint64_t seed,
+                                      const Execution& execution);
 
 }  // namespace realmodel::validation

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
 
@@ -14,6 +14,6 @@ namespace realmodel::validation {
 /// each means). Where `arrays` fails, it is the only one: the others would read out of range. The
 /// same findings for any number of threads.
 /// @throws Cancelled
-std::vector<TestResult> check_topology(const ComplexView& model, int threads, Progress* progress);
+std::vector<TestResult> check_topology(const ComplexView& model, const Execution& execution);
 
 }  // namespace realmodel::validation

@@ -36,7 +36,9 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
         NeighborSearch search;
         std::vector<spatial::Neighbor> near;
     };
-    const NodeLoop loop{z.size(), all ? 1 + 1'000'000 / points : 256, options.threads, progress,
+    const NodeLoop loop{z.size(),
+                        all ? 1 + 1'000'000 / points : 256,
+                        {options.threads, progress},
                         "inverse distance"};
     loop.over_nodes(
         [&] {

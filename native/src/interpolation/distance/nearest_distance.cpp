@@ -11,8 +11,8 @@
 namespace realmodel::interpolation {
 
 std::vector<double> nearest_distances(std::span<const std::array<double, 3>> points,
-                                      std::span<const std::array<double, 2>> nodes, int threads,
-                                      Progress* progress) {
+                                      std::span<const std::array<double, 2>> nodes,
+                                      const Execution& execution) {
     if (points.empty()) throw InputError("no_points", "there are no points to be near to");
     require_countable(points.size(), "points");
     require_finite_nodes(nodes);
@@ -27,7 +27,7 @@ std::vector<double> nearest_distances(std::span<const std::array<double, 3>> poi
     }
     const spatial::NearestPoints tree(positions);
     std::vector<double> out(nodes.size());
-    const NodeLoop loop{nodes.size(), 1024, threads, progress, "distances to points"};
+    const NodeLoop loop{nodes.size(), 1024, execution, "distances to points"};
     loop.over_nodes(
         [] { return std::vector<spatial::Neighbor>(); },
         [&](std::vector<spatial::Neighbor>& near, std::size_t i) {

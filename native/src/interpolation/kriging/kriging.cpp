@@ -31,7 +31,7 @@ void krige_one_by_one(const KrigingTask& task) {
         std::vector<spatial::Neighbor> near;
     };
     std::atomic<std::int64_t> alone{0};
-    NodeLoop{task.count(), 256, task.options.threads, task.progress, "kriging"}.over_nodes(
+    NodeLoop{task.count(), 256, {task.options.threads, task.progress}, "kriging"}.over_nodes(
         [&] {
             return Scratch{NeighborKriging(task.data, task.covariance, task.options.drift),
                            NeighborSearch(task.data, task.tree, task.neighborhood()),
@@ -87,9 +87,12 @@ void krige_in_lanes(const KrigingTask& task) {
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };
-        NodeLoop{
-            here,         nodes_in_chunk(neighbors), task.options.threads, task.progress, "kriging",
-            share(first), share(first + here)}
+        NodeLoop{here,
+                 nodes_in_chunk(neighbors),
+                 {task.options.threads, task.progress},
+                 "kriging",
+                 share(first),
+                 share(first + here)}
             .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
                 own.nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
@@ -116,9 +119,11 @@ void krige_from_all(const KrigingTask& task) {
     const double solve_work = n * n * static_cast<double>(task.count());
     const double factor_share = factor_work / (factor_work + solve_work);
     const UniqueNeighborhood all(task, factor_share);
-    NodeLoop{
-        task.count(), kNodesAtOnce, task.options.threads, task.progress, "kriging from all points",
-        factor_share}
+    NodeLoop{task.count(),
+             kNodesAtOnce,
+             {task.options.threads, task.progress},
+             "kriging from all points",
+             factor_share}
         .over_chunks([&] { return all.scratch(); },
                      [&](UniqueNeighborhood::Scratch& own, std::size_t begin, std::size_t end) {
                          if (task.leaves_out) {

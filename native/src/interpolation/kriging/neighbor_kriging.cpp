@@ -39,7 +39,7 @@ void NeighborKriging::assemble(const Position& node, std::span<const spatial::Ne
 }
 
 /// Whether it was not cancelled.
-bool NeighborKriging::eliminate(const Progress* progress) {
+bool NeighborKriging::eliminate(Progress* progress) {
     for (std::size_t k = 0; k < count_; ++k) {
         if (k % 64 == 63 && cancelled(progress)) return false;
         double* const pivot = column(k);
@@ -63,7 +63,7 @@ bool NeighborKriging::eliminate(const Progress* progress) {
 }
 
 Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neighbor> neighbors,
-                             const Progress* progress) {
+                             Progress* progress) {
     assert(!neighbors.empty());
     count_ = neighbors.size();
     positions_.clear();

@@ -31,13 +31,13 @@ public:
     /// @param neighbors  nearest first; none is at the node itself
     /// @return           means nothing once the caller has cancelled
     Estimate at(const Position& node, std::span<const spatial::Neighbor> neighbors,
-                const Progress* progress = nullptr);
+                Progress* progress = nullptr);
 
 private:
     double* column(std::size_t k) { return matrix_.data() + k * rows_; }
     void assemble(const Position& node, std::span<const spatial::Neighbor> neighbors,
                   const DriftFrame& frame);
-    bool eliminate(const Progress* progress);
+    bool eliminate(Progress* progress);
 
     const DataPoints& data_;
     Covariance covariance_;

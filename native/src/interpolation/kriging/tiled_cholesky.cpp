@@ -12,8 +12,8 @@ double TiledCholesky::bytes(double order) {
     return side * (side + 1) / 2 * static_cast<double>(kTile * kTile) * sizeof(double);
 }
 
-TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redundant, int threads,
-                             Progress* progress, double end_share)
+TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redundant,
+                             const Execution& execution, double end_share)
     : order_(order),
       side_((order + kTile - 1) / kTile),
       tiles_(offset(side_, 0)),
@@ -22,11 +22,11 @@ TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redu
     const auto for_tiles = [&](Eigen::Index from_row, Eigen::Index first, Eigen::Index last,
                                const auto& work) {
         parallel_chunks(
-            static_cast<std::size_t>(side_ - from_row), threads, progress,
+            static_cast<std::size_t>(side_ - from_row), execution,
             [&](std::size_t row) {
                 const Eigen::Index i = from_row + static_cast<Eigen::Index>(row);
                 const Eigen::Index end = std::min(i, last);
-                for (Eigen::Index j = first; j <= end && !cancelled(progress); ++j)
+                for (Eigen::Index j = first; j <= end && !cancelled(execution.progress); ++j)
                     work(i, j);
             },
             0);
@@ -39,11 +39,11 @@ TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redu
         for_tiles(k + 1, k + 1, side_, [&](Eigen::Index i, Eigen::Index j) {
             block(i, j).noalias() -= block(i, k) * block(j, k).transpose();
         });
-        if (progress == nullptr) continue;
+        if (execution.progress == nullptr) continue;
         // The work that is left shrinks with the cube of the columns that are left.
         const double left = static_cast<double>(side_ - k - 1) / static_cast<double>(side_);
-        progress->report(end_share * (1 - left * left * left), "factoring all points");
-        progress->check();
+        execution.progress->report(end_share * (1 - left * left * left), "factoring all points");
+        execution.progress->check();
     }
 }
 
@@ -80,7 +80,7 @@ void TiledCholesky::factor_below(Eigen::Index i, Eigen::Index k) {
     }
 }
 
-void TiledCholesky::solve(Eigen::MatrixXd& right, const Progress* progress) const {
+void TiledCholesky::solve(Eigen::MatrixXd& right, Progress* progress) const {
     for (Eigen::Index i = 0; i < side_; ++i) {
         auto mine = right.middleRows(i * kTile, rows_of(i));
         for (Eigen::Index k = 0; k < i; ++k) {

@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -30,14 +30,14 @@ public:
     /// @param entry      gives the lower triangle
     /// @param end_share  the progress goes up to this
     /// @throws Cancelled, and what `entry` throws
-    TiledCholesky(Eigen::Index order, const Entry& entry, double redundant, int threads,
-                  Progress* progress, double end_share);
+    TiledCholesky(Eigen::Index order, const Entry& entry, double redundant,
+                  const Execution& execution, double end_share);
 
     bool left_out(Eigen::Index row) const { return left_out_[row]; }
 
     /// Overwrites the columns of `right` with L^-1 right. They mean nothing once the caller has
     /// cancelled.
-    void solve(Eigen::MatrixXd& right, const Progress* progress) const;
+    void solve(Eigen::MatrixXd& right, Progress* progress) const;
 
 private:
     using Block = Eigen::Map<Eigen::MatrixXd>;

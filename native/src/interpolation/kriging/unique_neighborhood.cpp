@@ -21,7 +21,7 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
           [&](Eigen::Index i, Eigen::Index j) {
               return i == j ? 1.0 : task.covariance(position(i), position(j));
           },
-          kRedundantVariance, task.options.threads, task.progress, factor_share) {
+          kRedundantVariance, {task.options.threads, task.progress}, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
     Eigen::MatrixXd plain = frame_.terms(std::span<const Position>(task.data.local));
     Eigen::MatrixXd given(count_, terms + 1);

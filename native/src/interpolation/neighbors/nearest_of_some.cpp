@@ -20,7 +20,7 @@ std::vector<spatial::Neighbor> nearest_among(std::span<const Position> among,
                                              int threads) {
     const spatial::NearestPoints tree(among);
     std::vector<spatial::Neighbor> out(asked.size() * count);
-    const NodeLoop loop{asked.size(), 64, threads, nullptr};
+    const NodeLoop loop{asked.size(), 64, {threads, nullptr}};
     loop.over_nodes([] { return std::vector<spatial::Neighbor>(); },
                     [&](std::vector<spatial::Neighbor>& found, std::size_t k) {
                         tree.find(positions.at(static_cast<std::size_t>(asked[k])), count, found);
@@ -88,8 +88,8 @@ private:
 
 std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
                                                std::span<const std::int32_t> asked,
-                                               std::size_t count, int threads,
-                                               const Progress* progress, std::size_t most) {
+                                               std::size_t count, const Execution& execution,
+                                               std::size_t most) {
     count = std::min(count, positions.size);
     most = std::max(most, count);
     const std::vector<std::int32_t> part = even_part(positions.size, most);
@@ -97,7 +97,8 @@ std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
     among.reserve(part.size());
     for (const std::int32_t i : part)
         among.push_back(positions.at(static_cast<std::size_t>(i)));
-    std::vector<spatial::Neighbor> found = nearest_among(among, positions, asked, count, threads);
+    std::vector<spatial::Neighbor> found =
+        nearest_among(among, positions, asked, count, execution.threads);
     if (part.size() == positions.size) return found;
     std::vector<double> bounds;
     std::vector<Position> places;
@@ -107,7 +108,7 @@ std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
     }
     NearestSoFar nearest(places, count, std::move(bounds));
     for (std::size_t i = 0; i < positions.size; ++i) {
-        if (i % kBetweenChecks == 0 && progress != nullptr) progress->check();
+        if (i % kBetweenChecks == 0 && execution.progress != nullptr) execution.progress->check();
         nearest.meet(positions.at(i), static_cast<std::int32_t>(i));
     }
     return nearest.taken();

@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "realmodel/base/execution.hpp"
 #include "spatial/nearest_points.hpp"
-
-namespace realmodel {
-class Progress;
-}
 
 namespace realmodel::interpolation {
 
@@ -31,8 +28,7 @@ inline constexpr std::size_t kMostInMemory = 1 << 18;
 /// @param most  of points in a tree
 std::vector<spatial::Neighbor> nearest_of_some(const Positions& positions,
                                                std::span<const std::int32_t> asked,
-                                               std::size_t count, int threads,
-                                               const Progress* progress,
+                                               std::size_t count, const Execution& execution,
                                                std::size_t most = kMostInMemory);
 
 }  // namespace realmodel::interpolation

@@ -27,18 +27,18 @@ void check(const Lines& lines) {
 }  // namespace
 
 std::vector<double> line_sums(std::span<const std::array<double, 2>> nodes, const Lines& lines,
-                              int threads, Progress* progress) {
+                              const Execution& execution) {
     check(lines);
     require_finite_nodes(nodes);
     const std::size_t samples = lines.values.size() / lines.directions.size();
     const double last = static_cast<double>(samples - 1), steps = 1 / lines.step;
     const auto last_cell = static_cast<std::int64_t>(samples - 2);
     std::vector<double> sums(nodes.size());
-    const NodeLoop loop{nodes.size(), kNodesAtOnce, threads, progress, "simulating heights"};
+    const NodeLoop loop{nodes.size(), kNodesAtOnce, execution, "simulating heights"};
     loop.over_chunks([] { return 0; },
                      [&](int, std::size_t begin, std::size_t end) {
                          for (std::size_t l = 0; l < lines.directions.size(); ++l) {
-                             if (cancelled(progress)) return;
+                             if (cancelled(execution.progress)) return;
                              const auto [x, y] = lines.directions[l];
                              const double* line = lines.values.data() + l * samples;
                              const double start = lines.starts[l];

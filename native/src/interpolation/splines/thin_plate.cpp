@@ -141,7 +141,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
         std::vector<Position> positions;
         std::vector<double> values;
     };
-    const NodeLoop loop{nodes.size(), 256, options.threads, progress, "thin plate spline"};
+    const NodeLoop loop{nodes.size(), 256, {options.threads, progress}, "thin plate spline"};
     loop.over_nodes(
         [&] {
             return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}};

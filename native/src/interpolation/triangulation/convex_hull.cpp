@@ -80,8 +80,8 @@ std::vector<std::int32_t> hull_border(std::span<const Position> positions) {
 }
 
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress) {
+                                       std::span<const std::array<double, 2>> nodes,
+                                       const Execution& execution) {
     require_finite_nodes(nodes);
     std::vector<Position> positions;
     positions.reserve(points.size());
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> po
     require_finite_nodes(positions);
     const ConvexHull hull(std::move(positions));
     std::vector<std::uint8_t> outside(nodes.size());
-    const NodeLoop loop{nodes.size(), 4096, threads, progress};
+    const NodeLoop loop{nodes.size(), 4096, execution};
     loop.over_nodes([] { return 0; },
                     [&](int, std::size_t i) { outside[i] = hull.contains(nodes[i]) ? 0 : 1; });
     return outside;

@@ -13,7 +13,7 @@
 
 namespace realmodel::interpolation {
 
-PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* progress)
+PointTriangulation::PointTriangulation(const DataPoints& data, Progress* progress)
     : data_(data), tree_(data.local), vertices_(data.local.size()) {
     std::vector<Kernel::Point_2> points;
     for (const auto& [x, y] : data.local)

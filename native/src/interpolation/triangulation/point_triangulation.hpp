@@ -44,7 +44,7 @@ public:
         CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
     using Face = Delaunay::Face_handle;
 
-    PointTriangulation(const DataPoints& data, const Progress* progress);
+    PointTriangulation(const DataPoints& data, Progress* progress);
 
     const Delaunay& delaunay() const { return delaunay_; }
 

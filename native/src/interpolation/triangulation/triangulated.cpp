@@ -99,15 +99,15 @@ Found linear(const Source& source, const Position& node, const Place& place) {
 template <class Value>
 PartValues on_triangulation(std::span<const std::array<double, 3>> points,
                             std::span<const Position> nodes, const PointsAround* around,
-                            int threads, Progress* progress, const char* text, Value&& value) {
+                            const Execution& execution, const char* text, Value&& value) {
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
-    const PointTriangulation triangulation(data, progress);
+    const PointTriangulation triangulation(data, execution.progress);
     std::optional<PartCheck> check;
     if (around != nullptr) check.emplace(data, *around);
     const Source source{data, triangulation, check ? &*check : nullptr};
     PartValues out{std::vector<double>(nodes.size()), std::vector<std::uint8_t>(nodes.size(), 1)};
-    const NodeLoop loop{nodes.size(), 256, threads, progress, text};
+    const NodeLoop loop{nodes.size(), 256, execution, text};
     loop.over_nodes(
         [] { return std::vector<spatial::Neighbor>(); },
         [&](std::vector<spatial::Neighbor>& found, std::size_t i) {
@@ -249,31 +249,26 @@ Found natural(const Source& source, const Position& node, const Place& place) {
 
 std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3>> points,
                                             std::span<const std::array<double, 2>> nodes,
-                                            int threads, Progress* progress) {
-    return on_triangulation(points, nodes, nullptr, threads, progress, "linear interpolation",
-                            linear)
-        .z;
+                                            const Execution& execution) {
+    return on_triangulation(points, nodes, nullptr, execution, "linear interpolation", linear).z;
 }
 
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
-                                      std::span<const std::array<double, 2>> nodes, int threads,
-                                      Progress* progress) {
-    return on_triangulation(points, nodes, nullptr, threads, progress, "natural neighbors", natural)
-        .z;
+                                      std::span<const std::array<double, 2>> nodes,
+                                      const Execution& execution) {
+    return on_triangulation(points, nodes, nullptr, execution, "natural neighbors", natural).z;
 }
 
 PartValues linear_on_part(std::span<const std::array<double, 3>> points,
                           std::span<const std::array<double, 2>> nodes, const PointsAround& around,
-                          int threads, Progress* progress) {
-    return on_triangulation(points, nodes, &around, threads, progress, "linear interpolation",
-                            linear);
+                          const Execution& execution) {
+    return on_triangulation(points, nodes, &around, execution, "linear interpolation", linear);
 }
 
 PartValues natural_neighbors_of_part(std::span<const std::array<double, 3>> points,
                                      std::span<const std::array<double, 2>> nodes,
-                                     const PointsAround& around, int threads, Progress* progress) {
-    return on_triangulation(points, nodes, &around, threads, progress, "natural neighbors",
-                            natural);
+                                     const PointsAround& around, const Execution& execution) {
+    return on_triangulation(points, nodes, &around, execution, "natural neighbors", natural);
 }
 
 }  // namespace realmodel::interpolation

@@ -89,13 +89,14 @@ double upper_median(std::vector<double>& values) {
 }  // namespace
 
 ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Anisotropy& anisotropy,
-                                             const Progress* progress) {
+                                             Progress* progress) {
     const std::size_t count = points.size();
     if (count < 2) return {};
     const IsotropicSpace space(anisotropy);
     const std::vector<std::int32_t> near_part = even_part(count, kPointsForNearPairs);
     const std::size_t row = std::min(kNearNeighbors, count - 1) + 1;
-    const std::vector<spatial::Neighbor> near = points.nearest(space, near_part, row, 1, progress);
+    const std::vector<spatial::Neighbor> near =
+        points.nearest(space, near_part, row, {1, progress});
     std::vector<double> nearest, farthest;
     for (std::size_t k = 0; k < near_part.size(); ++k) {
         nearest.push_back(near[k * row + 1].squared_distance);

@@ -8,6 +8,6 @@ namespace realmodel::interpolation {
 
 /// As for points that are not checked yet (variogram_fit.hpp).
 ExperimentalVariogram experimental_variogram(const ManyPoints& points, const Anisotropy& anisotropy,
-                                             const Progress* progress = nullptr);
+                                             Progress* progress = nullptr);
 
 }  // namespace realmodel::interpolation

@@ -21,13 +21,12 @@ static_assert(kMostNeighbors <= LaneKriging::kMostNeighbors);
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most,
-                         int threads, Progress* progress)
+                         const Execution& execution)
     : neighbors_(std::min({neighbors, points.size() - 1, kMostNeighbors})),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       left_out_(even_part(points.size(), most)) {
     const std::vector<spatial::Neighbor> near =
-        points.nearest(IsotropicSpace({}), left_out_, neighbors_ + 1, threads, progress);
+        points.nearest(IsotropicSpace({}), left_out_, neighbors_ + 1, execution);
     const std::vector<std::int32_t> kept = points.kept(near);
     data_ = points.some(kept);
     others_.reserve(left_out_.size() * neighbors_);
@@ -110,7 +109,7 @@ private:
 }  // namespace
 
 void LeaveOneOut::predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const {
-    const NodeLoop loop{left_out_.size(), kChunk, threads_, nullptr};
+    const NodeLoop loop{left_out_.size(), kChunk, {execution_.threads, nullptr}};
     loop.over_chunks([&] { return PredictionLanes(data_, covariance, neighbors_); },
                      [&](PredictionLanes& own, std::size_t begin, std::size_t end) {
                          for (std::size_t k = begin; k < end; k += kLanes) {
@@ -119,7 +118,7 @@ void LeaveOneOut::predict_in_lanes(const Covariance& covariance, PredictionError
                                        out.errors.data() + k, out.variances.data() + k);
                          }
                      });
-    if (progress_ != nullptr) progress_->check();
+    if (execution_.progress != nullptr) execution_.progress->check();
 }
 
 PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) const {
@@ -133,7 +132,7 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
         NeighborKriging kriging;
         std::vector<spatial::Neighbor> near;
     };
-    const NodeLoop loop{count, kChunk, threads_, progress_, nullptr, 0, 0};
+    const NodeLoop loop{count, kChunk, execution_, nullptr, 0, 0};
     loop.over_nodes(
         [&] {
             return Scratch{NeighborKriging(data_, covariance, drift),
@@ -143,7 +142,8 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
             const std::int32_t point = left_out_[k];
             for (std::size_t i = 0; i < neighbors_; ++i)
                 own.near[i].point = others_[k * neighbors_ + i];
-            const Estimate found = own.kriging.at(data_.local[point], own.near, progress_);
+            const Estimate found =
+                own.kriging.at(data_.local[point], own.near, execution_.progress);
             out.errors[k] = found.value - data_.values[point];
             out.variances[k] = found.variance;
         });

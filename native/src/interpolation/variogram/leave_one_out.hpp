@@ -6,11 +6,8 @@
 #include "interpolation/data_points.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/variogram/many_points.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/interpolation/drift.hpp"
-
-namespace realmodel {
-class Progress;
-}
 
 namespace realmodel::interpolation {
 
@@ -25,8 +22,8 @@ class LeaveOneOut {
 public:
     /// @param neighbors  1 .. 64; fewer where there are not so many others
     /// @param most        points that are left out, where there are so many
-    LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most, int threads,
-                Progress* progress);
+    LeaveOneOut(const ManyPoints& points, std::size_t neighbors, std::size_t most,
+                const Execution& execution);
 
     std::size_t size() const { return left_out_.size(); }
     std::size_t neighbors() const { return neighbors_; }
@@ -41,8 +38,7 @@ private:
 
     DataPoints data_;  // those left out, and their others
     std::size_t neighbors_;
-    int threads_;
-    Progress* progress_;
+    Execution execution_;
     std::vector<std::int32_t> left_out_;  // numbers of points, in the order of a curve
     std::vector<std::int32_t> others_;    // neighbors_ of each, nearest first
 };

@@ -63,10 +63,10 @@ void ManyPoints::take_drift_out(Drift drift) {
 
 std::vector<spatial::Neighbor> ManyPoints::nearest(const IsotropicSpace& space,
                                                    std::span<const std::int32_t> asked,
-                                                   std::size_t count, int threads,
-                                                   const Progress* progress) const {
+                                                   std::size_t count,
+                                                   const Execution& execution) const {
     const Positions positions{size(), [&](std::size_t i) { return space(local(i)); }};
-    return nearest_of_some(positions, asked, count, threads, progress, most_);
+    return nearest_of_some(positions, asked, count, execution, most_);
 }
 
 double ManyPoints::diagonal(const IsotropicSpace& space) const {

@@ -52,7 +52,7 @@ public:
     /// nearest_of_some of them, with distances in a space.
     std::vector<spatial::Neighbor> nearest(const IsotropicSpace& space,
                                            std::span<const std::int32_t> asked, std::size_t count,
-                                           int threads, const Progress* progress) const;
+                                           const Execution& execution) const;
     /// Of the box around them.
     double diagonal(const IsotropicSpace& space) const;
     double largest_value() const;

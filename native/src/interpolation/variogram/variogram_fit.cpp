@@ -42,10 +42,10 @@ public:
         : all_(all),
           options_(options),
           progress_(progress),
-          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut, options.threads,
-                  progress),
+          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut,
+                  {options.threads, progress}),
           few_(all, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
-               kPointsSearched, options.threads, progress) {}
+               kPointsSearched, {options.threads, progress}) {}
 
     /// Leaves `out` as it is where no model fits at all. Its experimental values and its
     /// variogram's anisotropy are given; they change where an anisotropy is found.
@@ -137,8 +137,8 @@ private:
         const bool drifts = options_.drift != Drift::kConstant;
         std::optional<LeaveOneOut> fewer;
         if (drifts) {
-            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift, options_.threads,
-                          progress_);
+            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift,
+                          Execution{options_.threads, progress_});
         }
         const LeaveOneOut& points = drifts ? *fewer : points_;
         const auto errors_with = [&](const Variogram& v) {

@@ -21,11 +21,11 @@ constexpr double kAlike = 1e-3;
 class Cleaning {
 public:
     Cleaning(const ComplexView& model, std::span<const std::int32_t> surface_kind, double tolerance,
-             int threads, Progress* progress)
-        : complex_(model, threads, progress),
+             const Execution& execution)
+        : complex_(model, execution),
           check_(complex_, surface_kind),
           tolerance_(tolerance),
-          progress_(progress),
+          progress_(execution.progress),
           moved_(model.vertex_count(), 0.0) {}
 
     CleanedCells run() {
@@ -412,8 +412,8 @@ private:
 }  // namespace
 
 CleanedCells clean_cells(const ComplexView& model, std::span<const std::int32_t> surface_kind,
-                         double tolerance, int threads, Progress* progress) {
-    return Cleaning(model, surface_kind, tolerance, threads, progress).run();
+                         double tolerance, const Execution& execution) {
+    return Cleaning(model, surface_kind, tolerance, execution).run();
 }
 
 }  // namespace realmodel::simulation

@@ -123,7 +123,7 @@ void Change::add(std::span<const std::int32_t> loop, std::int32_t origin,
     add_simple(open_, origin, cells, surface);
 }
 
-EditableComplex::EditableComplex(const ComplexView& model, int threads, Progress* progress)
+EditableComplex::EditableComplex(const ComplexView& model, const Execution& execution)
     : model_((check_indices(model), model)),
       cells_(model.face_count()),
       surface_(copy_of(model.face_surface)),
@@ -156,12 +156,11 @@ EditableComplex::EditableComplex(const ComplexView& model, int threads, Progress
     }
     for (std::size_t f = 0; f < cells_.size(); ++f)
         cells_[f] = {model.cell(f, 0), model.cell(f, 1)};
-    parallel_ranges(cells_.size(), kAtOnce, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f)
-                            shapes_[f] = shape_of(corners(static_cast<std::int32_t>(f)));
-                    });
-    parallel_ranges(cell_shapes_.size(), kAtOnce, threads, progress,
+    parallel_ranges(cells_.size(), kAtOnce, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f)
+            shapes_[f] = shape_of(corners(static_cast<std::int32_t>(f)));
+    });
+    parallel_ranges(cell_shapes_.size(), kAtOnce, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c)
                             cell_shapes_[c] = measured(static_cast<std::int32_t>(c));

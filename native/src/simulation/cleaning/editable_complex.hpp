@@ -68,7 +68,7 @@ private:
 /// A complex whose faces can be replaced, with the faces of each cell and vertex.
 class EditableComplex {
 public:
-    EditableComplex(const ComplexView& model, int threads, Progress* progress);
+    EditableComplex(const ComplexView& model, const Execution& execution);
 
     std::span<const std::int32_t> corners(std::int32_t face) const { return corners_[face]; }
     std::span<const std::int32_t> cell_faces(std::int32_t cell) const { return cell_faces_[cell]; }

@@ -15,49 +15,45 @@ constexpr std::size_t kFaces = 1 << 13;  // copied at a time
 /// The faces on surfaces, which come first; those that only have a cell above are seen from below.
 class SurfaceFaces {
 public:
-    SurfaceFaces(const FaceList& faces, const ConformedFaces& conformed, int threads,
-                 const Progress* progress)
-        : faces_(faces), conformed_(conformed), threads_(threads), progress_(progress) {
+    SurfaceFaces(const FaceList& faces, const ConformedFaces& conformed, const Execution& execution)
+        : faces_(faces), conformed_(conformed), execution_(execution) {
         first_corner_.resize((faces.size() + kFaces - 1) / kFaces);
-        parallel_ranges(
-            faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-                const std::uint32_t first = conformed.face_offsets[begin],
-                                    last = conformed.face_offsets[end];
-                const auto taken = std::count_if(conformed.vertices.begin() + first,
-                                                 conformed.vertices.begin() + last,
-                                                 [](std::int32_t v) { return v >= 0; });
-                first_corner_[begin / kFaces] =
-                    static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
-            });
+        parallel_ranges(faces.size(), kFaces, execution, [&](std::size_t begin, std::size_t end) {
+            const std::uint32_t first = conformed.face_offsets[begin],
+                                last = conformed.face_offsets[end];
+            const auto taken =
+                std::count_if(conformed.vertices.begin() + first, conformed.vertices.begin() + last,
+                              [](std::int32_t v) { return v >= 0; });
+            first_corner_[begin / kFaces] =
+                static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
+        });
         corners_ = count_before(first_corner_);
     }
 
     std::size_t corners() const { return corners_; }
 
     void copy(const std::vector<std::int32_t>& surface_of_plane, CellComplex& complex) const {
-        parallel_ranges(
-            faces_.size(), kFaces, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-                auto late = late_from(conformed_.face_offsets[begin]);
-                const auto start = complex.face_vertices.begin();
-                auto next = start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFaces]);
-                for (std::size_t f = begin; f < end; ++f) {
-                    const auto face = next;
-                    for (auto e = conformed_.face_offsets[f]; e < conformed_.face_offsets[f + 1];
-                         ++e) {
-                        if (conformed_.vertices[e] >= 0) *next++ = conformed_.vertices[e];
-                        for (; late != conformed_.inserted.end() && late->entry == e; ++late)
-                            *next++ = late->vertex;
-                    }
-                    complex.face_offsets[f] = face - start;
-                    complex.face_surface[f] = surface_of_plane[index(faces_.plane[f])];
-                    if (faces_.below[f] >= 0) {
-                        complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
-                    } else {
-                        complex.face_cells[f] = {faces_.above[f], kOutsideCell};
-                        std::reverse(face, next);
-                    }
+        parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+            auto late = late_from(conformed_.face_offsets[begin]);
+            const auto start = complex.face_vertices.begin();
+            auto next = start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFaces]);
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto face = next;
+                for (auto e = conformed_.face_offsets[f]; e < conformed_.face_offsets[f + 1]; ++e) {
+                    if (conformed_.vertices[e] >= 0) *next++ = conformed_.vertices[e];
+                    for (; late != conformed_.inserted.end() && late->entry == e; ++late)
+                        *next++ = late->vertex;
                 }
-            });
+                complex.face_offsets[f] = face - start;
+                complex.face_surface[f] = surface_of_plane[index(faces_.plane[f])];
+                if (faces_.below[f] >= 0) {
+                    complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
+                } else {
+                    complex.face_cells[f] = {faces_.above[f], kOutsideCell};
+                    std::reverse(face, next);
+                }
+            }
+        });
     }
 
 private:
@@ -70,8 +66,7 @@ private:
 
     const FaceList& faces_;
     const ConformedFaces& conformed_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     std::vector<std::size_t> first_corner_;  ///< of so many faces each
     std::size_t corners_ = 0;
 };
@@ -102,7 +97,7 @@ void copy_walls(const WallBatch& walls, std::size_t face, std::size_t corner,
 
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      ConformedFaces conformed, std::vector<WallBatch> walls,
-                     Array<std::int32_t> cell_block, int threads, const Progress* progress) {
+                     Array<std::int32_t> cell_block, const Execution& execution) {
     CellComplex complex;
     complex.vertices = std::move(conformed.positions);
     complex.cell_block = std::move(cell_block);
@@ -112,7 +107,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
         first_corner.push_back(batch.vertices.size());
     }
     const std::size_t face_count = faces.size() + count_before(first_wall);
-    const SurfaceFaces surface_faces(faces, conformed, threads, progress);
+    const SurfaceFaces surface_faces(faces, conformed, execution);
     const std::size_t corners_of_faces = surface_faces.corners();
     complex.face_vertices.resize(corners_of_faces + count_before(first_corner));
     complex.face_offsets.resize(face_count + 1);
@@ -121,7 +116,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
     complex.face_surface.resize(face_count);
     surface_faces.copy(surface_of_plane, complex);
     conformed = {};
-    parallel_chunks(walls.size(), threads, progress, [&](std::size_t batch) {
+    parallel_chunks(walls.size(), execution, [&](std::size_t batch) {
         copy_walls(walls[batch], faces.size() + first_wall[batch],
                    corners_of_faces + first_corner[batch], complex);
         walls[batch] = {};

@@ -12,6 +12,6 @@ namespace realmodel::strata {
 /// given back as they are used.
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      ConformedFaces conformed, std::vector<WallBatch> walls,
-                     Array<std::int32_t> cell_block, int threads, const Progress* progress);
+                     Array<std::int32_t> cell_block, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -33,7 +33,7 @@ struct Conformed {
 /// Repeats the steps until no two columns cross in height between the vertices of a line; the
 /// second round is the last one.
 Conformed conform(exact::PlanArrangement& geometry, const Construction& construction,
-                  const BlockLinks* blocks, int threads, Progress* progress) {
+                  const BlockLinks* blocks, const Execution& execution) {
     const FaceList& faces = construction.faces;
     Conformed c;
     c.done = kOverlayDone;
@@ -41,25 +41,25 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
         const auto next = [&](double of_round, const char* text) {
             // a second round, where there is one, shares what is left
             const double share = of_round * (1.0 - kOverlayDone) * (round == 0 ? 0.5 : 0.25);
-            begin_step(progress, c.done, share, text);
+            begin_step(execution.progress, c.done, share, text);
             c.done += share;
         };
         next(0.2, "joining points");
-        c.plan_vertices = find_plan_vertices(geometry, faces, c.crossings, threads, progress);
+        c.plan_vertices = find_plan_vertices(geometry, faces, c.crossings, execution);
         next(0.4, "joining edges");
         CollinearEdges lines = find_collinear_edges(
             geometry, faces, c.plan_vertices, c.crossings,
             blocks == nullptr && !construction.is_local ? &construction.node_is_thick : nullptr,
-            threads, progress);
+            execution);
         next(0.3, "rounding");
-        c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, threads, progress);
+        c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, execution);
         next(0.1, "building walls");
         std::optional<BlockLines> of_blocks;
         if (blocks != nullptr)
             of_blocks.emplace(
                 BlockLines{construction.node_block, c.plan_vertices, blocks->borders});
         c.walls = find_walls(geometry, faces, lines, c.conformed, of_blocks ? &*of_blocks : nullptr,
-                             threads, progress);
+                             execution);
         if (c.walls.missing.empty()) return c;
         c.crossings.insert(c.crossings.end(), c.walls.missing.begin(), c.walls.missing.end());
     }
@@ -81,12 +81,12 @@ Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex)
 
 BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
-                       const std::optional<Window>& window, int threads, Progress* progress) {
+                       const std::optional<Window>& window, const Execution& execution) {
     // The peak of memory is still to come, and what chunks of overlays were made in is free.
     geometry.forget_names();
     constexpr std::size_t kManyPoints = 1000000;
     if (geometry.point_count() > kManyPoints) give_back_memory();
-    Conformed c = conform(geometry, construction, blocks, threads, progress);
+    Conformed c = conform(geometry, construction, blocks, execution);
     FaceList& faces = construction.faces;
     if (construction.may_lack_nodes) {
         for (auto* nodes : {&faces.above, &faces.below})
@@ -94,18 +94,18 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     }
     std::optional<TileBorder> border;
     if (window) {
-        border = find_tile_border(geometry, faces, c.plan_vertices, c.conformed, *window, threads,
-                                  progress);
+        border =
+            find_tile_border(geometry, faces, c.plan_vertices, c.conformed, *window, execution);
     }
-    Array<PlanOffset> plan_off = find_plan_offsets(geometry, c.plan_vertices, threads, progress);
+    Array<PlanOffset> plan_off = find_plan_offsets(geometry, c.plan_vertices, execution);
     // What comes out takes the memory of what it was made of.
     if (blocks == nullptr) {
         c.conformed.entries = {};
         geometry.forget_all();
         faces.surface = {};
     }
-    begin_step(progress, c.done, 1.0 - c.done, "putting the cells together");
-    set_vertex_positions(c.plan_vertices, c.conformed, threads, progress);
+    begin_step(execution.progress, c.done, 1.0 - c.done, "putting the cells together");
+    set_vertex_positions(c.plan_vertices, c.conformed, execution);
     Array<std::int32_t> cell_block;
     std::vector<std::int32_t> cell_of_node;
     if (blocks == nullptr) {
@@ -113,34 +113,32 @@ BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construct
     } else {
         auto& links = construction.links;
         links.insert(links.end(), c.walls.links.begin(), c.walls.links.end());
-        cell_of_node = cells_of_nodes(construction, blocks->triangles, blocks->wholes, cell_block,
-                                      threads, progress);
+        cell_of_node =
+            cells_of_nodes(construction, blocks->triangles, blocks->wholes, cell_block, execution);
         for (auto* nodes : {&faces.above, &faces.below}) {
             for (std::int32_t& node : *nodes)
                 node = node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
         }
     }
-    const std::vector<FlatCell> flat =
-        make_distinct(geometry, faces, c.plan_vertices, c.conformed, border ? &*border : nullptr,
-                      threads, progress);
+    const std::vector<FlatCell> flat = make_distinct(geometry, faces, c.plan_vertices, c.conformed,
+                                                     border ? &*border : nullptr, execution);
     Array<PlanOffset> vertex_off =
-        vertex_offsets(plan_off, c.plan_vertices, c.conformed, threads, progress);
+        vertex_offsets(plan_off, c.plan_vertices, c.conformed, execution);
     plan_off = {};
     std::optional<UntouchedTriangles> untouched;
     if (blocks != nullptr) {
         JoinedWalls joined = join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
-                                            c.plan_vertices, c.conformed, threads, progress);
+                                            c.plan_vertices, c.conformed, execution);
         c.walls.walls.assign(1, std::move(joined.walls));
         if (border) border->renumber(joined.number);
         renumber(vertex_off, joined.number);
-        untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.conformed, threads,
-                          progress);
+        untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.conformed,
+                          execution);
     }
     c.plan_vertices = {};
     if (blocks == nullptr) faces.polygons = {};
-    CellComplex complex =
-        assemble(faces, surface_of_plane, std::move(c.conformed), std::move(c.walls.walls),
-                 std::move(cell_block), threads, progress);
+    CellComplex complex = assemble(faces, surface_of_plane, std::move(c.conformed),
+                                   std::move(c.walls.walls), std::move(cell_block), execution);
     if (untouched) untouched->add_to(complex, cell_of_node);
     assert(are_closed(complex));
     if (!flat.empty()) complex.warnings.push_back(left_flat(flat, complex));

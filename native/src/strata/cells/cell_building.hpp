@@ -23,6 +23,6 @@ struct BlockLinks {
 /// @param window  of a tile, or nothing
 BuiltCells build_cells(exact::PlanArrangement& geometry, Construction& construction,
                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
-                       const std::optional<Window>& window, int threads, Progress* progress);
+                       const std::optional<Window>& window, const Execution& execution);
 
 }  // namespace realmodel::strata

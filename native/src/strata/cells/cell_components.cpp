@@ -28,7 +28,7 @@ void check_cells(const std::array<std::int32_t, 2>& sides, std::size_t face, std
 
 std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_t, 2>> face_cells,
                                           std::span<const std::int32_t> cell_block,
-                                          const Progress* progress) {
+                                          Progress* progress) {
     const auto cells = static_cast<std::int32_t>(cell_block.size());
     DisjointSets parts(cell_block.size());
     for (std::size_t f = 0; f < face_cells.size(); ++f) {
@@ -49,7 +49,7 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
 }
 
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
-                     const Progress* progress) {
+                     Progress* progress) {
     constexpr std::size_t kFaces = 8192;  // at a time
     check_total(face_cells.size(), UINT32_MAX / 2);
     const auto produce = [&](std::size_t chunk, const auto& put) {
@@ -63,7 +63,7 @@ CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, st
         }
     };
     auto sides = sorted_in_buckets<std::uint32_t>(cells, (face_cells.size() + kFaces - 1) / kFaces,
-                                                  produce, 0, progress);
+                                                  produce, {0, progress});
     return {std::move(sides.offsets), std::move(sides.values)};
 }
 

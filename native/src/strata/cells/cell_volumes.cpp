@@ -50,7 +50,7 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
                                  std::span<const std::int64_t> face_offsets,
                                  std::span<const std::int32_t> face_vertices,
                                  std::span<const std::array<std::int32_t, 2>> face_cells,
-                                 std::size_t cells, int threads, const Progress* progress) {
+                                 std::size_t cells, const Execution& execution) {
     const std::size_t faces = face_cells.size();
     if (face_offsets.size() != faces + 1) refuse(faces, "more or fewer offsets than faces");
     const auto loop_of = [&](std::size_t f) {
@@ -62,7 +62,7 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
     };
     std::vector<std::int32_t> origin(cells, -1);  // a corner of each cell
     for (std::size_t f = 0; f < faces; ++f) {
-        poll(progress, f);
+        poll(execution.progress, f);
         const auto loop = loop_of(f);
         for (const std::int32_t v : loop) {
             if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())
@@ -77,28 +77,27 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
     }
     // the shares of the faces on several threads; then in order, so that sums do not depend on them
     std::vector<std::array<double, 2>> share(faces);
-    parallel_chunks(
-        (faces + kFacesOfChunk - 1) / kFacesOfChunk, threads, progress, [&](std::size_t chunk) {
-            const std::size_t end = std::min(faces, (chunk + 1) * kFacesOfChunk);
-            for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
-                const FaceArea face = area_of(vertices, loop_of(f));
-                for (std::size_t side = 0; side < 2; ++side) {
-                    const std::int32_t cell = face_cells[f][side];
-                    if (cell < 0) continue;
-                    const auto corner =
-                        static_cast<std::size_t>(origin[static_cast<std::size_t>(cell)]);
-                    const Position& o = vertices[corner];
-                    const double volume = ((face.first[0] - o[0]) * face.area[0] +
-                                           (face.first[1] - o[1]) * face.area[1] +
-                                           (face.first[2] - o[2]) * face.area[2]) /
-                                          6;
-                    share[f][side] = side == 0 ? volume : -volume;
-                }
+    parallel_chunks((faces + kFacesOfChunk - 1) / kFacesOfChunk, execution, [&](std::size_t chunk) {
+        const std::size_t end = std::min(faces, (chunk + 1) * kFacesOfChunk);
+        for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
+            const FaceArea face = area_of(vertices, loop_of(f));
+            for (std::size_t side = 0; side < 2; ++side) {
+                const std::int32_t cell = face_cells[f][side];
+                if (cell < 0) continue;
+                const auto corner =
+                    static_cast<std::size_t>(origin[static_cast<std::size_t>(cell)]);
+                const Position& o = vertices[corner];
+                const double volume =
+                    ((face.first[0] - o[0]) * face.area[0] + (face.first[1] - o[1]) * face.area[1] +
+                     (face.first[2] - o[2]) * face.area[2]) /
+                    6;
+                share[f][side] = side == 0 ? volume : -volume;
             }
-        });
+        }
+    });
     std::vector<double> volume(cells, 0.0);
     for (std::size_t f = 0; f < faces; ++f) {
-        poll(progress, f);
+        poll(execution.progress, f);
         for (std::size_t side = 0; side < 2; ++side) {
             const std::int32_t cell = face_cells[f][side];
             if (cell >= 0) volume[static_cast<std::size_t>(cell)] += share[f][side];

@@ -98,12 +98,11 @@ struct Extent {
 class FlatCells {
 public:
     FlatCells(const FaceList& faces, const PlanVertices& plan_vertices, Spreader& spreader,
-              int threads, const Progress* progress)
+              const Execution& execution)
         : faces_(faces),
           plan_vertices_(plan_vertices),
           spreader_(spreader),
-          threads_(threads),
-          progress_(progress) {}
+          execution_(execution) {}
 
     /// Finds the cells; whether there are any.
     bool find() {
@@ -179,11 +178,10 @@ private:
     std::vector<Found> collected(const Collect& collect) const {
         constexpr std::size_t kFaces = 1 << 13;
         std::vector<std::vector<Found>> found((faces_.size() + kFaces - 1) / kFaces);
-        parallel_ranges(faces_.size(), kFaces, threads_, progress_,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t f = begin; f < end; ++f)
-                                collect(f, found[begin / kFaces]);
-                        });
+        parallel_ranges(faces_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f)
+                collect(f, found[begin / kFaces]);
+        });
         std::vector<Found> all;
         for (const auto& some : found)
             all.insert(all.end(), some.begin(), some.end());
@@ -226,8 +224,7 @@ private:
     const FaceList& faces_;
     const PlanVertices& plan_vertices_;
     Spreader& spreader_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     std::vector<std::int32_t> cells_;                            ///< with a flat face, ascending
     std::vector<Extent> extents_;                                ///< of each of them
     std::vector<std::pair<std::size_t, std::size_t>> of_cells_;  ///< which of them, and a face
@@ -237,13 +234,12 @@ private:
 
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices, ConformedFaces& conformed,
-                                    const TileBorder* border, int threads,
-                                    const Progress* progress) {
+                                    const TileBorder* border, const Execution& execution) {
     Spreader spreader(geometry, plan_vertices, border);
     spreader.separate();
     // Moving one cell's vertex may flatten its neighbor; a few rounds settle it.
     constexpr int kRounds = 16;
-    FlatCells flat(faces, plan_vertices, spreader, threads, progress);
+    FlatCells flat(faces, plan_vertices, spreader, execution);
     std::vector<FlatCell> left;
     for (int round = 0; flat.find(); ++round) {
         if (round < kRounds && flat.spread()) continue;

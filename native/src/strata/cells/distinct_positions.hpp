@@ -24,7 +24,6 @@ struct FlatCell {
 /// @return the cells that are flat still, after some rounds or because nothing of them may move
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& places, ConformedFaces& conformed,
-                                    const TileBorder* border, int threads,
-                                    const Progress* progress);
+                                    const TileBorder* border, const Execution& execution);
 
 }  // namespace realmodel::strata

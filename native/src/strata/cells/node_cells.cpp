@@ -98,8 +98,7 @@ void for_each_wall(std::span<const WallStretch> stretches,
 /// Keeps some of the vertices.
 /// @return the new number of each, -1 of those that are gone
 std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_needed,
-                                        ConformedFaces& conformed, int threads,
-                                        const Progress* progress) {
+                                        ConformedFaces& conformed, const Execution& execution) {
     std::vector<std::int32_t> number(is_needed.size(), -1);
     std::int32_t count = 0;
     for (std::size_t v = 0; v < is_needed.size(); ++v) {
@@ -108,12 +107,11 @@ std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_need
         number[v] = count++;
     }
     conformed.positions.resize(static_cast<std::size_t>(count));
-    parallel_ranges(conformed.vertices.size(), kEntries, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t e = begin; e < end; ++e)
-                            conformed.vertices[e] =
-                                number[static_cast<std::size_t>(conformed.vertices[e])];
-                    });
+    parallel_ranges(
+        conformed.vertices.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t e = begin; e < end; ++e)
+                conformed.vertices[e] = number[static_cast<std::size_t>(conformed.vertices[e])];
+        });
     return number;
 }
 
@@ -121,13 +119,13 @@ std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_need
 
 std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                                          const TriangleLinks& links, const WholeTriangles& wholes,
-                                         Array<std::int32_t>& cell_block, int threads,
-                                         const Progress* progress) {
+                                         Array<std::int32_t>& cell_block,
+                                         const Execution& execution) {
     const auto block = [&](std::int32_t node) {
         return construction.node_block[static_cast<std::size_t>(node)];
     };
     DisjointSets sets(construction.node_block.size());
-    parallel_ranges(construction.links.size(), kLinks, threads, progress,
+    parallel_ranges(construction.links.size(), kLinks, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
                             const auto [a, b] = construction.links[i];
@@ -138,7 +136,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
     const auto join = [&](std::int32_t a, std::int32_t b) {
         if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
     };
-    parallel_ranges(links.neighbor.size(), kTriangles, threads, progress,
+    parallel_ranges(links.neighbor.size(), kTriangles, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (auto plane = static_cast<PlaneId>(begin);
                              plane < static_cast<PlaneId>(end); ++plane) {
@@ -153,7 +151,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                     });
     std::vector<std::int32_t> cell_of_node(construction.node_block.size());
     for (std::size_t n = 0; n < cell_of_node.size(); ++n) {
-        poll(progress, n);
+        poll(execution.progress, n);
         const auto root = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(n)));
         if (root == n) {
             cell_of_node[n] = static_cast<std::int32_t>(cell_block.size());
@@ -168,7 +166,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
 JoinedWalls join_stretches(std::span<const WallStretch> stretches,
                            const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
                            std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
-                           ConformedFaces& conformed, int threads, const Progress* progress) {
+                           ConformedFaces& conformed, const Execution& execution) {
     std::vector<std::uint8_t> is_needed(conformed.positions.size(), 0), may_bend(is_needed);
     for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
         is_needed[static_cast<std::size_t>(conformed.vertices[conformed.entries.first(c)])] = 1;
@@ -198,7 +196,7 @@ JoinedWalls join_stretches(std::span<const WallStretch> stretches,
         walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
         walls.cells.push_back({wall.left, wall.right});
     });
-    auto number = keep_vertices(is_needed, conformed, threads, progress);
+    auto number = keep_vertices(is_needed, conformed, execution);
     for (std::int32_t& v : walls.vertices)
         v = number[static_cast<std::size_t>(v)];
     return {std::move(walls), std::move(number)};

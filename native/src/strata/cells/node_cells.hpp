@@ -17,8 +17,8 @@ namespace realmodel::strata {
 /// @return the cell of each node
 std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                                          const TriangleLinks& links, const WholeTriangles& wholes,
-                                         Array<std::int32_t>& cell_block, int threads,
-                                         const Progress* progress);
+                                         Array<std::int32_t>& cell_block,
+                                         const Execution& execution);
 
 /// Walls, and the new number of each vertex; -1 of those that are gone.
 struct JoinedWalls {
@@ -34,6 +34,6 @@ struct JoinedWalls {
 JoinedWalls join_stretches(std::span<const WallStretch> stretches,
                            const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
                            std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
-                           ConformedFaces& conformed, int threads, const Progress* progress);
+                           ConformedFaces& conformed, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -40,59 +40,54 @@ bool is_close(const exact::DoubleDoubleInterval& offset, double coordinate) {
 }  // namespace
 
 Array<PlanOffset> find_plan_offsets(const exact::PlanArrangement& geometry,
-                                    const PlanVertices& plan_vertices, int threads,
-                                    const Progress* progress) {
+                                    const PlanVertices& plan_vertices, const Execution& execution) {
     Array<PlanOffset> offsets;
     if (!is_far_from_origin(plan_vertices)) return offsets;
     offsets.resize(plan_vertices.size());
-    parallel_ranges(
-        offsets.size(), kTogether, threads, progress, [&](std::size_t begin, std::size_t end) {
-            using Number = exact::DoubleDoubleInterval;
-            const exact::LocalArrangement scope(geometry);
-            const exact::BallArithmetic in{geometry};
-            const ExactPlaces places(geometry);
-            for (std::size_t p = begin; p < end; ++p) {
-                offsets[p] = {0, 0};
-                const PointId point = plan_vertices.representative[p];
-                if (geometry.is_vertex(point)) continue;
-                const auto origin =
-                    exact::anchor(geometry, geometry.line(geometry.point(point).first));
-                const exact::Point& o = geometry.point(origin);
-                const auto h = exact::position_of<Number>(in, scope, point, origin);
-                const auto [x, y] = plan_vertices.position[p];
-                const Number off_x = h.x / h.w + Number::difference(o.x, x),
-                             off_y = h.y / h.w + Number::difference(o.y, y);
-                if (is_close(off_x, x) && is_close(off_y, y)) {
-                    offsets[p] = {static_cast<float>(off_x.high), static_cast<float>(off_y.high)};
-                    continue;
-                }
-                const auto at = places.plan(point);
-                offsets[p] = {static_cast<float>(nearest(at[0] - x)),
-                              static_cast<float>(nearest(at[1] - y))};
+    parallel_ranges(offsets.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+        using Number = exact::DoubleDoubleInterval;
+        const exact::LocalArrangement scope(geometry);
+        const exact::BallArithmetic in{geometry};
+        const ExactPlaces places(geometry);
+        for (std::size_t p = begin; p < end; ++p) {
+            offsets[p] = {0, 0};
+            const PointId point = plan_vertices.representative[p];
+            if (geometry.is_vertex(point)) continue;
+            const auto origin = exact::anchor(geometry, geometry.line(geometry.point(point).first));
+            const exact::Point& o = geometry.point(origin);
+            const auto h = exact::position_of<Number>(in, scope, point, origin);
+            const auto [x, y] = plan_vertices.position[p];
+            const Number off_x = h.x / h.w + Number::difference(o.x, x),
+                         off_y = h.y / h.w + Number::difference(o.y, y);
+            if (is_close(off_x, x) && is_close(off_y, y)) {
+                offsets[p] = {static_cast<float>(off_x.high), static_cast<float>(off_y.high)};
+                continue;
             }
-        });
+            const auto at = places.plan(point);
+            offsets[p] = {static_cast<float>(nearest(at[0] - x)),
+                          static_cast<float>(nearest(at[1] - y))};
+        }
+    });
     return offsets;
 }
 
 Array<PlanOffset> vertex_offsets(const Array<PlanOffset>& offsets,
                                  const PlanVertices& plan_vertices, const ConformedFaces& conformed,
-                                 int threads, const Progress* progress) {
+                                 const Execution& execution) {
     Array<PlanOffset> result;
     if (offsets.empty()) return result;
     result.resize(conformed.positions.size());
-    parallel_ranges(
-        offsets.size(), kTogether, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                const auto [x, y] = plan_vertices.position[p];
-                for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1];
-                     ++v) {
-                    const auto& moved = conformed.positions[static_cast<std::size_t>(v)];
-                    result[static_cast<std::size_t>(v)] = {
-                        offsets[p][0] + static_cast<float>(x - moved[0]),
-                        offsets[p][1] + static_cast<float>(y - moved[1])};
-                }
+    parallel_ranges(offsets.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            const auto [x, y] = plan_vertices.position[p];
+            for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v) {
+                const auto& moved = conformed.positions[static_cast<std::size_t>(v)];
+                result[static_cast<std::size_t>(v)] = {
+                    offsets[p][0] + static_cast<float>(x - moved[0]),
+                    offsets[p][1] + static_cast<float>(y - moved[1])};
             }
-        });
+        }
+    });
     return result;
 }
 

@@ -93,35 +93,34 @@ void TileBorder::renumber(const std::vector<std::int32_t>& number) {
 
 TileBorder find_tile_border(const PlanArrangement& geometry, const FaceList& faces,
                             const PlanVertices& plan_vertices, const ConformedFaces& conformed,
-                            const Window& window, int threads, const Progress* progress) {
+                            const Window& window, const Execution& execution) {
     TileBorder border{window, plan_vertices_on(window, plan_vertices), {}};
     const auto planes = planes_at(border.plan_vertices, faces, conformed);
     constexpr std::size_t kTogether = 64;
     std::vector<std::vector<BorderVertex>> found((planes.size() + kTogether - 1) / kTogether);
-    parallel_ranges(
-        planes.size(), kTogether, threads, progress, [&](std::size_t begin, std::size_t end) {
-            const ExactPlaces places(geometry);
-            for (std::size_t i = begin; i < end; ++i) {
-                TileBorder::PlanVertex& vertex = border.plan_vertices[i];
-                const auto p = static_cast<std::size_t>(vertex.number);
-                const PointId point = plan_vertices.representative[p];
-                const auto at = places.plan(point);
-                for (std::size_t axis = 0; axis < 2; ++axis) {
-                    vertex.is_on[axis] =
-                        vertex.is_on[axis] && at[axis] == plan_vertices.position[p][axis];
-                }
-                if (!vertex.is_on[0] && !vertex.is_on[1]) continue;
-                const std::array rounded{nearest(at[0]), nearest(at[1])};
-                const std::array text{at[0].get_str(16), at[1].get_str(16)};
-                for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
-                    const mpq_class z = places.height(planes[i][rank], point);
-                    found[begin / kTogether].push_back(
-                        {conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
-                         {rounded[0], rounded[1], nearest(z)},
-                         {text[0], text[1], z.get_str(16)}});
-                }
+    parallel_ranges(planes.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+        const ExactPlaces places(geometry);
+        for (std::size_t i = begin; i < end; ++i) {
+            TileBorder::PlanVertex& vertex = border.plan_vertices[i];
+            const auto p = static_cast<std::size_t>(vertex.number);
+            const PointId point = plan_vertices.representative[p];
+            const auto at = places.plan(point);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                vertex.is_on[axis] =
+                    vertex.is_on[axis] && at[axis] == plan_vertices.position[p][axis];
             }
-        });
+            if (!vertex.is_on[0] && !vertex.is_on[1]) continue;
+            const std::array rounded{nearest(at[0]), nearest(at[1])};
+            const std::array text{at[0].get_str(16), at[1].get_str(16)};
+            for (std::size_t rank = 0; rank < planes[i].size(); ++rank) {
+                const mpq_class z = places.height(planes[i][rank], point);
+                found[begin / kTogether].push_back(
+                    {conformed.vertex_offsets[p] + static_cast<std::int32_t>(rank),
+                     {rounded[0], rounded[1], nearest(z)},
+                     {text[0], text[1], z.get_str(16)}});
+            }
+        }
+    });
     for (auto& some : found) {
         border.vertices.insert(border.vertices.end(), std::make_move_iterator(some.begin()),
                                std::make_move_iterator(some.end()));

@@ -35,6 +35,6 @@ struct TileBorder {
 
 TileBorder find_tile_border(const exact::PlanArrangement& geometry, const FaceList& faces,
                             const PlanVertices& plan_vertices, const ConformedFaces& conformed,
-                            const Window& window, int threads, const Progress* progress);
+                            const Window& window, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -93,8 +93,8 @@ struct BlockSum {
 
 // A face within a block adds to one cell what it takes from the other. Walls between blocks count
 // too: the rounded corners of one are in line in plan only up to rounding.
-std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
-                                  const Progress* progress, std::span<const PlanOffset> offsets) {
+std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks,
+                                  const Execution& execution, std::span<const PlanOffset> offsets) {
     const auto block_of = [&](std::int32_t cell) {
         return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
     };
@@ -102,7 +102,7 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
     const std::size_t faces = complex.face_cells.size();
     const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
     std::vector<std::vector<BlockSum>> sums((faces + chunk - 1) / chunk);
-    parallel_ranges(faces, chunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(faces, chunk, execution, [&](std::size_t begin, std::size_t end) {
         auto& of_chunk = sums[begin / chunk];
         of_chunk.resize(blocks);
         for (std::size_t f = begin; f < end; ++f) {

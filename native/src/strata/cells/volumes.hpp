@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "strata/cells/built_cells.hpp"
 
 namespace realmodel::strata {
@@ -12,8 +12,8 @@ namespace realmodel::strata {
 /// beneath those that bound it from below. Heights are counted from a corner of each cell, so that
 /// coordinates far from the origin cost no digits. The same for any number of threads.
 /// @param offsets  of the first vertices: where they are exactly
-std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
-                                  const Progress* progress,
+std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks,
+                                  const Execution& execution,
                                   std::span<const PlanOffset> offsets = {});
 
 }  // namespace realmodel::strata

@@ -32,11 +32,10 @@ std::array<std::int32_t, 2> turn_outwards(std::int32_t* first, std::int32_t* las
 }  // namespace
 
 void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links,
-                           WholeTriangles& wholes, FaceList& faces, int threads,
-                           const Progress* progress) {
+                           WholeTriangles& wholes, FaceList& faces, const Execution& execution) {
     std::vector<std::uint8_t> is_touched(links.neighbor.size(), 0);
     parallel_ranges(
-        is_touched.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
+        is_touched.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) continue;
                 const auto& neighbors = links.neighbor[p];
@@ -48,7 +47,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
         });
     std::vector<PlaneId> planes;
     for (std::size_t p = 0; p < is_touched.size(); ++p) {
-        poll(progress, p);
+        poll(execution.progress, p);
         if (is_touched[p] == 0) continue;
         wholes.is_added[p] = 1;
         if (wholes.face[p].is_face()) planes.push_back(static_cast<PlaneId>(p));
@@ -56,7 +55,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
     PolygonPool outlines;
     add_outlines(
         geometry, planes.size(), [&](std::size_t i) { return geometry.plane(planes[i]).plan; },
-        outlines, progress);
+        outlines, execution.progress);
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const WholeFace& face = wholes.of(planes[i]);
         faces.add(outlines[i], planes[i], face.surface, face.above, face.below);
@@ -72,12 +71,11 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
                                        const WholeTriangles& wholes,
                                        const std::vector<std::int32_t>& surface_of_plane,
                                        const FaceList& faces, const ConformedFaces& conformed,
-                                       int threads, const Progress* progress)
+                                       const Execution& execution)
     : geometry_(geometry),
       wholes_(wholes),
       surface_of_plane_(surface_of_plane),
-      threads_(threads),
-      progress_(progress),
+      execution_(execution),
       of_space_(static_cast<std::size_t>(geometry.space_count()), -1),
       of_base_(wholes.on_base.empty() ? 0 : geometry.vertex_count(), -1) {
     // Several threads may say so of one vertex at once; they all write the same, but for vertices
@@ -85,24 +83,23 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     const auto set = [](std::int32_t& number, std::int32_t to) {
         std::atomic_ref(number).store(to, std::memory_order_relaxed);
     };
-    parallel_ranges(
-        faces.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
-                const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
-                for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
-                    const PointId point = faces.polygons.corners[c].point;
-                    if (!geometry.is_vertex(point)) continue;
-                    const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
-                    if (is_base) {
-                        if (!of_base_.empty()) set(of_base_[index(point)], number);
-                        continue;
-                    }
-                    const SpaceId s = geometry.plane(faces.plane[f]).above(geometry.vertex(point));
-                    if (s != kNone) set(of_space_[index(s)], number);
+    parallel_ranges(faces.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
+            const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
+            for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
+                const PointId point = faces.polygons.corners[c].point;
+                if (!geometry.is_vertex(point)) continue;
+                const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
+                if (is_base) {
+                    if (!of_base_.empty()) set(of_base_[index(point)], number);
+                    continue;
                 }
+                const SpaceId s = geometry.plane(faces.plane[f]).above(geometry.vertex(point));
+                if (s != kNone) set(of_space_[index(s)], number);
             }
-        });
+        }
+    });
 }
 
 void UntouchedTriangles::add_to(CellComplex& complex,
@@ -114,8 +111,8 @@ void UntouchedTriangles::add_to(CellComplex& complex,
 
 /// Numbers the input vertices that only untouched triangles have, in their order.
 void UntouchedTriangles::number_vertices(CellComplex& complex) {
-    auto is_new = zeros<std::uint8_t>(of_space_.size(), threads_, progress_);
-    parallel_ranges(wholes_.face.size(), kTriangles, threads_, progress_,
+    auto is_new = zeros<std::uint8_t>(of_space_.size(), execution_);
+    parallel_ranges(wholes_.face.size(), kTriangles, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t p = begin; p < end; ++p) {
                             if (!is_face(p)) continue;
@@ -125,7 +122,7 @@ void UntouchedTriangles::number_vertices(CellComplex& complex) {
                     });
     std::vector<std::size_t> first((of_space_.size() + kVertices - 1) / kVertices);
     const auto for_new = [&](const auto& visit) {
-        parallel_ranges(of_space_.size(), kVertices, threads_, progress_,
+        parallel_ranges(of_space_.size(), kVertices, execution_,
                         [&](std::size_t begin, std::size_t end) {
                             std::size_t count = 0;
                             for (std::size_t s = begin; s < end; ++s) {
@@ -151,34 +148,32 @@ void UntouchedTriangles::add_triangles(CellComplex& complex,
                                        const std::vector<std::int32_t>& cell_of_node) const {
     const std::size_t planes = wholes_.face.size();
     std::vector<std::size_t> first((planes + kTriangles - 1) / kTriangles);
-    parallel_ranges(planes, kTriangles, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t p = begin; p < end; ++p)
-                            first[begin / kTriangles] += is_face(p) ? 1 : 0;
-                    });
+    parallel_ranges(planes, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            first[begin / kTriangles] += is_face(p) ? 1 : 0;
+    });
     const std::size_t count = count_before(first), faces = complex.face_cells.size(),
                       corners = complex.face_vertices.size();
     complex.face_vertices.resize(corners + 3 * count);
     complex.face_offsets.resize(faces + count + 1);
     complex.face_cells.resize(faces + count);
     complex.face_surface.resize(faces + count);
-    parallel_ranges(
-        planes, kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            std::size_t next = first[begin / kTriangles];
-            for (std::size_t p = begin; p < end; ++p) {
-                if (!is_face(p)) continue;
-                const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
-                std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * next;
-                std::transform(corner.begin(), corner.end(), loop,
-                               [&](SpaceId s) { return of_space_[index(s)]; });
-                complex.face_cells[faces + next] =
-                    turn_outwards(loop, loop + 3, cell(cell_of_node, wholes_.face[p].above),
-                                  cell(cell_of_node, wholes_.face[p].below));
-                complex.face_surface[faces + next] = surface_of_plane_[p];
-                ++next;
-                complex.face_offsets[faces + next] = static_cast<std::int64_t>(corners + 3 * next);
-            }
-        });
+    parallel_ranges(planes, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+        std::size_t next = first[begin / kTriangles];
+        for (std::size_t p = begin; p < end; ++p) {
+            if (!is_face(p)) continue;
+            const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
+            std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * next;
+            std::transform(corner.begin(), corner.end(), loop,
+                           [&](SpaceId s) { return of_space_[index(s)]; });
+            complex.face_cells[faces + next] =
+                turn_outwards(loop, loop + 3, cell(cell_of_node, wholes_.face[p].above),
+                              cell(cell_of_node, wholes_.face[p].below));
+            complex.face_surface[faces + next] = surface_of_plane_[p];
+            ++next;
+            complex.face_offsets[faces + next] = static_cast<std::int64_t>(corners + 3 * next);
+        }
+    });
 }
 
 void UntouchedTriangles::add_bases(CellComplex& complex,

@@ -12,8 +12,7 @@ namespace realmodel::strata {
 /// Adds the whole triangles on whose edges vertices may lie to the faces that are conformed: those
 /// looked at exactly, and the neighbors of divided ones. The others are touched by nothing.
 void add_touched_triangles(exact::PlanArrangement& geometry, const TriangleLinks& links,
-                           WholeTriangles& wholes, FaceList& faces, int threads,
-                           const Progress* progress);
+                           WholeTriangles& wholes, FaceList& faces, const Execution& execution);
 
 /// The whole triangles that are taken as they are.
 class UntouchedTriangles {
@@ -22,7 +21,7 @@ public:
     /// afterwards.
     UntouchedTriangles(const exact::PlanArrangement& geometry, const WholeTriangles& wholes,
                        const std::vector<std::int32_t>& surface_of_plane, const FaceList& faces,
-                       const ConformedFaces& conformed, int threads, const Progress* progress);
+                       const ConformedFaces& conformed, const Execution& execution);
 
     /// Adds them as faces, and the vertices that only they have.
     void add_to(CellComplex& complex, const std::vector<std::int32_t>& cell_of_node);
@@ -38,8 +37,7 @@ private:
     const exact::PlanArrangement& geometry_;
     const WholeTriangles& wholes_;
     const std::vector<std::int32_t>& surface_of_plane_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     std::vector<std::int32_t> of_space_;  ///< vertex of each space vertex, -1 where there is none
     std::vector<std::int32_t> of_base_;   ///< the same on flat bases, of each plan vertex
 };

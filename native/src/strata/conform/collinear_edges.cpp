@@ -134,8 +134,8 @@ struct UnmatchedLines {
 };
 
 /// Puts the lines that are left together, which are given back on the way.
-void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result, int threads,
-                    const Progress* progress) {
+void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result,
+                    const Execution& execution) {
     std::vector<std::size_t> first_line, first_edge;
     for (const UnmatchedLines& some : kept) {
         first_line.push_back(some.representative.size());
@@ -145,7 +145,7 @@ void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result, in
     result.edge_offsets = Array<std::uint32_t>(result.size() + 1);
     result.edges = Array<LineEdge>(count_before(first_edge));
     result.edge_offsets[result.size()] = static_cast<std::uint32_t>(result.edges.size());
-    parallel_chunks(kept.size(), threads, progress, [&](std::size_t i) {
+    parallel_chunks(kept.size(), execution, [&](std::size_t i) {
         std::size_t line = first_line[i], edge = first_edge[i];
         std::copy(kept[i].edges.begin(), kept[i].edges.end(), result.edges.begin() + edge);
         for (std::size_t t = 0; t < kept[i].representative.size(); ++t, ++line) {
@@ -272,9 +272,9 @@ private:
 CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
-                                    const Array<std::uint8_t>* cell_is_thick, int threads,
-                                    const Progress* progress) {
-    const CollinearLines lines = join_lines(geometry, faces, threads, progress);
+                                    const Array<std::uint8_t>* cell_is_thick,
+                                    const Execution& execution) {
+    const CollinearLines lines = join_lines(geometry, faces, execution);
     std::vector<std::pair<std::int32_t, PlanVertexId>>
         extra_vertices;  // line and plan vertex, ascending
     for (const ExtraPoint& e : extra) {
@@ -289,12 +289,12 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
             extra_vertices.begin());
     };
     CollinearEdges result;
-    const LineBuckets buckets(faces, lines, threads, progress);
+    const LineBuckets buckets(faces, lines, execution);
     result.passed.resize(buckets.size());
     result.matched.resize(buckets.size());
     std::vector<UnmatchedLines> kept(buckets.size());
     parallel_chunks(
-        buckets.size(), threads, progress,
+        buckets.size(), execution,
         [&](std::size_t bucket) {
             BucketEdges edges;
             buckets.collect(bucket, plan_vertices, edges);
@@ -319,7 +319,7 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
             result.matched[bucket] = matched;  // without room for more
         },
         0.5);
-    join_unmatched(std::move(kept), result, threads, progress);
+    join_unmatched(std::move(kept), result, execution);
     return result;
 }
 

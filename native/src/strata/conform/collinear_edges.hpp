@@ -27,7 +27,7 @@ struct CollinearEdges {
 CollinearEdges find_collinear_edges(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
-                                    const Array<std::uint8_t>* cell_is_thick, int threads,
-                                    const Progress* progress);
+                                    const Array<std::uint8_t>* cell_is_thick,
+                                    const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -36,39 +36,36 @@ std::uint64_t mixed(const std::array<double, 3>& key) {
     return h * 0xBF58476D1CE4E5B9u;
 }
 
-Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces, int threads,
-                          const Progress* progress) {
-    auto used = zeros<std::uint8_t>(geometry.line_count(), threads, progress);
+Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
+                          const Execution& execution) {
+    auto used = zeros<std::uint8_t>(geometry.line_count(), execution);
     const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(corners[c].line.id())]);
-                    });
+    parallel_ranges(corners.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+            mark(used[index(corners[c].line.id())]);
+    });
     std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
-    parallel_ranges(
-        used.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
-            before[begin / kChunk] =
-                static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
-        });
+    parallel_ranges(used.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        before[begin / kChunk] =
+            static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
+    });
     Array<Keyed> lines(count_before(before));
-    parallel_ranges(used.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        LocalArrangement scope(geometry);
-                        std::size_t next = before[begin / kChunk];
-                        for (std::size_t l = begin; l < end; ++l) {
-                            if (used[l] == 0) continue;
-                            const auto line = static_cast<LineId>(l);
-                            lines[next++] = {mixed(scope.line_key(line)), line};
-                        }
-                    });
+    parallel_ranges(used.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        LocalArrangement scope(geometry);
+        std::size_t next = before[begin / kChunk];
+        for (std::size_t l = begin; l < end; ++l) {
+            if (used[l] == 0) continue;
+            const auto line = static_cast<LineId>(l);
+            lines[next++] = {mixed(scope.line_key(line)), line};
+        }
+    });
     return lines;
 }
 
 /// The lines that run where a lower one does; rounded slope and offset are equal for them, and
 /// among lines with equal ones the exact test decides.
 std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keyed> lines,
-                                     int threads, const Progress* progress) {
+                                     const Execution& execution) {
     const auto in_order = [](const Keyed& a, const Keyed& b) {
         return std::tie(a.key, a.line) < std::tie(b.key, b.line);
     };
@@ -82,30 +79,28 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
                 take(lines[i]);
         };
         lines = BucketSort<Keyed, decltype(share), decltype(in_order)>(share, in_order)
-                    .sorted(chunks, lines.size(), produce, threads, progress);
+                    .sorted(chunks, lines.size(), produce, execution);
     }
     std::vector<std::vector<Follower>> found((lines.size() + kChunk - 1) / kChunk);
-    parallel_ranges(
-        lines.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
-            LocalArrangement scope(geometry);
-            std::vector<LineId> leaders;
-            for (std::size_t i = begin; i < end; ++i) {
-                if (i > 0 && lines[i].key == lines[i - 1].key)
-                    continue;  // not the first of a group
-                leaders.assign(1, lines[i].line);
-                for (std::size_t j = i + 1; j < lines.size() && lines[j].key == lines[i].key; ++j) {
-                    const LineId line = lines[j].line;
-                    const auto leader =
-                        std::find_if(leaders.begin(), leaders.end(),
-                                     [&](LineId other) { return scope.same_line(line, other); });
-                    if (leader == leaders.end()) {
-                        leaders.push_back(line);
-                    } else {
-                        found[begin / kChunk].push_back({line, *leader});
-                    }
+    parallel_ranges(lines.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        LocalArrangement scope(geometry);
+        std::vector<LineId> leaders;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i > 0 && lines[i].key == lines[i - 1].key) continue;  // not the first of a group
+            leaders.assign(1, lines[i].line);
+            for (std::size_t j = i + 1; j < lines.size() && lines[j].key == lines[i].key; ++j) {
+                const LineId line = lines[j].line;
+                const auto leader = std::find_if(leaders.begin(), leaders.end(), [&](LineId other) {
+                    return scope.same_line(line, other);
+                });
+                if (leader == leaders.end()) {
+                    leaders.push_back(line);
+                } else {
+                    found[begin / kChunk].push_back({line, *leader});
                 }
             }
-        });
+        }
+    });
     std::vector<Follower> all;
     for (const auto& some : found)
         all.insert(all.end(), some.begin(), some.end());
@@ -114,26 +109,26 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keye
 
 }  // namespace
 
-CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces, int threads,
-                          const Progress* progress) {
-    Array<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
+CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces,
+                          const Execution& execution) {
+    Array<Keyed> lines = lines_in_use(geometry, faces, execution);
     CollinearLines joined;
     joined.of_line = Array<std::int32_t>(geometry.line_count());
     std::fill(joined.of_line.begin(), joined.of_line.end(), -1);
     for (const Keyed& line : lines)
         joined.of_line[index(line.line)] = 0;
-    const auto followers = find_followers(geometry, std::move(lines), threads, progress);
+    const auto followers = find_followers(geometry, std::move(lines), execution);
     for (const Follower& follower : followers)
         joined.of_line[index(follower.line)] = -1;
 
     std::vector<std::size_t> before((joined.of_line.size() + kChunk - 1) / kChunk);
     parallel_ranges(
-        joined.of_line.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        joined.of_line.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
             before[begin / kChunk] = static_cast<std::size_t>(
                 std::count(joined.of_line.begin() + begin, joined.of_line.begin() + end, 0));
         });
     joined.representative = Array<LineId>(count_before(before));
-    parallel_ranges(joined.of_line.size(), kChunk, threads, progress,
+    parallel_ranges(joined.of_line.size(), kChunk, execution,
                     [&](std::size_t begin, std::size_t end) {
                         std::size_t next = before[begin / kChunk];
                         for (std::size_t l = begin; l < end; ++l) {

@@ -12,6 +12,6 @@ struct CollinearLines {
     Array<LineId> representative;  ///< the lowest of its lines
 };
 CollinearLines join_lines(const exact::PlanArrangement& geometry, const FaceList& faces,
-                          int threads, const Progress* progress);
+                          const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -29,17 +29,16 @@ struct FacesAtVertices {
 /// tentatively.
 Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertices& plan_vertices,
                                         const CollinearEdges& collinear,
-                                        const ConformedFaces& conformed, int threads,
-                                        const Progress* progress) {
+                                        const ConformedFaces& conformed,
+                                        const Execution& execution) {
     const auto& corners = faces.polygons.corners;
     Array<PlanVertexId> plan_vertex(conformed.entries.first(corners.size()));
-    parallel_ranges(
-        corners.size(), 4 * kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
-                plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
-            });
+    parallel_ranges(corners.size(), 4 * kFaces, execution, [&](std::size_t begin, std::size_t end) {
+        conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
+            plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
         });
-    parallel_chunks(collinear.passed.size(), threads, progress, [&](std::size_t chunk) {
+    });
+    parallel_chunks(collinear.passed.size(), execution, [&](std::size_t chunk) {
         const PassedVertices& passed = collinear.passed[chunk];
         auto next = passed.vertices.begin();
         for (const PassedVertices::Edge& edge : passed.edges) {
@@ -61,9 +60,8 @@ std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& conformed
 /// threads, and few plan vertices have more than a byte can count.
 class VertexCounts {
 public:
-    VertexCounts(std::size_t plan_vertices, std::size_t entries, int threads,
-                 const Progress* progress)
-        : counts_(zeros<std::uint32_t>(plan_vertices + 1, threads, progress)),
+    VertexCounts(std::size_t plan_vertices, std::size_t entries, const Execution& execution)
+        : counts_(zeros<std::uint32_t>(plan_vertices + 1, execution)),
           number_(entries),
           more_((entries + kEntries - 1) / kEntries) {}
 
@@ -94,36 +92,35 @@ private:
 /// @param plan_vertex  of each entry; replaced by its index among the sorted ones
 FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_vertex,
                                std::size_t plan_vertices, const ConformedFaces& conformed,
-                               int threads, const Progress* progress) {
-    VertexCounts counts(plan_vertices, plan_vertex.size(), threads, progress);
+                               const Execution& execution) {
+    VertexCounts counts(plan_vertices, plan_vertex.size(), execution);
     const auto vertex_of = [&](std::size_t entry) {
         const PlanVertexId p = plan_vertex[entry];
         return static_cast<std::size_t>(p < 0 ? ~p : p);
     };
-    parallel_ranges(plan_vertex.size(), kEntries, threads, progress,
+    parallel_ranges(plan_vertex.size(), kEntries, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
                             counts.prefetch(vertex_of(std::min(i + 32, end - 1)));
                             counts.count(i, vertex_of(i));
                         }
                     });
-    running_totals(counts.counts(), UINT32_MAX, threads, progress);
+    running_totals(counts.counts(), UINT32_MAX, execution);
     FacesAtVertices on;
     on.values = Array<std::int32_t>(plan_vertex.size());
-    parallel_ranges(
-        faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            std::size_t i = first_entry(faces, conformed, begin);
-            const std::size_t last = first_entry(faces, conformed, end) - 1;
-            for (std::size_t f = begin; f < end; ++f) {
-                const PlaneId plane = faces.plane[f];
-                for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
-                    counts.prefetch(vertex_of(std::min(i + 32, last)));
-                    const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
-                    on.values[at] = code_of(plane, plan_vertex[i] < 0);
-                    plan_vertex[i] = static_cast<std::int32_t>(at);
-                }
+    parallel_ranges(faces.size(), kFaces, execution, [&](std::size_t begin, std::size_t end) {
+        std::size_t i = first_entry(faces, conformed, begin);
+        const std::size_t last = first_entry(faces, conformed, end) - 1;
+        for (std::size_t f = begin; f < end; ++f) {
+            const PlaneId plane = faces.plane[f];
+            for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
+                counts.prefetch(vertex_of(std::min(i + 32, last)));
+                const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
+                on.values[at] = code_of(plane, plan_vertex[i] < 0);
+                plan_vertex[i] = static_cast<std::int32_t>(at);
             }
-        });
+        }
+    });
     on.offsets = std::move(counts.counts());
     return on;
 }
@@ -150,58 +147,54 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
 
 /// Finds the heights on each plan vertex and replaces planes by ranks.
 void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vertices,
-                  FacesAtVertices& on, ConformedFaces& conformed, int threads,
-                  const Progress* progress) {
+                  FacesAtVertices& on, ConformedFaces& conformed, const Execution& execution) {
     conformed.vertex_offsets = Array<std::int32_t>(plan_vertices.size() + 1);
     conformed.heights.resize((plan_vertices.size() + kTogether - 1) / kTogether);
-    parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        VertexHeights heights_there(geometry);
-                        std::vector<double> all;
-                        all.reserve(2 * kTogether);
-                        for (std::size_t p = begin; p < end; ++p) {
-                            prefetch_points(geometry, plan_vertices, p);
-                            heights_there.find(plan_vertices.representative[p],
-                                               {on.values.begin() + on.offsets[p],
-                                                on.values.begin() + on.offsets[p + 1]});
-                            const auto& found = heights_there.heights();
-                            all.insert(all.end(), found.begin(), found.end());
-                            conformed.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
-                        }
-                        conformed.heights[begin / kTogether].assign(
-                            all.begin(), all.end());  // without room for more
-                    });
-    running_totals(conformed.vertex_offsets, INT32_MAX, threads, progress);
+    parallel_ranges(
+        plan_vertices.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+            VertexHeights heights_there(geometry);
+            std::vector<double> all;
+            all.reserve(2 * kTogether);
+            for (std::size_t p = begin; p < end; ++p) {
+                prefetch_points(geometry, plan_vertices, p);
+                heights_there.find(
+                    plan_vertices.representative[p],
+                    {on.values.begin() + on.offsets[p], on.values.begin() + on.offsets[p + 1]});
+                const auto& found = heights_there.heights();
+                all.insert(all.end(), found.begin(), found.end());
+                conformed.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
+            }
+            conformed.heights[begin / kTogether].assign(all.begin(),
+                                                        all.end());  // without room for more
+        });
+    running_totals(conformed.vertex_offsets, INT32_MAX, execution);
 }
 
 /// What follows asks for faces, not for their corners.
-void number_faces(const FaceList& faces, ConformedFaces& conformed, int threads,
-                  const Progress* progress) {
+void number_faces(const FaceList& faces, ConformedFaces& conformed, const Execution& execution) {
     conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
-    parallel_ranges(faces.size() + 1, kFaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f)
-                            conformed.face_offsets[f] = first_entry(faces, conformed, f);
-                    });
+    parallel_ranges(faces.size() + 1, kFaces, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f)
+            conformed.face_offsets[f] = first_entry(faces, conformed, f);
+    });
 }
 
 /// From here on the edges on lines name their first entries: what follows asks for nothing else of
 /// a corner.
-void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed, int threads,
-                  const Progress* progress) {
-    parallel_ranges(collinear.edges.size(), kEntries, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t e = begin; e < end; ++e)
-                            collinear.edges[e].begin =
-                                conformed.entries.first(collinear.edges[e].begin);
-                    });
+void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed,
+                  const Execution& execution) {
+    parallel_ranges(
+        collinear.edges.size(), kEntries, execution, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t e = begin; e < end; ++e)
+                collinear.edges[e].begin = conformed.entries.first(collinear.edges[e].begin);
+        });
 }
 
 /// The vertices that the left edge of a pair took up, for the right one.
-void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conformed, int threads,
-                           const Progress* progress) {
+void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conformed,
+                           const Execution& execution) {
     std::vector<std::vector<InsertedVertex>> found(collinear.matched.size());
-    parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
         for (const MatchedPair& pair : collinear.matched[chunk].passing) {
             const std::uint32_t first = conformed.entries.first(pair.left) + 1;
             for (std::uint32_t e = conformed.entries.first(pair.left + 1); e-- > first;) {
@@ -222,25 +215,23 @@ void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conf
 
 ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& faces,
                              const PlanVertices& plan_vertices, CollinearEdges& collinear,
-                             int threads, const Progress* progress) {
+                             const Execution& execution) {
     ConformedFaces conformed;
-    conformed.entries =
-        CornerOffsets(collinear.passed, faces.polygons.corners.size(), threads, progress);
-    conformed.vertices =
-        vertices_of_entries(faces, plan_vertices, collinear, conformed, threads, progress);
+    conformed.entries = CornerOffsets(collinear.passed, faces.polygons.corners.size(), execution);
+    conformed.vertices = vertices_of_entries(faces, plan_vertices, collinear, conformed, execution);
     collinear.passed = {};
-    name_entries(collinear, conformed, threads, progress);
-    FacesAtVertices on = sort_by_vertex(faces, conformed.vertices, plan_vertices.size(), conformed,
-                                        threads, progress);
-    find_heights(geometry, plan_vertices, on, conformed, threads, progress);
-    parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
+    name_entries(collinear, conformed, execution);
+    FacesAtVertices on =
+        sort_by_vertex(faces, conformed.vertices, plan_vertices.size(), conformed, execution);
+    find_heights(geometry, plan_vertices, on, conformed, execution);
+    parallel_ranges(plan_vertices.size(), kTogether, execution,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t p = begin; p < end; ++p) {
                             for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
                                 on.values[i] += on.values[i] < 0 ? 0 : conformed.vertex_offsets[p];
                         }
                     });
-    parallel_ranges(conformed.vertices.size(), kEntries, threads, progress,
+    parallel_ranges(conformed.vertices.size(), kEntries, execution,
                     [&](std::size_t begin, std::size_t end) {
                         const auto vertex = [&](std::size_t i) -> const std::int32_t& {
                             return on.values[static_cast<std::uint32_t>(conformed.vertices[i])];
@@ -251,27 +242,26 @@ ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& fa
                         }
                     });
     on = {};
-    number_faces(faces, conformed, threads, progress);
-    add_inserted_vertices(collinear, conformed, threads, progress);
+    number_faces(faces, conformed, execution);
+    add_inserted_vertices(collinear, conformed, execution);
     return conformed;
 }
 
-void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed, int threads,
-                          const Progress* progress) {
+void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed,
+                          const Execution& execution) {
     conformed.positions.resize(
         static_cast<std::size_t>(conformed.vertex_offsets[plan_vertices.size()]));
-    parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        auto& heights = conformed.heights[begin / kTogether];
-                        auto z = heights.begin();
-                        for (std::size_t p = begin; p < end; ++p) {
-                            const auto [x, y] = plan_vertices.position[p];
-                            for (auto v = conformed.vertex_offsets[p];
-                                 v < conformed.vertex_offsets[p + 1]; ++v)
-                                conformed.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
-                        }
-                        heights = {};
-                    });
+    parallel_ranges(
+        plan_vertices.size(), kTogether, execution, [&](std::size_t begin, std::size_t end) {
+            auto& heights = conformed.heights[begin / kTogether];
+            auto z = heights.begin();
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto [x, y] = plan_vertices.position[p];
+                for (auto v = conformed.vertex_offsets[p]; v < conformed.vertex_offsets[p + 1]; ++v)
+                    conformed.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
+            }
+            heights = {};
+        });
     conformed.heights = {};
 }
 

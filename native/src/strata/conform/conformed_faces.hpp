@@ -41,10 +41,10 @@ struct ConformedFaces {
 /// the first of their entries from here on.
 ConformedFaces conform_faces(const exact::PlanArrangement& geometry, const FaceList& faces,
                              const PlanVertices& plan_vertices, CollinearEdges& collinear,
-                             int threads, const Progress* progress);
+                             const Execution& execution);
 
 /// Gives the vertices their positions, which takes the heights.
-void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed, int threads,
-                          const Progress* progress);
+void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed,
+                          const Execution& execution);
 
 }  // namespace realmodel::strata

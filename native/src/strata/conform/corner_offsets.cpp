@@ -7,20 +7,20 @@
 namespace realmodel::strata {
 
 CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners,
-                             int threads, const Progress* progress)
+                             const Execution& execution)
     : corners_(corners) {
     const std::size_t blocks = corners / kBlock + 1;  // the number of corners itself has one, too
-    passing_of_block_ = zeros<std::uint32_t>(blocks + 1, threads, progress);
+    passing_of_block_ = zeros<std::uint32_t>(blocks + 1, execution);
     std::vector<std::vector<std::uint32_t>> number(passed.size());  // of each edge in its block
-    parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(passed.size(), execution, [&](std::size_t chunk) {
         for (const PassedVertices::Edge& edge : passed[chunk].edges) {
             assert(edge.corner < corners);
             number[chunk].push_back(count_one(passing_of_block_[edge.corner / kBlock]));
         }
     });
-    running_totals(passing_of_block_, UINT32_MAX, threads, progress);
+    running_totals(passing_of_block_, UINT32_MAX, execution);
     passing_ = Array<Passing>(passing_of_block_[blocks]);
-    parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(passed.size(), execution, [&](std::size_t chunk) {
         auto next = number[chunk].begin();
         for (const PassedVertices::Edge& edge : passed[chunk].edges) {
             const std::uint32_t first = passing_of_block_[edge.corner / kBlock];
@@ -28,7 +28,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
         }
     });
     entry_of_block_ = Array<std::uint32_t>(blocks + 1);
-    parallel_ranges(blocks, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(blocks, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block) {
             const auto first = passing_.begin() + passing_of_block_[block];
             const auto last = passing_.begin() + passing_of_block_[block + 1];
@@ -40,7 +40,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
             entry_of_block_[block] = static_cast<std::uint32_t>(entries);
         }
     });
-    running_totals(entry_of_block_, UINT32_MAX, threads, progress);
+    running_totals(entry_of_block_, UINT32_MAX, execution);
 }
 
 }  // namespace realmodel::strata

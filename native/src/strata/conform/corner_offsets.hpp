@@ -26,8 +26,8 @@ class CornerOffsets {
 public:
     CornerOffsets() = default;
     /// @throws InputError kind too_large, where there are more entries than can be numbered
-    CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners, int threads,
-                  const Progress* progress);
+    CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners,
+                  const Execution& execution);
 
     /// The first entry of a corner. Of the number of corners: how many entries there are.
     std::uint32_t first(std::size_t corner) const {

@@ -22,8 +22,8 @@ struct Filling {
 
 }  // namespace
 
-LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int threads,
-                         const Progress* progress)
+LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines,
+                         const Execution& execution)
     : faces_(faces), lines_(lines), line_count_(lines.representative.size()) {
     const auto& corners = faces.polygons.corners;
     check_total(corners.size(), kMostEdges);
@@ -46,7 +46,7 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int
             }
         }
     };
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         filling[chunk].resize(buckets);
         for_each_once(chunk, [](Filling& bucket, std::int32_t) { ++bucket.count; });
     });
@@ -61,7 +61,7 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int
     }
     first_.push_back(total);
     faces_of_bucket_ = Array<std::int32_t>(total);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
         for_each_once(chunk, [&](Filling& bucket, std::int32_t face) {
             faces_of_bucket_[bucket.count++] = face;
         });

@@ -35,8 +35,7 @@ private:
 class LineBuckets {
 public:
     /// @throws InputError kind too_large, where edges cannot be numbered
-    LineBuckets(const FaceList& faces, const CollinearLines& lines, int threads,
-                const Progress* progress);
+    LineBuckets(const FaceList& faces, const CollinearLines& lines, const Execution& execution);
 
     std::size_t size() const { return first_.size() - 1; }
     std::size_t first_line(std::size_t bucket) const {

@@ -40,10 +40,10 @@ struct XRange {
 
 /// Where the vertices in use are, and nearly all points with them.
 XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8_t>& used,
-                         int threads, const Progress* progress) {
+                         const Execution& execution) {
     const auto vertices = geometry.vertex_count();
     std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
-    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(vertices, kChunk, execution, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             if (used[v] != 0)
                 ranges[begin / kChunk].include(geometry.point(static_cast<PointId>(v)).x);
@@ -62,18 +62,16 @@ XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8
 
 /// The points that faces use and the extra ones, in order of position.
 Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& faces,
-                             const std::vector<ExtraPoint>& extra, int threads,
-                             const Progress* progress) {
-    auto used = zeros<std::uint8_t>(geometry.point_count(), threads, progress);
+                             const std::vector<ExtraPoint>& extra, const Execution& execution) {
+    auto used = zeros<std::uint8_t>(geometry.point_count(), execution);
     const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            mark(used[index(corners[c].point)]);
-                    });
+    parallel_ranges(corners.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+            mark(used[index(corners[c].point)]);
+    });
     for (const ExtraPoint& e : extra)
         used[index(e.point)] = 1;
-    const XRange range = range_of_vertices(geometry, used, threads, progress);
+    const XRange range = range_of_vertices(geometry, used, execution);
     const auto share = [range](const Rounded& p) { return range.share(p.x); };
     const auto in_order = [](const Rounded& a, const Rounded& b) {
         return std::tie(a.x, a.y, a.point) < std::tie(b.x, b.y, b.point);
@@ -89,7 +87,7 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
     };
     // input vertices have the lowest ids
     return BucketSort<Rounded, decltype(share), decltype(in_order)>(share, in_order)
-        .sorted(chunks, used.size(), produce, threads, progress);
+        .sorted(chunks, used.size(), produce, execution);
 }
 
 /// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.
@@ -112,8 +110,8 @@ void for_each_position(const Array<Rounded>& points, std::size_t begin, std::siz
 /// @param before  how many positions begin in each range of kChunk points
 /// @return for each point, the first one in its position
 Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Array<Rounded>& points,
-                                      std::vector<std::size_t>& before, int threads,
-                                      const Progress* progress) {
+                                      std::vector<std::size_t>& before,
+                                      const Execution& execution) {
     Array<std::uint32_t> first_there(points.size());
     before.assign((points.size() + kChunk - 1) / kChunk, 0);
     const auto find_among = [&](LocalArrangement& scope, std::size_t begin, std::size_t end) {
@@ -130,27 +128,25 @@ Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Arr
         }
         return positions;
     };
-    parallel_ranges(points.size(), kChunk, threads, progress,
-                    [&](std::size_t range_begin, std::size_t range_end) {
-                        LocalArrangement scope(geometry);
-                        for_each_position(points, range_begin, range_end,
-                                          [&](std::size_t begin, std::size_t end) {
-                                              before[range_begin / kChunk] +=
-                                                  find_among(scope, begin, end);
-                                          });
-                    });
+    parallel_ranges(
+        points.size(), kChunk, execution, [&](std::size_t range_begin, std::size_t range_end) {
+            LocalArrangement scope(geometry);
+            for_each_position(points, range_begin, range_end,
+                              [&](std::size_t begin, std::size_t end) {
+                                  before[range_begin / kChunk] += find_among(scope, begin, end);
+                              });
+        });
     return first_there;
 }
 
 /// Room for so many plan vertices, none of which is set.
-PlanVertices empty_vertices(std::size_t count, std::size_t points, int threads,
-                            const Progress* progress) {
+PlanVertices empty_vertices(std::size_t count, std::size_t points, const Execution& execution) {
     PlanVertices vertices;
     vertices.representative = Array<PointId>(count);
     vertices.position = Array<PlanPosition>(count);
-    vertices.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
+    vertices.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, execution);
     vertices.of_point = Array<PlanVertexId>(points);
-    parallel_ranges(points, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(points, 1 << 18, execution, [&](std::size_t begin, std::size_t end) {
         std::fill(vertices.of_point.begin() + begin, vertices.of_point.begin() + end, -1);
     });
     return vertices;
@@ -159,43 +155,41 @@ PlanVertices empty_vertices(std::size_t count, std::size_t points, int threads,
 }  // namespace
 
 PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList& faces,
-                                const std::vector<ExtraPoint>& extra, int threads,
-                                const Progress* progress) {
-    const Array<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
+                                const std::vector<ExtraPoint>& extra, const Execution& execution) {
+    const Array<Rounded> points = points_in_use(geometry, faces, extra, execution);
     std::vector<std::size_t> before;
-    const auto first_there = find_first_there(geometry, points, before, threads, progress);
+    const auto first_there = find_first_there(geometry, points, before, execution);
     const std::size_t count = count_before(before);
-    PlanVertices vertices = empty_vertices(count, geometry.point_count(), threads, progress);
+    PlanVertices vertices = empty_vertices(count, geometry.point_count(), execution);
     std::vector<std::vector<PlanVertexId>> coincident(before.size());
     const auto of_point = [&](std::size_t i) -> PlanVertexId& {
         return vertices.of_point[index(points[i].point)];
     };
-    parallel_ranges(points.size(), kChunk, threads, progress,
-                    [&](std::size_t range_begin, std::size_t range_end) {
-                        const std::size_t chunk = range_begin / kChunk;
-                        std::size_t next = before[chunk];
-                        for_each_position(
-                            points, range_begin, range_end,
-                            [&](std::size_t begin, std::size_t end) {
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    if (first_there[i] != i) {
-                                        of_point(i) = of_point(first_there[i]);
-                                        continue;
-                                    }
-                                    of_point(i) = static_cast<PlanVertexId>(next);
-                                    vertices.representative[next] = points[i].point;
-                                    vertices.position[next] = {points[i].x, points[i].y};
-                                    if (next > 0 && points[i - 1].x == points[i].x) {
-                                        std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
-                                            .fetch_or(std::uint64_t{1} << (next - 1) % 64,
-                                                      std::memory_order_relaxed);
-                                    }
-                                    if (i > begin) coincident[chunk].push_back(of_point(i));
-                                    ++next;
-                                }
-                            });
-                        assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
-                    });
+    parallel_ranges(
+        points.size(), kChunk, execution, [&](std::size_t range_begin, std::size_t range_end) {
+            const std::size_t chunk = range_begin / kChunk;
+            std::size_t next = before[chunk];
+            for_each_position(points, range_begin, range_end,
+                              [&](std::size_t begin, std::size_t end) {
+                                  for (std::size_t i = begin; i < end; ++i) {
+                                      if (first_there[i] != i) {
+                                          of_point(i) = of_point(first_there[i]);
+                                          continue;
+                                      }
+                                      of_point(i) = static_cast<PlanVertexId>(next);
+                                      vertices.representative[next] = points[i].point;
+                                      vertices.position[next] = {points[i].x, points[i].y};
+                                      if (next > 0 && points[i - 1].x == points[i].x) {
+                                          std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
+                                              .fetch_or(std::uint64_t{1} << (next - 1) % 64,
+                                                        std::memory_order_relaxed);
+                                      }
+                                      if (i > begin) coincident[chunk].push_back(of_point(i));
+                                      ++next;
+                                  }
+                              });
+            assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
+        });
     for (const auto& some : coincident)
         vertices.coincident.insert(vertices.coincident.end(), some.begin(), some.end());
     return vertices;

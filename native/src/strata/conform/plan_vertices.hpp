@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "realmodel/base/array.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "strata/overlay/envelope.hpp"
 
 namespace realmodel::strata {
@@ -40,7 +40,6 @@ struct PlanVertices {
     }
 };
 PlanVertices find_plan_vertices(const exact::PlanArrangement& geometry, const FaceList& faces,
-                                const std::vector<ExtraPoint>& extra, int threads,
-                                const Progress* progress);
+                                const std::vector<ExtraPoint>& extra, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -217,22 +217,21 @@ private:
 }  // namespace
 
 FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& collinear,
-                      const ConformedFaces& conformed, const BlockLines* blocks, int threads,
-                      const Progress* progress) {
+                      const ConformedFaces& conformed, const BlockLines* blocks,
+                      const Execution& execution) {
     const std::size_t chunks = (collinear.size() + kLines - 1) / kLines;
     FoundWalls found;
     found.walls.resize(chunks);
     std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
-    parallel_ranges(collinear.size(), kLines, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        auto batch = std::make_unique<Batch>(geometry);
-                        LineWalls of_line(faces, collinear, conformed, blocks, *batch);
-                        for (std::size_t t = begin; t < end; ++t)
-                            of_line.process(t);
-                        found.walls[begin / kLines] = std::move(batch->walls);
-                        if (blocks != nullptr || !batch->found.missing.empty())
-                            batches[begin / kLines] = std::move(batch);
-                    });
+    parallel_ranges(collinear.size(), kLines, execution, [&](std::size_t begin, std::size_t end) {
+        auto batch = std::make_unique<Batch>(geometry);
+        LineWalls of_line(faces, collinear, conformed, blocks, *batch);
+        for (std::size_t t = begin; t < end; ++t)
+            of_line.process(t);
+        found.walls[begin / kLines] = std::move(batch->walls);
+        if (blocks != nullptr || !batch->found.missing.empty())
+            batches[begin / kLines] = std::move(batch);
+    });
     for (const auto& batch : batches) {
         if (batch == nullptr) continue;
         if (!batch->found.missing.empty()) batch->scope.commit(geometry);
@@ -244,7 +243,7 @@ FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, Collinea
     }
     if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
     found.walls.resize(chunks + collinear.matched.size());
-    parallel_chunks(collinear.matched.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(collinear.matched.size(), execution, [&](std::size_t chunk) {
         const MatchedEdges matched = std::move(collinear.matched[chunk]);
         WallBatch& batch = found.walls[chunks + chunk];
         batch.sizes.reserve(matched.walls.size());

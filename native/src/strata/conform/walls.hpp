@@ -43,6 +43,6 @@ struct FoundWalls {
 /// back on the way.
 FoundWalls find_walls(exact::PlanArrangement& geometry, const FaceList& faces,
                       CollinearEdges& collinear, const ConformedFaces& conformed,
-                      const BlockLines* blocks, int threads, const Progress* progress);
+                      const BlockLines* blocks, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -13,16 +13,15 @@ using exact::PlanArrangement;
 
 BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& links,
                              const BorderEdges& borders, double largest_height,
-                             Construction& construction, WholeTriangles& wholes, int threads,
-                             const Progress* progress)
+                             Construction& construction, WholeTriangles& wholes,
+                             const Execution& execution)
     : geometry_(geometry),
       links_(links),
       borders_(borders),
       construction_(construction),
       wholes_(wholes),
-      threads_(threads),
-      progress_(progress),
-      filter_(geometry, borders, largest_height, threads, progress),
+      execution_(execution),
+      filter_(geometry, borders, largest_height, execution),
       cover_(tiles().size(), Cover::kFacets) {}
 
 void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
@@ -63,7 +62,7 @@ void BlockEnvelope::start(const BlockTiling& tiling, std::int32_t number) {
     for (const PlanTriangle& t : tiling.empty)
         add_sky(t, kSky, Cover::kSkyOnly);
     for (std::size_t t = 0; t < tiling.whole.size(); ++t) {
-        poll(progress_, t);
+        poll(execution_.progress, t);
         enter(tiling.whole[t], number, kOutsideCell,
               tiles().span(bounds_of(geometry_, tiling.whole[t]).box));
     }
@@ -95,7 +94,8 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
     PolygonPool outlines;
     add_outlines(
         geometry_, first_part,
-        [&](std::size_t i) { return geometry_.plane(whole_[exact[i]]).plan; }, outlines, progress_);
+        [&](std::size_t i) { return geometry_.plane(whole_[exact[i]]).plan; }, outlines,
+        execution_.progress);
     Envelope envelope;
     BlockFacets blocks{&borders_, {}, std::vector<std::uint8_t>(exact.size(), 1)};
     for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -119,7 +119,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
     }
     const std::size_t first_face = construction_.faces.size();
     Overlaid overlaid = overlay_facets(geometry_, envelope, part, number, &blocks, nullptr,
-                                       construction_, threads_, progress_);
+                                       construction_, execution_);
     sort_overlaid(overlaid.kept, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
         std::uint8_t& in_parts = wholes_.is_in_parts[index(whole_[exact[i]])];
@@ -202,22 +202,20 @@ std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
         return node < 0 ? kSkyBlock : construction_.node_block[static_cast<std::size_t>(node)];
     };
     std::vector<std::uint8_t> is_whole(part.plane.size(), 0);
-    parallel_ranges(
-        triangles, kPolygons, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            LocalArrangement scope(geometry_);
-            for (std::size_t t = begin; t < end; ++t) {
-                if (filter_.polygon[t] < 0) continue;
-                const auto p = static_cast<std::size_t>(filter_.polygon[t]);
-                const auto own = pieces[p];
-                if (own.empty() || overlaid.is_divided[p] != 0 || overlaid.is_touched[p] != 0)
-                    continue;
-                const bool alike = std::all_of(own.begin(), own.end(), [&](std::uint32_t i) {
-                    return block_above(i) == block_above(own.front());
-                });
-                is_whole[p] =
-                    alike && !borders_.divide(scope, part.polygons[p], filter_.surface_at[t].span);
-            }
-        });
+    parallel_ranges(triangles, kPolygons, execution_, [&](std::size_t begin, std::size_t end) {
+        LocalArrangement scope(geometry_);
+        for (std::size_t t = begin; t < end; ++t) {
+            if (filter_.polygon[t] < 0) continue;
+            const auto p = static_cast<std::size_t>(filter_.polygon[t]);
+            const auto own = pieces[p];
+            if (own.empty() || overlaid.is_divided[p] != 0 || overlaid.is_touched[p] != 0) continue;
+            const bool alike = std::all_of(own.begin(), own.end(), [&](std::uint32_t i) {
+                return block_above(i) == block_above(own.front());
+            });
+            is_whole[p] =
+                alike && !borders_.divide(scope, part.polygons[p], filter_.surface_at[t].span);
+        }
+    });
     return is_whole;
 }
 
@@ -225,8 +223,7 @@ std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
 void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& part,
                                 std::int32_t number, Overlaid& overlaid) {
     const std::size_t triangles = tiling.whole.size();
-    const PiecesOfPolygons pieces =
-        sort_by_polygon(overlaid.below, part.plane.size(), threads_, progress_);
+    const PiecesOfPolygons pieces = sort_by_polygon(overlaid.below, part.plane.size(), execution_);
     const auto is_whole = find_whole(part, pieces, overlaid, triangles);
     const auto node_of = [&](std::uint32_t piece) { return overlaid.below.node_above[piece]; };
     const auto link = [&](std::int32_t a, std::int32_t b) {
@@ -262,7 +259,7 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
             link(node_of(own.front()), node_of(piece));
         enter(plane, number, node_of(own.front()), filter_.surface_at[t].span);
     }
-    add_surface_facets(part, use, overlaid.below, pieces, number, next_parts_, threads_, progress_);
+    add_surface_facets(part, use, overlaid.below, pieces, number, next_parts_, execution_);
 }
 
 void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
@@ -281,7 +278,7 @@ void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
     const SealedFacets sealed = sort_facets(number);
     add_surface(tiling, part, number, overlaid);
     link_sheets(geometry_, links_, filter_, tiling, node_above_, sealed, parts_, wholes_,
-                construction_, threads_, progress_);
+                construction_, execution_);
     for (std::size_t tile = 0; tile < cover_.size(); ++tile) {
         if (cover_[tile] == Cover::kSkyOnly && filter_.is_empty[tile] == 0)
             cover_[tile] = Cover::kFacets;

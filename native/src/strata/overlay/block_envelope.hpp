@@ -16,7 +16,7 @@ class BlockEnvelope {
 public:
     BlockEnvelope(exact::PlanArrangement& geometry, const TriangleLinks& links,
                   const BorderEdges& borders, double largest_height, Construction& construction,
-                  WholeTriangles& wholes, int threads, const Progress* progress);
+                  WholeTriangles& wholes, const Execution& execution);
 
     /// Begins under the sky over a region (what is covered), with the outside around it.
     void start_region(const FrameTriangles& filling);
@@ -62,8 +62,7 @@ private:
     const BorderEdges& borders_;
     Construction& construction_;
     WholeTriangles& wholes_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     WholeTriangleFilter filter_;
     bool is_started_ = false;
     std::vector<PlaneId> whole_, next_whole_;

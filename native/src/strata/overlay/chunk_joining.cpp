@@ -147,7 +147,7 @@ void ChunkJoining::put_where_room(std::size_t chunk) {
     if (fits_[chunk] != 0) put(chunk);
 }
 
-void ChunkJoining::finish(int threads, const Progress* progress) {
+void ChunkJoining::finish(const Execution& execution) {
     construction_.node_block.resize(static_cast<std::size_t>(end_.node));
     construction_.node_is_thick.resize(static_cast<std::size_t>(end_.node));
     resize(construction_.faces.polygons, lists_of(construction_.faces), end_.face);
@@ -155,7 +155,7 @@ void ChunkJoining::finish(int threads, const Progress* progress) {
     resize(next_.outlines, lists_of(next_), end_.facet);
     next_.face_offsets.resize(end_.facet.polygon + 1);
     resize(next_.face_polygons, std::tie(next_.face_above), end_.facet_face);
-    parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
+    parallel_chunks(chunks_.size(), execution, [&](std::size_t c) {
         if (chunks_[c]) put(c);
     });
 }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "strata/overlay/envelope.hpp"
 #include "strata/overlay/surface_facets.hpp"
 
@@ -65,7 +65,7 @@ public:
     /// Puts a chunk whose offset was found there, if there is room; several threads may do so.
     void put_where_room(std::size_t chunk);
     /// Puts what is left. To be called once, when all have their offsets.
-    void finish(int threads, const Progress* progress);
+    void finish(const Execution& execution);
 
 private:
     bool has_room();

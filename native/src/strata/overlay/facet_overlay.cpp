@@ -215,8 +215,8 @@ private:
 
 Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
                         const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
-                        const WantedBoxes* wanted, Construction& construction, int threads,
-                        const Progress* progress) {
+                        const WantedBoxes* wanted, Construction& construction,
+                        const Execution& execution) {
     assert(blocks == nullptr || wanted == nullptr);
     assert(blocks == nullptr || (blocks->span.size() == envelope.size() &&
                                  blocks->is_complete.size() == envelope.size()));
@@ -229,7 +229,7 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     ChunkJoining joining(results, envelope.size(), construction, overlaid.kept, overlaid.below);
     OrderedCommit commit(geometry, chunks, envelope.size());
     const auto find_offset = [&](std::size_t c) { joining.find_offset(c); };
-    parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
+    parallel_chunks(chunks, execution, [&](std::size_t c) {
         const std::size_t begin = c * size, end = std::min(envelope.size(), begin + size);
         results[c] = std::make_unique<ChunkResult>(geometry, end - begin);
         FacetOverlay facets(envelope, tiling, number, blocks, wanted, overlaid, *results[c]);
@@ -242,20 +242,19 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
             joining.put_where_room(done);
     });
     commit.finish(find_offset);
-    joining.finish(threads, progress);
+    joining.finish(execution);
     return overlaid;
 }
 
 Envelope overlay_columns(PlanArrangement& geometry, const Envelope& envelope,
                          const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, const WantedBoxes* wanted, int threads,
-                         const Progress* progress) {
+                         Construction& construction, const WantedBoxes* wanted,
+                         const Execution& execution) {
     Overlaid overlaid = overlay_facets(geometry, envelope, tiling, number, nullptr, wanted,
-                                       construction, threads, progress);
-    const PiecesOfPolygons pieces =
-        sort_by_polygon(overlaid.below, tiling.plane.size(), threads, progress);
+                                       construction, execution);
+    const PiecesOfPolygons pieces = sort_by_polygon(overlaid.below, tiling.plane.size(), execution);
     add_surface_facets(tiling, overlaid.is_divided, overlaid.below, pieces, number, overlaid.kept,
-                       threads, progress);
+                       execution);
     return std::move(overlaid.kept);
 }
 

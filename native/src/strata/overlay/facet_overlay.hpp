@@ -35,15 +35,15 @@ struct Overlaid {
 /// @param wanted  as overlay_columns has it; not with `blocks`
 Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelope,
                         const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
-                        const WantedBoxes* wanted, Construction& construction, int threads,
-                        const Progress* progress);
+                        const WantedBoxes* wanted, Construction& construction,
+                        const Execution& execution);
 
 /// Lays surface `number` under the envelope: where it is lower, a column is closed between the two
 /// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
 /// @param wanted  where columns are; those elsewhere are left out. Nothing: all of them are
 Envelope overlay_columns(exact::PlanArrangement& geometry, const Envelope& envelope,
                          const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, const WantedBoxes* wanted, int threads,
-                         const Progress* progress);
+                         Construction& construction, const WantedBoxes* wanted,
+                         const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -33,7 +33,7 @@ PlanBox box_of(const LocalArrangement& scope, PolygonView polygon) {
 
 void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
                         const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
-                        std::size_t cells, int threads, const Progress* progress) {
+                        std::size_t cells, const Execution& execution) {
     if (chosen.empty()) return;
     cells_ = PlanTiles(spatial::box_around(boxes, chosen), cells);
     const auto produce = [&](std::size_t chunk, const auto& put) {
@@ -49,7 +49,7 @@ void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPoo
         }
     };
     items_ = bucketize_in_any_order<Item>(
-        cells_.size(), (chosen.size() + kPolygons - 1) / kPolygons, produce, threads, progress);
+        cells_.size(), (chosen.size() + kPolygons - 1) / kPolygons, produce, execution);
 }
 
 bool PolygonCells::is_inside(const PlanBox& box) const {
@@ -137,26 +137,23 @@ bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, co
 }
 
 PlanGrid::PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
-                   const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
-                   const Progress* progress) {
+                   const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+                   const Execution& execution) {
     std::vector<std::int32_t> inner, outer;
     for (std::size_t i = 0; i < polygons.size(); ++i)
         (is_inner[i] != 0 ? inner : outer).push_back(static_cast<std::int32_t>(i));
     boxes_.resize(polygons.size());
-    parallel_ranges(polygons.size(), kBoxes, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        const LocalArrangement scope(geometry);
-                        for (std::size_t i = begin; i < end; ++i)
-                            boxes_[i] = box_of(scope, polygons[i]);
-                    });
+    parallel_ranges(polygons.size(), kBoxes, execution, [&](std::size_t begin, std::size_t end) {
+        const LocalArrangement scope(geometry);
+        for (std::size_t i = begin; i < end; ++i)
+            boxes_[i] = box_of(scope, polygons[i]);
+    });
     cells = std::max(cells, polygons.size());
     // of two polygons for a cell, all but the largest are small
-    const std::vector<std::int32_t> large =
-        small_.fill(boxes_, inner, cells / 2, threads, progress);
-    large_.fill(geometry, polygons, boxes_, large, std::min(cells, 8 * large.size()), threads,
-                progress);
+    const std::vector<std::int32_t> large = small_.fill(boxes_, inner, cells / 2, execution);
+    large_.fill(geometry, polygons, boxes_, large, std::min(cells, 8 * large.size()), execution);
     // fans of needles around the border: finer cells keep them apart, but each is in many
-    outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), threads, progress);
+    outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), execution);
 }
 
 void PlanGrid::candidates(const LocalArrangement& scope, PolygonView polygon,

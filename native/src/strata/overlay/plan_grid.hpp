@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "realmodel/base/array.hpp"
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "spatial/small_boxes.hpp"
 #include "strata/overlay/polygon.hpp"
 
@@ -24,7 +24,7 @@ public:
     /// chosen: the polygons to enter; boxes: of all polygons; cells: about so many.
     void fill(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
               const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
-              std::size_t cells, int threads, const Progress* progress);
+              std::size_t cells, const Execution& execution);
     /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
     /// comes repeatedly.
     bool append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
@@ -56,8 +56,8 @@ public:
     /// is_inner: of each polygon, whether it is the surface's; cells: at
     /// least so many of either kind.
     PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
-             const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
-             const Progress* progress);
+             const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+             const Execution& execution);
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
     void candidates(const LocalArrangement& scope, PolygonView polygon,

@@ -9,7 +9,7 @@
 namespace realmodel::strata {
 
 void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList& faces,
-                         std::size_t first_face, const Progress* progress) {
+                         std::size_t first_face, Progress* progress) {
     // The lowest faces tile what a rock mass covers, each position once; where columns are left
     // out, others may lie over or under them.
     PolygonPool own;
@@ -18,7 +18,7 @@ void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList&
     }
     LocalArrangement scope(geometry);
     Clipper clipper(scope);
-    const PlanGrid grid(geometry, own, std::vector<std::uint8_t>(own.size(), 1), 0, 1, progress);
+    const PlanGrid grid(geometry, own, std::vector<std::uint8_t>(own.size(), 1), 0, {1, progress});
     Array<std::int32_t> candidates;
     for (std::size_t r = 0; r < rocks_.size(); ++r) {
         for (std::size_t i = 0; i < rocks_[r].size(); ++i) {

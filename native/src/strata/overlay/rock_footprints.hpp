@@ -12,7 +12,7 @@ public:
     /// Adds a rock mass, whose faces are those from `first_face` on.
     /// @throws InputError kind rocks_overlap, with the numbers of both and a position
     void add(const exact::PlanArrangement& geometry, const FaceList& faces, std::size_t first_face,
-             const Progress* progress);
+             Progress* progress);
 
 private:
     std::vector<PolygonPool> rocks_;

@@ -21,14 +21,13 @@ class SheetLinks {
 public:
     SheetLinks(PlanArrangement& geometry, const WholeTriangleFilter& filter,
                const BlockTiling& tiling, const SealedFacets& sealed, const Envelope& parts,
-               int threads, const Progress* progress)
+               const Execution& execution)
         : geometry_(geometry),
           filter_(filter),
           tiling_(tiling),
           sealed_(sealed),
           parts_(parts),
-          threads_(threads),
-          progress_(progress),
+          execution_(execution),
           scope_(geometry),
           clipper_(scope_) {}
 
@@ -55,7 +54,7 @@ public:
             (tiling_.whole.size() + kTriangles - 1) / kTriangles);
         // The middle of a convex outline is inside it, so a triangle that it is in for certain
         // shares an area with the outline. The exact test is for the few middles near an edge.
-        parallel_ranges(tiling_.whole.size(), kTriangles, threads_, progress_,
+        parallel_ranges(tiling_.whole.size(), kTriangles, execution_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t t = begin; t < end; ++t)
                                 if (filter_.surface[t] == Standing::kBelow)
@@ -135,8 +134,7 @@ private:
     const BlockTiling& tiling_;
     const SealedFacets& sealed_;
     const Envelope& parts_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     LocalArrangement scope_;
     Clipper clipper_;
     std::vector<Searched> searched_;
@@ -147,13 +145,13 @@ private:
 /// Joins sealed triangles that are neighbors over one block.
 void join_neighbors(const TriangleLinks& links, const SealedFacets& sealed,
                     const WholeTriangles& wholes, const Construction& construction,
-                    DisjointSets& sets, int threads, const Progress* progress) {
+                    DisjointSets& sets, const Execution& execution) {
     const auto count = static_cast<std::int32_t>(sealed.wholes.size());
     const auto block = [&](std::int32_t node) {
         return construction.node_block[static_cast<std::size_t>(node)];
     };
     parallel_ranges(
-        sealed.wholes.size(), kFacets, threads, progress, [&](std::size_t begin, std::size_t end) {
+        sealed.wholes.size(), kFacets, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const PlaneId plane = sealed.wholes[i];
                 const std::int32_t node = sealed.first_node + static_cast<std::int32_t>(i);
@@ -174,11 +172,11 @@ void link_sheets(PlanArrangement& geometry, const TriangleLinks& links,
                  const WholeTriangleFilter& filter, const BlockTiling& tiling,
                  const std::vector<std::int32_t>& node_above, const SealedFacets& sealed,
                  const Envelope& parts, const WholeTriangles& wholes, Construction& construction,
-                 int threads, const Progress* progress) {
+                 const Execution& execution) {
     const std::size_t count = sealed.wholes.size();
     DisjointSets sets(count);
-    join_neighbors(links, sealed, wholes, construction, sets, threads, progress);
-    SheetLinks sheets(geometry, filter, tiling, sealed, parts, threads, progress);
+    join_neighbors(links, sealed, wholes, construction, sets, execution);
+    SheetLinks sheets(geometry, filter, tiling, sealed, parts, execution);
     for (std::size_t i = 0; i < count + sealed.parts.size(); ++i) {
         const auto k = static_cast<std::int32_t>(i);
         if (i >= count || sets.find(k) == k) sheets.add(sealed.first_node + k);

@@ -54,6 +54,6 @@ void link_sheets(exact::PlanArrangement& geometry, const TriangleLinks& links,
                  const WholeTriangleFilter& filter, const BlockTiling& tiling,
                  const std::vector<std::int32_t>& node_above, const SealedFacets& sealed,
                  const Envelope& parts, const WholeTriangles& wholes, Construction& construction,
-                 int threads, const Progress* progress);
+                 const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -79,36 +79,34 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 }  // namespace
 
-PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons, int threads,
-                                 const Progress* progress) {
+PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
+                                 const Execution& execution) {
     const std::size_t count = below.polygon.size();
     PiecesOfPolygons of;
-    of.offsets = zeros<std::uint32_t>(polygons + 1, threads, progress);
+    of.offsets = zeros<std::uint32_t>(polygons + 1, execution);
     Array<std::uint32_t> number(count);
     const auto for_all = [&](const auto& visit) {
-        parallel_ranges(count, kPieces, threads, progress, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(count, kPieces, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 visit(i, static_cast<std::size_t>(below.polygon[i]));
         });
     };
     for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
-    running_totals(of.offsets, UINT32_MAX, threads, progress);
+    running_totals(of.offsets, UINT32_MAX, execution);
     of.pieces = Array<std::uint32_t>(count);
     for_all([&](std::size_t i, std::size_t p) {
         of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
     });
-    parallel_ranges(
-        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p)
-                std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
-        });
+    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
+    });
     return of;
 }
 
 void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
                         const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
-                        std::int32_t number, Envelope& next, int threads,
-                        const Progress* progress) {
+                        std::int32_t number, Envelope& next, const Execution& execution) {
     const std::size_t polygons = tiling.plane.size();
     assert(use.size() == polygons && of_polygon.offsets.size() == polygons + 1);
     // Says what a polygon becomes.
@@ -133,15 +131,14 @@ void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint
         }
     };
     std::vector<EnvelopeSize> start((polygons + kPolygons - 1) / kPolygons);
-    parallel_ranges(polygons, kPolygons, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        EnvelopeSize& size = start[begin / kPolygons];
-                        for (std::size_t p = begin; p < end; ++p) {
-                            visit(
-                                p, [&](PolygonView o, PlaneId) { size.add_facet(o); },
-                                [&](PolygonView o, std::int32_t) { size.add_face(o); });
-                        }
-                    });
+    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
+        EnvelopeSize& size = start[begin / kPolygons];
+        for (std::size_t p = begin; p < end; ++p) {
+            visit(
+                p, [&](PolygonView o, PlaneId) { size.add_facet(o); },
+                [&](PolygonView o, std::int32_t) { size.add_face(o); });
+        }
+    });
     EnvelopeSize total{next.size(), next.outlines.corners.size(), next.face_polygons.size(),
                        next.face_polygons.corners.size()};
     for (EnvelopeSize& size : start) {
@@ -150,25 +147,24 @@ void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint
         total += own;
     }
     resize(next, total);
-    parallel_ranges(
-        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
-            EnvelopeWriter writer(next, start[begin / kPolygons], number);
-            const std::size_t last_piece = of_polygon.offsets[end];
-            for (std::size_t p = begin; p < end; ++p) {
-                // its pieces lie anywhere, so those of later polygons are fetched
-                for (std::size_t k = of_polygon.offsets[p] + kAhead,
-                                 to = of_polygon.offsets[p + 1] + kAhead;
-                     k < to && k + kAhead < last_piece; ++k) {
-                    prefetch(below.outlines.corners.begin() +
-                             below.outlines.offsets[of_polygon.pieces[k]]);
-                    prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
-                    prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
-                }
-                visit(
-                    p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },
-                    [&](PolygonView o, std::int32_t above) { writer.add_face(o, above); });
+    parallel_ranges(polygons, kPolygons, execution, [&](std::size_t begin, std::size_t end) {
+        EnvelopeWriter writer(next, start[begin / kPolygons], number);
+        const std::size_t last_piece = of_polygon.offsets[end];
+        for (std::size_t p = begin; p < end; ++p) {
+            // its pieces lie anywhere, so those of later polygons are fetched
+            for (std::size_t k = of_polygon.offsets[p] + kAhead,
+                             to = of_polygon.offsets[p + 1] + kAhead;
+                 k < to && k + kAhead < last_piece; ++k) {
+                prefetch(below.outlines.corners.begin() +
+                         below.outlines.offsets[of_polygon.pieces[k]]);
+                prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
+                prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
             }
-        });
+            visit(
+                p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },
+                [&](PolygonView o, std::int32_t above) { writer.add_face(o, above); });
+        }
+    });
 }
 
 }  // namespace realmodel::strata

@@ -27,8 +27,8 @@ struct PiecesOfPolygons {
     }
 };
 /// @throws InputError kind too_large, where there are more pieces than numbers for them
-PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons, int threads,
-                                 const Progress* progress);
+PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
+                                 const Execution& execution);
 
 /// What becomes of a polygon of the surface: one facet, one of each piece, or nothing here.
 enum PolygonUse : std::uint8_t { kTogether, kDivided, kElsewhere };
@@ -39,6 +39,6 @@ enum PolygonUse : std::uint8_t { kTogether, kDivided, kElsewhere };
 /// @param use  PolygonUse of each polygon
 void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
                         const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
-                        std::int32_t number, Envelope& next, int threads, const Progress* progress);
+                        std::int32_t number, Envelope& next, const Execution& execution);
 
 }  // namespace realmodel::strata

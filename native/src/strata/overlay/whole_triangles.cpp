@@ -33,7 +33,7 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
     if (is_new) surface_at.resize(tiling.size());
     facet_at.resize(facets.size());
     const std::size_t own = is_new ? tiling.size() : 0;
-    parallel_ranges(own + facets.size(), kChunk, threads_, progress_,
+    parallel_ranges(own + facets.size(), kChunk, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         const LocalArrangement scope(geometry_);
                         const auto at = [&](const auto& list, std::size_t i) {
@@ -52,7 +52,7 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
                             }
                         }
                     });
-    parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
+    parallel_chunks(2, execution_, [&](std::size_t which) {
         if (which == 0 && is_new) measure_surface();
         if (which == 1 && with_heights) measure_facets(facets);
     });
@@ -62,7 +62,7 @@ void WholeTriangleFilter::measure_surface() {
     surface_tiles_.resize(tiles().size());
     is_empty.assign(tiles().size(), 0);
     for (std::size_t t = 0; t < tiling_->size(); ++t) {
-        poll(progress_, t);
+        poll(execution_.progress, t);
         const TileBounds& at = surface_at[t];
         tiles().for_each(at.span,
                          [&](std::size_t tile) { surface_tiles_[tile].include(at.bounds); });
@@ -79,7 +79,7 @@ void WholeTriangleFilter::measure_surface() {
 void WholeTriangleFilter::measure_facets(const FacetView& facets) {
     facet_tiles_.assign(tiles().size(), {});
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        poll(progress_, f);
+        poll(execution_.progress, f);
         if (!facets.plane(f).has_value()) continue;
         const auto& at = facet_at[f];
         const std::int32_t block_beneath = facets.block(f);
@@ -149,7 +149,7 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
         }
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_ranges(tiling_->whole.size(), kChunk, threads_, progress_,
+    parallel_ranges(tiling_->whole.size(), kChunk, execution_,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t t = begin; t < end; ++t) {
                             classify(t);
@@ -165,16 +165,14 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
     const spatial::TileBins bins(
         tiles(), is_wanted, facets.size(),
         [&](std::size_t f) { return !facets.plane(f).has_value() ? nullptr : &facet_at[f].span; },
-        threads_, progress_);
+        execution_);
     is_unclear_.assign(tiles().size(), 0);
-    parallel_ranges(tiling_->size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            if (is_to_compare(t)) compare_triangle(facets, bins, t);
-                            if (surface[t] == Standing::kExact)
-                                mark_tiles(surface_at[t].span, is_unclear_);
-                        }
-                    });
+    parallel_ranges(tiling_->size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            if (is_to_compare(t)) compare_triangle(facets, bins, t);
+            if (surface[t] == Standing::kExact) mark_tiles(surface_at[t].span, is_unclear_);
+        }
+    });
 }
 
 void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatial::TileBins& bins,
@@ -245,14 +243,12 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
         return is_exact ? Standing::kExact : Standing::kToCompare;
     };
     std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    parallel_ranges(facets.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            facet[f] = classify(f);
-                            if (facet[f] == Standing::kToCompare)
-                                mark_tiles(facet_at[f].span, is_wanted);
-                        }
-                    });
+    parallel_ranges(facets.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            facet[f] = classify(f);
+            if (facet[f] == Standing::kToCompare) mark_tiles(facet_at[f].span, is_wanted);
+        }
+    });
     compare_facets(facets, is_wanted);
 }
 
@@ -262,14 +258,13 @@ void WholeTriangleFilter::compare_facets(const FacetView& facets,
                                          const std::vector<std::uint8_t>& is_wanted) {
     const spatial::TileBins bins(
         tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
-        threads_, progress_);
-    parallel_ranges(facets.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            if (facet[f] == Standing::kToCompare)
-                                facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
-                        }
-                    });
+        execution_);
+    parallel_ranges(facets.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            if (facet[f] == Standing::kToCompare)
+                facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
+        }
+    });
 }
 
 Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
@@ -301,19 +296,18 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
     locate(facets, false);
     surface.assign(tiling_->size(), Standing::kBelow);
     facet.assign(facets.size(), Standing::kExact);
-    parallel_ranges(facets.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            const TileSpan& span = facet_at[f].span;
-                            if (!facets.plane(f).has_value() || borders_.near(span)) continue;
-                            bool any_empty = false, any_surface = false;
-                            tiles().for_each(span, [&](std::size_t tile) {
-                                (is_empty[tile] != 0 ? any_empty : any_surface) = true;
-                            });
-                            if (any_empty && any_surface) continue;
-                            facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
-                        }
-                    });
+    parallel_ranges(facets.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const TileSpan& span = facet_at[f].span;
+            if (!facets.plane(f).has_value() || borders_.near(span)) continue;
+            bool any_empty = false, any_surface = false;
+            tiles().for_each(span, [&](std::size_t tile) {
+                (is_empty[tile] != 0 ? any_empty : any_surface) = true;
+            });
+            if (any_empty && any_surface) continue;
+            facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
+        }
+    });
 }
 
 SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const TriangleLinks& links,
@@ -333,18 +327,17 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
         }
     }
     polygon.assign(tiling.size(), -1);
-    parallel_ranges(triangles, 2 * kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            if (surface[t] == Standing::kExact ||
-                                tiles().any(surface_at[t].span,
-                                            [&](std::size_t tile) { return is_needed[tile] != 0; }))
-                                polygon[t] = 0;
-                        }
-                    });
+    parallel_ranges(triangles, 2 * kChunk, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            if (surface[t] == Standing::kExact ||
+                tiles().any(surface_at[t].span,
+                            [&](std::size_t tile) { return is_needed[tile] != 0; }))
+                polygon[t] = 0;
+        }
+    });
     SurfaceTiling part;
     for (std::size_t t = 0; t < triangles; ++t) {
-        poll(progress_, t);
+        poll(execution_.progress, t);
         if (polygon[t] < 0) continue;
         polygon[t] = static_cast<std::int32_t>(part.plane.size());
         part.plane.push_back(tiling.whole[t]);
@@ -357,7 +350,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
             if (tiling.is_raised || other == kNone || other > part.plane[i]) return kNoOutline;
             return polygon[index(other - tiling.whole.front())];
         },
-        [](std::size_t) { return PolygonView(); }, part.polygons, progress_);
+        [](std::size_t) { return PolygonView(); }, part.polygons, execution_.progress);
     for (std::size_t i = 0; i < tiling.part_plane.size(); ++i) {
         polygon[triangles + i] = static_cast<std::int32_t>(part.plane.size());
         part.polygons.add(tiling.parts[i]);
@@ -367,7 +360,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
         part.polygons.add(triangle_outline(geometry, t));
         part.plane.push_back(kVoid);
     }
-    part.index(geometry, threads_, progress_, std::max(tiles().size(), part.plane.size()));
+    part.index(geometry, execution_, std::max(tiles().size(), part.plane.size()));
     return part;
 }
 

@@ -76,13 +76,12 @@ enum class Standing : std::uint8_t {
 class WholeTriangleFilter {
 public:
     WholeTriangleFilter(const exact::PlanArrangement& geometry, const BorderEdges& borders,
-                        double largest_height, int threads, const Progress* progress)
+                        double largest_height, const Execution& execution)
         : geometry_(geometry),
           borders_(borders),
           // Well above what rounding moves vertices by: what bounds keep apart stays apart.
           margin_(largest_height * 0x1p-40),
-          threads_(threads),
-          progress_(progress) {}
+          execution_(execution) {}
 
     /// Takes the next surface, whatever it is compared with.
     void begin(const BlockTiling& tiling);
@@ -133,8 +132,7 @@ private:
     const exact::PlanArrangement& geometry_;
     const BorderEdges& borders_;
     double margin_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
     const BlockTiling* tiling_ = nullptr;
     std::vector<TileContent> surface_tiles_, facet_tiles_;
     std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or parts meet it

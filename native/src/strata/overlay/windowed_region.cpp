@@ -45,17 +45,17 @@ bool may_cross(const PlanBox& box, const Window& window) {
 
 }  // namespace
 
-Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progress* progress) {
+Envelope region_envelope(Site& site, EnteredRock& rock, const Execution& execution) {
     const Envelope region = initial_envelope(
         make_region_tiling(site.geometry, *rock.region, rock.region_filling), kSkyBlock);
     if (!rock.window) return region;
     // The window is a surface under the sky: what lies above it stays sky.
     const SurfaceTiling window = make_surface_tiling(site.geometry, rock.window->triangles,
-                                                     rock.window_plan, {}, -1, threads, progress);
+                                                     rock.window_plan, {}, -1, execution);
     site.surface_of_plane.resize(site.geometry.plane_count(), kBase);
     Construction nothing;
     Overlaid overlaid = overlay_facets(site.geometry, region, window, kSkyBlock, nullptr, nullptr,
-                                       nothing, threads, progress);
+                                       nothing, execution);
     std::fill(overlaid.kept.plane.begin(), overlaid.kept.plane.end(), kOutside);
     for (std::size_t i = 0; i < overlaid.below.polygon.size(); ++i)
         overlaid.kept.add_facet(overlaid.below.outlines[i], kSky, -1, kSkyBlock);
@@ -63,7 +63,7 @@ Envelope region_envelope(Site& site, EnteredRock& rock, int threads, const Progr
 }
 
 void clip_to_window(Site& site, const EnteredRock& rock, SurfaceTiling& tiling,
-                    const Progress* progress) {
+                    Progress* progress) {
     const auto window = window_outline(site, rock);
     LocalArrangement scope(site.geometry);
     Clipper clipper(scope);

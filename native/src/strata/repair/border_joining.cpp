@@ -57,7 +57,7 @@ struct Mesh {
 };
 
 /// The edges that one triangle only has, by vertex numbers, the lower first.
-std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Progress* progress) {
+std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, Progress* progress) {
     check_triangle_count(mesh.size());
     std::vector<std::array<std::int32_t, 3>> triangles;
     triangles.reserve(mesh.size());
@@ -89,7 +89,7 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Pr
 }
 
 /// The edges that one triangle only has in plan, ascending.
-std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
+std::vector<PlanEdge> border_of(const Mesh& mesh, Progress* progress) {
     // first by number, which leaves few; then by position, for vertices that are given several
     // times
     const auto once = single_edges(mesh, progress);
@@ -135,7 +135,7 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
 /// A mesh with the divided triangles' parts.
 class Divided {
 public:
-    Divided(const Mesh& mesh, const BorderChains& chains, const Progress* progress) : mesh_(mesh) {
+    Divided(const Mesh& mesh, const BorderChains& chains, Progress* progress) : mesh_(mesh) {
         vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
         for (std::size_t row = 0; row + mesh.columns <= vertices.size(); row += mesh.columns) {
             vertices[row] = mesh.snapping->x(vertices[row]);
@@ -239,7 +239,7 @@ private:
 }  // namespace
 
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                         int threads, const Progress* progress) {
+                         const Execution& execution) {
     std::vector<Mesh> meshes;
     for (const StackInput& rock : rocks) {
         for (const SurfaceView& s : rock.surfaces)
@@ -249,8 +249,8 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
     }
     std::vector<PlanEdge> edges;
     std::vector<std::vector<PlanEdge>> borders(meshes.size());
-    parallel_chunks(meshes.size(), threads, progress,
-                    [&](std::size_t m) { borders[m] = border_of(meshes[m], progress); });
+    parallel_chunks(meshes.size(), execution,
+                    [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
     for (const auto& border : borders)
         edges.insert(edges.end(), border.begin(), border.end());
     std::sort(edges.begin(), edges.end());
@@ -271,7 +271,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
     const double reach = largest * 0x1p-50;  // four to eight units in the last place
     const spatial::PointBins vertices(ends);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        poll(progress, i);
+        poll(execution.progress, i);
         auto chain = vertices_along(edges[i], vertices, reach);
         if (!chain.empty()) chains.emplace(edges[i], std::move(chain));
     }
@@ -280,14 +280,14 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
 
 JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
                        std::size_t columns, const PlanSnapping& snapping,
-                       const BorderChains& chains, const Progress* progress) {
+                       const BorderChains& chains, Progress* progress) {
     const Mesh mesh{vertices, triangles, columns, &snapping};
     Divided parts(mesh, chains, progress);
     return {std::move(parts.vertices), std::move(parts.triangles)};
 }
 
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           const BorderChains& chains, const Progress* progress) {
+                           const BorderChains& chains, Progress* progress) {
     JoinedBorders joined;
     const auto replace = [&](auto& view, std::size_t columns) {
         const JoinedMesh& mesh = joined.meshes.emplace_back(

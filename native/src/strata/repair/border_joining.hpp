@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "realmodel/base/progress.hpp"
+#include "realmodel/base/execution.hpp"
 #include "realmodel/strata/joins.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "spatial/plan_tiles.hpp"
@@ -33,7 +33,7 @@ using BorderChains = std::map<std::pair<spatial::PlanPosition, spatial::PlanPosi
 /// @param threads  as many meshes are looked at at once
 /// @throws Cancelled
 BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                         int threads = 1, const Progress* progress = nullptr);
+                         const Execution& execution = {});
 
 /// A mesh of a surface (three columns) or a region (two) with snapped coordinates, its edges
 /// divided. The numbers of triangles that were not divided stay; the first part of a divided one
@@ -41,7 +41,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
 /// @throws Cancelled
 JoinedMesh joined_mesh(std::span<const double> vertices, std::span<const std::int32_t> triangles,
                        std::size_t columns, const PlanSnapping& snapping,
-                       const BorderChains& chains, const Progress* progress = nullptr);
+                       const BorderChains& chains, Progress* progress = nullptr);
 
 /// Input with its edges divided.
 struct JoinedBorders {
@@ -58,7 +58,7 @@ struct JoinedBorders {
 /// joined_mesh of all meshes.
 /// @throws Cancelled
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           const BorderChains& chains, const Progress* progress = nullptr);
+                           const BorderChains& chains, Progress* progress = nullptr);
 
 /// What is done to the input before it is built.
 Warning joined_by_rounding(const PlanSnapping& snapping, const BorderChains& chains);

@@ -17,13 +17,12 @@ struct Joins::Found {
     Warning warning;
 
     template <class View>
-    std::optional<JoinedMesh> mesh(const View& given, std::size_t columns, int threads,
-                                   Progress* progress) const {
-        begin_step(progress, 0.0, 1.0, "joining the borders");
-        JoinedMesh joined =
-            joined_mesh(given.vertices, given.triangles, columns, snapping, chains, progress);
-        if (!is_single_valued(View{joined.vertices, joined.triangles}, threads, progress))
-            return {};
+    std::optional<JoinedMesh> mesh(const View& given, std::size_t columns,
+                                   const Execution& execution) const {
+        begin_step(execution.progress, 0.0, 1.0, "joining the borders");
+        JoinedMesh joined = joined_mesh(given.vertices, given.triangles, columns, snapping, chains,
+                                        execution.progress);
+        if (!is_single_valued(View{joined.vertices, joined.triangles}, execution)) return {};
         return joined;
     }
 
@@ -32,7 +31,7 @@ private:
     // its own border (enter_site), and that the frame around this one is another one does not
     // count, as it only has to lie outside of the border (fill_frame).
     template <class View>
-    static bool is_single_valued(const View& mesh, int threads, Progress* progress) {
+    static bool is_single_valued(const View& mesh, const Execution& execution) {
         StackInput input;
         if constexpr (std::is_same_v<View, SurfaceView>) {
             input.surfaces.push_back(mesh);
@@ -40,7 +39,7 @@ private:
             input.region = mesh;
         }
         std::vector<Warning> warnings;
-        return enter_site({&input, 1}, {}, warnings, threads, progress)->is_single_valued;
+        return enter_site({&input, 1}, {}, warnings, execution)->is_single_valued;
     }
 };
 
@@ -52,22 +51,21 @@ std::vector<double> Joins::snapped(std::span<const double> vertices, std::size_t
     return joined_mesh(vertices, {}, columns, found_->snapping, {}).vertices;
 }
 
-std::optional<JoinedMesh> Joins::mesh(const SurfaceView& surface, int threads,
-                                      Progress* progress) const {
-    return found_->mesh(surface, 3, threads, progress);
+std::optional<JoinedMesh> Joins::mesh(const SurfaceView& surface,
+                                      const Execution& execution) const {
+    return found_->mesh(surface, 3, execution);
 }
 
-std::optional<JoinedMesh> Joins::mesh(const RegionView& region, int threads,
-                                      Progress* progress) const {
-    return found_->mesh(region, 2, threads, progress);
+std::optional<JoinedMesh> Joins::mesh(const RegionView& region, const Execution& execution) const {
+    return found_->mesh(region, 2, execution);
 }
 
-std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders, int threads,
-                                Progress* progress) {
-    begin_step(progress, 0.0, 1.0, "comparing the borders");
+std::optional<Joins> find_joins(std::span<const StackInput> rocks, bool borders,
+                                const Execution& execution) {
+    begin_step(execution.progress, 0.0, 1.0, "comparing the borders");
     const auto found = std::make_shared<Joins::Found>();
-    found->snapping = find_snapping(rocks, threads, progress);
-    if (borders) found->chains = find_chains(rocks, found->snapping, 1, progress);
+    found->snapping = find_snapping(rocks, execution);
+    if (borders) found->chains = find_chains(rocks, found->snapping, {1, execution.progress});
     if (found->snapping.empty() && found->chains.empty()) return {};
     found->warning = joined_by_rounding(found->snapping, found->chains);
     return Joins(found);

@@ -59,8 +59,7 @@ int orientation(const std::array<SpacePosition, 3>& p) {
 /// Calls visit(position) for all vertices; what the builder refuses later (numbers that are not
 /// finite) is passed over.
 template <class Visit>
-void for_each_vertex(std::span<const StackInput> rocks, const Progress* progress,
-                     const Visit& visit) {
+void for_each_vertex(std::span<const StackInput> rocks, Progress* progress, const Visit& visit) {
     for (const PlanMesh& mesh : meshes_of(rocks)) {
         for (std::size_t v = 0; v < mesh.size(); ++v) {
             poll(progress, v);
@@ -72,8 +71,7 @@ void for_each_vertex(std::span<const StackInput> rocks, const Progress* progress
 
 /// Calls visit(corners) for all triangles; what the builder refuses later is passed over.
 template <class Visit>
-void for_each_triangle(std::span<const StackInput> rocks, const Progress* progress,
-                       const Visit& visit) {
+void for_each_triangle(std::span<const StackInput> rocks, Progress* progress, const Visit& visit) {
     for (const PlanMesh& mesh : meshes_of(rocks)) {
         for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
             poll(progress, t);
@@ -111,11 +109,11 @@ AxisSnapping join_close(const CloseValues& close, const std::set<double>& left_a
 }
 
 /// Runs of x, and of y, no further apart than rounding.
-std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks, int threads,
-                                        const Progress* progress, std::size_t at_once) {
+std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks,
+                                        const Execution& execution, std::size_t at_once) {
     std::array<double, 2> least{HUGE_VAL, HUGE_VAL}, most{-HUGE_VAL, -HUGE_VAL};
     std::size_t count = 0;
-    for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+    for_each_vertex(rocks, execution.progress, [&](const PlanPosition& p) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
             least[axis] = std::min(least[axis], p[axis]);
             most[axis] = std::max(most[axis], p[axis]);
@@ -130,11 +128,11 @@ std::array<CloseValues, 2> close_values(std::span<const StackInput> rocks, int t
     };
     std::array searches{search_along(0), search_along(1)};
     while (!searches[0].is_done() || !searches[1].is_done()) {
-        for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+        for_each_vertex(rocks, execution.progress, [&](const PlanPosition& p) {
             for (std::size_t axis = 0; axis < 2; ++axis)
                 searches[axis].see(p[axis] + 0.0);  // -0 becomes 0
         });
-        parallel_chunks(2, threads, progress, [&](std::size_t axis) { searches[axis].end_pass(); });
+        parallel_chunks(2, execution, [&](std::size_t axis) { searches[axis].end_pass(); });
     }
     return {searches[0].take(), searches[1].take()};
 }
@@ -159,9 +157,9 @@ double AxisSnapping::changed(double value) const {
     return at != changes_.end() && at->first == value ? at->second : value;
 }
 
-PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads, const Progress* progress,
+PlanSnapping find_snapping(std::span<const StackInput> rocks, const Execution& execution,
                            std::size_t at_once) {
-    const auto close = close_values(rocks, threads, progress, at_once);
+    const auto close = close_values(rocks, execution, at_once);
     // Values whose joining would turn a triangle are left alone, until none is turned. Input so
     // fine that this does not settle soon is taken as it is.
     constexpr int kRounds = 8;
@@ -171,7 +169,7 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads, const
                               join_close(close[1], left_alone[1])};
         if (snapping.empty()) return snapping;
         bool turned = false;
-        for_each_triangle(rocks, progress, [&](const std::array<SpacePosition, 3>& p) {
+        for_each_triangle(rocks, execution.progress, [&](const std::array<SpacePosition, 3>& p) {
             std::array<SpacePosition, 3> q;
             for (std::size_t i = 0; i < 3; ++i)
                 q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1]), p[i][2]};

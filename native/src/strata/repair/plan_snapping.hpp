@@ -42,8 +42,7 @@ struct PlanSnapping {
 bool share_one_plan(std::span<const StackInput> rocks);
 
 /// @param at_once  of the values of a coordinate that are in memory
-PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads = 1,
-                           const Progress* progress = nullptr,
+PlanSnapping find_snapping(std::span<const StackInput> rocks, const Execution& execution = {},
                            std::size_t at_once = std::size_t{1} << 22);
 
 }  // namespace realmodel::strata

@@ -103,7 +103,7 @@ EnteredSurface enter_window(PlanArrangement& geometry, const Window& window) {
 
 EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
                        std::int32_t first_surface, const PlanSnapping& snapping,
-                       std::vector<Warning>& warnings, int threads, const Progress* progress) {
+                       std::vector<Warning>& warnings, const Execution& execution) {
     EnteredRock rock;
     rock.first_surface = first_surface;
     rock.rules = input.rules;
@@ -115,14 +115,14 @@ EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
                          first_surface);
     }
     rock.base_elevation = input.base_elevation;
-    rock.surfaces = enter_surfaces(geometry, input.surfaces, first_surface, snapping, warnings,
-                                   threads, progress);
+    rock.surfaces =
+        enter_surfaces(geometry, input.surfaces, first_surface, snapping, warnings, execution);
     if (input.region) rock.region = enter_region(geometry, *input.region, first_surface, snapping);
     if (input.window) rock.window = enter_window(geometry, *input.window);
     return rock;
 }
 
-SurfacePlan plan_window(const Site& site, const EnteredSurface& window, const Progress* progress) {
+SurfacePlan plan_window(const Site& site, const EnteredSurface& window, Progress* progress) {
     std::vector<PlanTriangle> triangles;
     for (const UsedTriangle& triangle : window.triangles) {
         PlanTriangle& plan = triangles.emplace_back();
@@ -152,8 +152,7 @@ bool EnteredRock::is_erosional() const {
 }
 
 std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                                 std::vector<Warning>& warnings, int threads,
-                                 const Progress* progress) {
+                                 std::vector<Warning>& warnings, const Execution& execution) {
     auto entered = std::make_unique<Site>();
     Site& site = *entered;
     std::size_t vertices = 0, triangles = 0;
@@ -167,7 +166,7 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
     site.geometry.expect_planes(triangles + rocks.size());
     for (const StackInput& rock : rocks) {
         site.rocks.push_back(
-            enter_rock(site.geometry, rock, site.surfaces, snapping, warnings, threads, progress));
+            enter_rock(site.geometry, rock, site.surfaces, snapping, warnings, execution));
         site.surfaces += static_cast<std::int32_t>(rock.surfaces.size());
     }
     if (site.is_empty()) return entered;
@@ -176,16 +175,16 @@ std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSn
         enter_base(site, rock);
     site.geometry.freeze_vertices();
     for (EnteredRock& rock : site.rocks) {
-        rock.plans = plan_surfaces(site.geometry, rock.surfaces, site.frame, threads, progress);
+        rock.plans = plan_surfaces(site.geometry, rock.surfaces, site.frame, execution);
         for (const SurfacePlan& plan : rock.plans)
             site.is_single_valued &= plan.filling.has_value();
         if (rock.region) {
-            rock.region_border = link_triangles(*rock.region, progress).border;
+            rock.region_border = link_triangles(*rock.region, execution.progress).border;
             auto filling = fill_frame(site.geometry, rock.region_border, site.frame);
             site.is_single_valued &= filling.has_value();
             if (filling) rock.region_filling = std::move(*filling);
         }
-        if (rock.window) rock.window_plan = plan_window(site, *rock.window, progress);
+        if (rock.window) rock.window_plan = plan_window(site, *rock.window, execution.progress);
     }
     return entered;
 }

@@ -53,8 +53,7 @@ struct Site {
 /// each surface lies in the frame.
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle
 std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                                 std::vector<Warning>& warnings, int threads,
-                                 const Progress* progress);
+                                 std::vector<Warning>& warnings, const Execution& execution);
 
 /// @throws InputError kind base_not_below, where the lowest position of a rock mass is not above
 /// its base

@@ -108,7 +108,7 @@ struct EnteredVertices {
 /// Enters the used vertices in their order, each fetched some rounds before it is needed.
 EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& surface,
                                const PlanSnapping& snapping,
-                               const std::vector<std::uint8_t>& is_used, const Progress* progress) {
+                               const std::vector<std::uint8_t>& is_used, Progress* progress) {
     constexpr std::size_t kAhead = 12;
     struct Entering {
         double x, y, z;
@@ -180,8 +180,7 @@ public:
             result_.triangles.resize(count_before(first_));
         }
     }
-    void run(std::size_t step, std::size_t chunk, PlanArrangement& geometry,
-             const Progress* progress) {
+    void run(std::size_t step, std::size_t chunk, PlanArrangement& geometry, Progress* progress) {
         if (step == 0) {
             check(chunk);
         } else if (step == 1) {
@@ -225,7 +224,7 @@ private:
                           std::min(triangles_, (chunk + 1) * kRange));
         }
     }
-    void link(const Progress* progress) {
+    void link(Progress* progress) {
         Array<PlanTriangle> corners(result_.triangles.size());
         PlanTriangle* next = corners.begin();
         for (const RangeOfTriangles& range : ranges_) {
@@ -272,8 +271,8 @@ bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
 std::vector<EnteredSurface> enter_surfaces(PlanArrangement& geometry,
                                            std::span<const SurfaceView> surfaces, int first_index,
                                            const PlanSnapping& snapping,
-                                           std::vector<Warning>& warnings, int threads,
-                                           const Progress* progress) {
+                                           std::vector<Warning>& warnings,
+                                           const Execution& execution) {
     std::vector<SurfaceEntry> entries;
     for (std::size_t k = 0; k < surfaces.size(); ++k)
         entries.emplace_back(surfaces[k], first_index + static_cast<int>(k), snapping);
@@ -296,12 +295,12 @@ std::vector<EnteredSurface> enter_surfaces(PlanArrangement& geometry,
             parts.push_back({&entry, step, chunks});
             chunks += entry.chunks(step);
         }
-        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(chunks, execution, [&](std::size_t chunk) {
             const auto after =
                 std::upper_bound(parts.begin(), parts.end(), chunk,
                                  [](std::size_t c, const Part& p) { return c < p.first_chunk; });
             const Part& part = *std::prev(after);
-            part.entry->run(part.step, chunk - part.first_chunk, geometry, progress);
+            part.entry->run(part.step, chunk - part.first_chunk, geometry, execution.progress);
         });
         if (round + 1 >= kSteps) result.push_back(entries[round + 1 - kSteps].finish(warnings));
     }

@@ -19,7 +19,7 @@ bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
 std::vector<EnteredSurface> enter_surfaces(exact::PlanArrangement& geometry,
                                            std::span<const SurfaceView> surfaces, int first_index,
                                            const PlanSnapping& snapping,
-                                           std::vector<Warning>& warnings, int threads,
-                                           const Progress* progress);
+                                           std::vector<Warning>& warnings,
+                                           const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -32,7 +32,7 @@ SurfaceTiling BlockRaising::exact_facets(const BlockTiling& bound) {
         std::lower_bound(numbers.begin(), numbers.end(), bound.whole.size()) - numbers.begin());
     add_outlines(
         geometry_, wholes, [&](std::size_t i) { return geometry_.plane(exact.plane[i]).plan; },
-        exact.polygons, progress_);
+        exact.polygons, execution_.progress);
     for (std::size_t i = wholes; i < numbers.size(); ++i)
         exact.polygons.add(bound.parts[numbers[i] - bound.whole.size()]);
     return exact;
@@ -53,7 +53,7 @@ BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bo
     }
     add_standing(bound.tiling, filter_.facet, Standing::kAbove, raised);
     const SurfaceTiling exact =
-        raise_tiling(geometry_, part, exact_facets(bound.tiling), given, threads_, progress_);
+        raise_tiling(geometry_, part, exact_facets(bound.tiling), given, execution_);
     for (std::size_t p = 0; p < exact.plane.size(); ++p) {
         if (exact.plane[p].has_value()) raised.add_part(exact.polygons[p], exact.plane[p]);
     }
@@ -81,7 +81,7 @@ BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer
     covered.tiling.empty.clear();
     add_standing(older.tiling, filter_.facet, Standing::kUncovered, covered.tiling);
     const SurfaceTiling rest =
-        uncovered_part(geometry_, exact_facets(older.tiling), part, threads_, progress_);
+        uncovered_part(geometry_, exact_facets(older.tiling), part, execution_);
     for (std::size_t p = 0; p < rest.plane.size(); ++p)
         covered.tiling.add_part(rest.polygons[p], rest.plane[p]);
     for (std::size_t tile = 0; tile < covered.cover.size(); ++tile) {

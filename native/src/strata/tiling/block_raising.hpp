@@ -22,13 +22,11 @@ public:
     using Bound = BlockBound;
 
     BlockRaising(exact::PlanArrangement& geometry, const TriangleLinks& links,
-                 const BorderEdges& borders, double largest_height, int threads,
-                 const Progress* progress)
+                 const BorderEdges& borders, double largest_height, const Execution& execution)
         : geometry_(geometry),
           links_(links),
-          filter_(geometry, borders, largest_height, threads, progress),
-          threads_(threads),
-          progress_(progress) {}
+          filter_(geometry, borders, largest_height, execution),
+          execution_(execution) {}
 
     void begin(const BlockTiling& surface) { filter_.begin(surface); }
     BlockTiling raise(const BlockTiling& surface, const BlockBound& bound);
@@ -45,8 +43,7 @@ private:
     exact::PlanArrangement& geometry_;
     const TriangleLinks& links_;
     WholeTriangleFilter filter_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
 };
 
 }  // namespace realmodel::strata

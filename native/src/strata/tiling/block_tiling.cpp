@@ -30,11 +30,11 @@ namespace {
 
 BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                               SurfacePlan plan, std::int32_t number, TriangleLinks& links,
-                              int threads, const Progress* progress) {
+                              const Execution& execution) {
     constexpr std::size_t kTriangles = 8192;
     if (!plan.filling)
-        make_surface_tiling(geometry, triangles, plan, {}, number, threads, progress);  // refuses
-    const PlaneId first = make_planes(geometry, triangles, threads, progress);
+        make_surface_tiling(geometry, triangles, plan, {}, number, execution);  // refuses
+    const PlaneId first = make_planes(geometry, triangles, execution);
     assert(plan.links.neighbor.size() == triangles.size());
     links.neighbor.resize(index(first), {kNone, kNone, kNone});  // planes of bases
     links.neighbor.resize(index(first) + triangles.size());
@@ -44,7 +44,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     std::vector<std::vector<std::pair<exact::VertexId, exact::VertexId>>> border(
         (triangles.size() + kTriangles - 1) / kTriangles);
     parallel_ranges(
-        triangles.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
+        triangles.size(), kTriangles, execution, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
                 const PlaneId plane = tiling.whole[t];
                 const PlanTriangle& corner = geometry.plane(plane).plan;

@@ -47,7 +47,7 @@ struct TriangleLinks {
 /// @throws InputError kind double_valued, as make_surface_tiling does
 BlockTiling make_block_tiling(exact::PlanArrangement& geometry,
                               const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
-                              std::int32_t number, TriangleLinks& links, int threads,
-                              const Progress* progress);
+                              std::int32_t number, TriangleLinks& links,
+                              const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -45,7 +45,7 @@ struct VertexRange {
 
 }  // namespace
 
-PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress* progress) {
+PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* progress) {
     const std::size_t count = triangles.size();
     check_triangle_count(count);
     PlanLinks links;

@@ -30,7 +30,7 @@ struct PlanLinks {
 using PlanTriangle = std::array<exact::VertexId, 3>;
 
 /// Links triangles.
-PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress* progress);
+PlanLinks link_triangles(std::span<const PlanTriangle> triangles, Progress* progress);
 
 /// Plan vertices around everything: the four corners of a rectangle, counter-clockwise, then others
 /// on its sides.

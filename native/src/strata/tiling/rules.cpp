@@ -47,11 +47,12 @@ void append(FoundFacets& found, std::size_t i, SurfaceTiling& tiling) {
 template <class Work>
 std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
                                                       const SurfaceTiling& older,
-                                                      const SurfaceTiling& surface, int threads,
-                                                      const Progress* progress, const Work& work) {
+                                                      const SurfaceTiling& surface,
+                                                      const Execution& execution,
+                                                      const Work& work) {
     const std::size_t count = older.plane.size(), chunks = (count + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<FoundFacets>> found(chunks);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
+    parallel_chunks(chunks, execution, [&](std::size_t c) {
         found[c] = std::make_unique<FoundFacets>(geometry);
         PieceFinder finder(found[c]->scope, surface);
         for (std::size_t f = c * kChunk; f < std::min(count, (c + 1) * kChunk); ++f) {
@@ -67,12 +68,12 @@ std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
 
 SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surface,
                            const SurfaceTiling& bound, std::span<const std::uint8_t> given,
-                           int threads, const Progress* progress) {
+                           const Execution& execution) {
     assert(given.empty() || given.size() == surface.plane.size());
     const auto is_given = [&](std::size_t p) { return !given.empty() && given[p] != 0; };
     std::vector<std::uint8_t> whole(surface.plane.size(), 1);
     const auto found = over_facets(
-        geometry, bound, surface, threads, progress,
+        geometry, bound, surface, execution,
         [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = bound.plane[f];
             const Pieces& pieces = finder.find(bound.polygons[f], plane);
@@ -110,8 +111,8 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
 }
 
 SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
-                             const SurfaceTiling& surface, int threads, const Progress* progress) {
-    const auto found = over_facets(geometry, older, surface, threads, progress,
+                             const SurfaceTiling& surface, const Execution& execution) {
+    const auto found = over_facets(geometry, older, surface, execution,
                                    [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
                                        // as a void, so that heights are not asked for
                                        const Pieces& pieces = finder.find(older.polygons[f], kVoid);
@@ -136,11 +137,10 @@ SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& old
 }
 
 SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, SurfaceTiling other,
-                           int threads, const Progress* progress) {
-    other.index(geometry, threads, progress);
+                           const Execution& execution) {
+    other.index(geometry, execution);
     const auto found = over_facets(
-        geometry, one, other, threads, progress,
-        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = one.plane[f];
             if (!plane.has_value()) {
                 out.add(one.polygons[f], kVoid, -1);
@@ -161,11 +161,9 @@ SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, 
 }
 
 SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
-                            const SurfaceTiling& other, bool fills, int threads,
-                            const Progress* progress) {
+                            const SurfaceTiling& other, bool fills, const Execution& execution) {
     const auto found = over_facets(
-        geometry, one, other, threads, progress,
-        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
             const PlaneId plane = one.plane[f];
             if (plane == kSky || (plane.has_value() && fills)) {
                 out.add(one.polygons[f], plane, -1);
@@ -194,14 +192,14 @@ SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
 }
 
 SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
-    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, threads_, progress_);
-    raised.index(geometry_, threads_, progress_);
+    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, execution_);
+    raised.index(geometry_, execution_);
     return raised;
 }
 
 SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                                    const SurfaceTiling& surface) const {
-    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, threads_, progress_);
+    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, execution_);
     SurfaceTiling covered;
     for (const SurfaceTiling* part : {&newer, &rest}) {
         for (std::size_t p = 0; p < part->plane.size(); ++p) {
@@ -215,7 +213,7 @@ SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTili
 
 SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
                                     const SurfaceTiling& e, bool fills) const {
-    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, threads_, progress_);
+    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, execution_);
     SurfaceTiling lowest = e;
     if (fills) std::ranges::replace_if(lowest.plane, &PlaneId::has_value, kSky);
     return lowest;
@@ -223,7 +221,7 @@ SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
 
 SurfaceTiling TilingRaising::stays(SurfaceTiling lowest) const {
     std::ranges::replace(lowest.plane, kSky, kVoid);
-    lowest.index(geometry_, threads_, progress_);
+    lowest.index(geometry_, execution_);
     return lowest;
 }
 

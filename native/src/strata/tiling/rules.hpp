@@ -117,22 +117,21 @@ private:
 /// @param given  of each polygon of the surface; empty: none
 SurfaceTiling raise_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& surface,
                            const SurfaceTiling& bound, std::span<const std::uint8_t> given,
-                           int threads, const Progress* progress);
+                           const Execution& execution);
 
 /// What of an older tiling the surface does not cover; facets that it covers nowhere are not
 /// divided.
 SurfaceTiling uncovered_part(exact::PlanArrangement& geometry, const SurfaceTiling& older,
-                             const SurfaceTiling& surface, int threads, const Progress* progress);
+                             const SurfaceTiling& surface, const Execution& execution);
 
 /// The lower one of two bounds where there are both.
 SurfaceTiling lower_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
-                           SurfaceTiling other, int threads, const Progress* progress);
+                           SurfaceTiling other, const Execution& execution);
 
 /// The lower one of two tilings, and that which there is where the other one is not. Where `one`
 /// has kSky it stays, and so where it has nothing and the other one fills a body.
 SurfaceTiling lowest_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& one,
-                            const SurfaceTiling& other, bool fills, int threads,
-                            const Progress* progress);
+                            const SurfaceTiling& other, bool fills, const Execution& execution);
 
 /// Rules on whole tilings.
 class TilingRaising {
@@ -140,14 +139,14 @@ public:
     using Tiling = SurfaceTiling;
     using Bound = SurfaceTiling;
 
-    TilingRaising(exact::PlanArrangement& geometry, int threads, const Progress* progress)
-        : geometry_(geometry), threads_(threads), progress_(progress) {}
+    TilingRaising(exact::PlanArrangement& geometry, const Execution& execution)
+        : geometry_(geometry), execution_(execution) {}
 
     void begin(const SurfaceTiling&) const {}
     SurfaceTiling raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const;
     SurfaceTiling first(const SurfaceTiling& e) const { return e; }
     SurfaceTiling lower(const SurfaceTiling& one, const SurfaceTiling& other) const {
-        return lower_tiling(geometry_, one, other, threads_, progress_);
+        return lower_tiling(geometry_, one, other, execution_);
     }
     SurfaceTiling cover(const SurfaceTiling& older, const SurfaceTiling& newer,
                         const SurfaceTiling& surface) const;
@@ -160,8 +159,7 @@ public:
 
 private:
     exact::PlanArrangement& geometry_;
-    int threads_;
-    const Progress* progress_;
+    Execution execution_;
 };
 
 }  // namespace realmodel::strata

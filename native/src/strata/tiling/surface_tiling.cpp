@@ -64,25 +64,24 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTria
 
 /// Names the first two triangles that overlap; to be called where there are some.
 [[noreturn]] void refuse_overlap(const PlanArrangement& geometry, const SurfaceTiling& tiling,
-                                 const std::vector<UsedTriangle>& triangles, int index, int threads,
-                                 const Progress* progress) {
+                                 const std::vector<UsedTriangle>& triangles, int index,
+                                 const Execution& execution) {
     constexpr std::size_t kChunk = 1024;
-    parallel_chunks(
-        (triangles.size() + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
-            LocalArrangement scope(geometry);
-            Clipper clipper(scope);
-            Array<std::int32_t> candidates;
-            const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
-            for (std::size_t t = chunk * kChunk; t < end; ++t) {
-                tiling.grid.candidates(scope, tiling.polygons[t], candidates);
-                for (const std::int32_t c : candidates) {
-                    const auto other = static_cast<std::size_t>(c);
-                    if (other > t && clipper.overlap(tiling.polygons[t], tiling.polygons[other])) {
-                        refuse_pair(scope, tiling, triangles, t, other, index);
-                    }
+    parallel_chunks((triangles.size() + kChunk - 1) / kChunk, execution, [&](std::size_t chunk) {
+        LocalArrangement scope(geometry);
+        Clipper clipper(scope);
+        Array<std::int32_t> candidates;
+        const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
+        for (std::size_t t = chunk * kChunk; t < end; ++t) {
+            tiling.grid.candidates(scope, tiling.polygons[t], candidates);
+            for (const std::int32_t c : candidates) {
+                const auto other = static_cast<std::size_t>(c);
+                if (other > t && clipper.overlap(tiling.polygons[t], tiling.polygons[other])) {
+                    refuse_pair(scope, tiling, triangles, t, other, index);
                 }
             }
-        });
+        }
+    });
     throw std::logic_error(
         "a surface covers a position twice, yet no two of its triangles overlap");
 }
@@ -115,19 +114,18 @@ HeightRange heights_of(const PlanArrangement& geometry, PlaneId plane) {
     return {low, high};
 }
 
-void SurfaceTiling::index(const PlanArrangement& geometry, int threads, const Progress* progress,
+void SurfaceTiling::index(const PlanArrangement& geometry, const Execution& execution,
                           std::size_t cells) {
     std::vector<std::uint8_t> is_surface(plane.size());
     std::transform(plane.begin(), plane.end(), is_surface.begin(),
                    [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
     runs_on.assign(plane.size(), 0);
-    grid = PlanGrid(geometry, polygons, is_surface, cells, threads, progress);
+    grid = PlanGrid(geometry, polygons, is_surface, cells, execution);
     heights = Array<HeightRange>(plane.size());
-    parallel_ranges(
-        plane.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p)
-                heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
-        });
+    parallel_ranges(plane.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
+    });
 }
 
 bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t i, PlaneId other) {
@@ -140,9 +138,9 @@ bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t 
 
 std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
                                        std::vector<EnteredSurface>& surfaces, const Frame& frame,
-                                       int threads, const Progress* progress) {
+                                       const Execution& execution) {
     std::vector<SurfacePlan> plans(surfaces.size());
-    parallel_chunks(surfaces.size(), threads, progress, [&](std::size_t k) {
+    parallel_chunks(surfaces.size(), execution, [&](std::size_t k) {
         plans[k].links = std::move(surfaces[k].links);
         plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
     });
@@ -150,22 +148,21 @@ std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
 }
 
 PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
-                    int threads, const Progress* progress) {
+                    const Execution& execution) {
     const PlaneId first = geometry.make_planes(triangles.size());
-    parallel_ranges(triangles.size(), kRange, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t)
-                            geometry.set_plane(first + t, triangles[t].corner);
-                    });
+    parallel_ranges(triangles.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            geometry.set_plane(first + t, triangles[t].corner);
+    });
     return first;
 }
 
 SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles,
                                   const SurfacePlan& plan, const PolygonPool& similar, int index,
-                                  int threads, const Progress* progress) {
+                                  const Execution& execution) {
     SurfaceTiling tiling;
-    const PlaneId first = make_planes(geometry, triangles, threads, progress);
+    const PlaneId first = make_planes(geometry, triangles, execution);
     tiling.plane.resize(triangles.size());
     std::iota(tiling.plane.begin(), tiling.plane.end(), first);
     add_outlines(
@@ -175,25 +172,24 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
             return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
         },
         [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
-        tiling.polygons, progress);
+        tiling.polygons, execution.progress);
     if (!plan.filling) {
-        tiling.index(geometry, threads, progress);
-        refuse_overlap(geometry, tiling, triangles, index, threads, progress);
+        tiling.index(geometry, execution);
+        refuse_overlap(geometry, tiling, triangles, index, execution);
     }
     add_empty(geometry, tiling, *plan.filling, kVoid);
-    tiling.index(geometry, threads, progress);
-    parallel_ranges(
-        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                bool runs_on = true;
-                for (std::size_t i = 0; i < 3 && runs_on; ++i) {
-                    const std::int32_t n = plan.links.neighbor[t][i];
-                    runs_on = n >= 0 && meet_in_height(geometry, tiling.plane[t], i,
-                                                       tiling.plane[static_cast<std::size_t>(n)]);
-                }
-                tiling.runs_on[t] = runs_on ? 1 : 0;
+    tiling.index(geometry, execution);
+    parallel_ranges(triangles.size(), kRange, execution, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            bool runs_on = true;
+            for (std::size_t i = 0; i < 3 && runs_on; ++i) {
+                const std::int32_t n = plan.links.neighbor[t][i];
+                runs_on = n >= 0 && meet_in_height(geometry, tiling.plane[t], i,
+                                                   tiling.plane[static_cast<std::size_t>(n)]);
             }
-        });
+            tiling.runs_on[t] = runs_on ? 1 : 0;
+        }
+    });
     return tiling;
 }
 

@@ -39,7 +39,7 @@ struct SurfaceTiling {
 
     /// Makes the grid of the polygons as they are now, and finds their heights; nothing more is
     /// known of how they run on.
-    void index(const exact::PlanArrangement& geometry, int threads, const Progress* progress,
+    void index(const exact::PlanArrangement& geometry, const Execution& execution,
                std::size_t cells = 0);
 };
 
@@ -72,11 +72,11 @@ struct SurfacePlan {
 /// How checked surfaces lie in plan; their links are taken.
 std::vector<SurfacePlan> plan_surfaces(const exact::PlanArrangement& geometry,
                                        std::vector<EnteredSurface>& surfaces, const Frame& frame,
-                                       int threads, const Progress* progress);
+                                       const Execution& execution);
 
 /// Planes of triangles, one after another; the first of them.
 PlaneId make_planes(exact::PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
-                    int threads, const Progress* progress);
+                    const Execution& execution);
 
 /// The tiling of a checked surface. `similar`: outlines that some of the triangles may have at the
 /// same numbers, whose lines are then known.
@@ -84,7 +84,7 @@ PlaneId make_planes(exact::PlanArrangement& geometry, const std::vector<UsedTria
 SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles,
                                   const SurfacePlan& plan, const PolygonPool& similar, int index,
-                                  int threads, const Progress* progress);
+                                  const Execution& execution);
 
 /// The region as a tiling: plane kSky inside and kOutside outside.
 SurfaceTiling make_region_tiling(exact::PlanArrangement& geometry,

@@ -20,7 +20,7 @@ inline constexpr std::int32_t kNoOutline = -1;
 template <class PlanOf, class Earlier, class Similar>
 void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
                   const Earlier& earlier, const Similar& similar, PolygonPool& pool,
-                  const Progress* progress) {
+                  Progress* progress) {
     constexpr std::size_t kAhead = 8;
     const DirectedLine unknown{LineId(kNone)};
     const std::size_t polygons = pool.size(), corners = pool.corners.size();
@@ -65,7 +65,7 @@ void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const Pla
 /// The same where nothing is known of the triangles' neighbors.
 template <class PlanOf>
 void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const PlanOf& plan_of,
-                  PolygonPool& pool, const Progress* progress) {
+                  PolygonPool& pool, Progress* progress) {
     add_outlines(
         geometry, count, plan_of, [](std::size_t, std::size_t) { return kNoOutline; },
         [](std::size_t) { return PolygonView(); }, pool, progress);

@@ -17,8 +17,8 @@ TEST(NearestDistances, AsByLookingAtAll) {
     const std::array origin{431250.37, 5398781.81};
     const Points points = hills(200, 100, origin);
     const Nodes nodes = scattered_nodes(3000, 140, origin);
-    const std::vector<double> one = nearest_distances(points, nodes, 1);
-    EXPECT_EQ(one, nearest_distances(points, nodes, 3));
+    const std::vector<double> one = nearest_distances(points, nodes, {1});
+    EXPECT_EQ(one, nearest_distances(points, nodes, {3}));
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         double least = HUGE_VAL;
         for (const auto& p : points)
@@ -35,7 +35,7 @@ TEST(NearestDistances, Refuses) {
     EXPECT_THROW(nearest_distances(Points{{0, 0, 0}}, Nodes{{std::nan(""), 0}}), InputError);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(nearest_distances(Points{{0, 0, 0}}, nodes, 0, &progress), Cancelled);
+    EXPECT_THROW(nearest_distances(Points{{0, 0, 0}}, nodes, {0, &progress}), Cancelled);
 }
 
 TEST(NearestPoints, WithinADistanceAllOrNone) {

@@ -36,7 +36,7 @@ TEST(TiledCholesky, SolvesAsEigenDoesForAnyNumberOfThreads) {
             Eigen::LLT<Eigen::MatrixXd>(matrix_of(order, entry)).matrixL().solve(right);
         Eigen::MatrixXd first;
         for (const int threads : {1, 2, 5}) {
-            const TiledCholesky factor(order, entry, 1e-10, threads, nullptr, 1);
+            const TiledCholesky factor(order, entry, 1e-10, {threads, nullptr}, 1);
             Eigen::MatrixXd found = right;
             factor.solve(found, nullptr);
             EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm()) << order;
@@ -50,7 +50,7 @@ TEST(TiledCholesky, RowsThatOthersDetermineAreLeftOut) {
     // Rows 130 and 131 repeat 5 and 40: what is left is the factor without them.
     const auto of = [](Eigen::Index i) { return i == 130 ? 5 : i == 131 ? 40 : i; };
     const auto repeated = [&](Eigen::Index i, Eigen::Index j) { return entry(of(i), of(j)); };
-    const TiledCholesky factor(200, repeated, 1e-10, 2, nullptr, 1);
+    const TiledCholesky factor(200, repeated, 1e-10, {2, nullptr}, 1);
     for (Eigen::Index i = 0; i < 200; ++i)
         EXPECT_EQ(factor.left_out(i), i == 130 || i == 131);
     Eigen::MatrixXd found = Eigen::MatrixXd::Ones(200, 1);
@@ -59,7 +59,7 @@ TEST(TiledCholesky, RowsThatOthersDetermineAreLeftOut) {
     const auto skipped = [](Eigen::Index i) { return i < 130 ? i : i + 2; };
     const TiledCholesky without(
         198, [&](Eigen::Index i, Eigen::Index j) { return entry(skipped(i), skipped(j)); }, 1e-10,
-        1, nullptr, 1);
+        {1, nullptr}, 1);
     Eigen::MatrixXd expected = Eigen::MatrixXd::Ones(198, 1);
     without.solve(expected, nullptr);
     for (Eigen::Index i = 0; i < 198; ++i)
@@ -72,13 +72,13 @@ TEST(TiledCholesky, WhatAnEntryThrowsAndCancellingReachTheCaller) {
             if (i == 300 && j == 200) throw std::bad_alloc();
             return entry(i, j);
         };
-        EXPECT_THROW(TiledCholesky(400, failing, 1e-10, threads, nullptr, 1), std::bad_alloc);
+        EXPECT_THROW(TiledCholesky(400, failing, 1e-10, {threads, nullptr}, 1), std::bad_alloc);
         Progress progress;
         const auto cancelling = [&](Eigen::Index i, Eigen::Index j) {
             if (i == 300) progress.cancel();
             return entry(i, j);
         };
-        EXPECT_THROW(TiledCholesky(400, cancelling, 1e-10, threads, &progress, 1), Cancelled);
+        EXPECT_THROW(TiledCholesky(400, cancelling, 1e-10, {threads, &progress}, 1), Cancelled);
     }
 }
 

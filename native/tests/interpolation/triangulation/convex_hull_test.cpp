@@ -54,12 +54,12 @@ TEST(ConvexHull, IsWhatLiesLeftOfEveryLineThatHasAllPointsOnItsLeft) {
                 expected[i] |= exact::orient2d(a, b, nodes[i]) < 0 ? 1 : 0;
         }
     }
-    EXPECT_EQ(outside_hull(points, nodes, 1), expected);
+    EXPECT_EQ(outside_hull(points, nodes, {1}), expected);
     EXPECT_NE(std::count(expected.begin(), expected.end(), 0), 0);
-    for (const std::uint8_t outside : outside_hull(points, positions, 0))
+    for (const std::uint8_t outside : outside_hull(points, positions, {0}))
         EXPECT_EQ(outside, 0);
-    EXPECT_EQ(outside_hull(points, Nodes{{0, 0}}, 1), (std::vector<std::uint8_t>{1}));
-    EXPECT_THROW(outside_hull(points, Nodes{{std::nan(""), 0}}, 1), InputError);
+    EXPECT_EQ(outside_hull(points, Nodes{{0, 0}}, {1}), (std::vector<std::uint8_t>{1}));
+    EXPECT_THROW(outside_hull(points, Nodes{{std::nan(""), 0}}, {1}), InputError);
 }
 
 TEST(ConvexHull, ItsCornersAndItsBorder) {

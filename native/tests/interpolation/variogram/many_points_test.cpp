@@ -36,20 +36,20 @@ TEST(NearestOfSome, AsATreeOfAllFindsThem) {
     std::vector<std::int32_t> asked = even_part(points.size(), 700);
     asked.push_back(static_cast<std::int32_t>(points.size()) - 1);
     for (const std::size_t count : {1U, 2U, 33U}) {
-        const auto expected = nearest_of_some(positions, asked, count, 1, nullptr);
+        const auto expected = nearest_of_some(positions, asked, count, {1, nullptr});
         ASSERT_EQ(expected.size(), asked.size() * count);
         for (std::size_t k = 0; k < asked.size(); ++k)
             EXPECT_EQ(expected[k * count].point, asked[k]);
         for (const std::size_t most : {1U, 50U, 900U, 4000U})
-            EXPECT_EQ(nearest_of_some(positions, asked, count, 1, nullptr, most), expected);
+            EXPECT_EQ(nearest_of_some(positions, asked, count, {1, nullptr}, most), expected);
     }
     const Positions three{3, positions.at};
-    const auto of_three = nearest_of_some(three, std::vector<std::int32_t>{1}, 33, 1, nullptr, 2);
-    EXPECT_EQ(of_three, nearest_of_some(three, std::vector<std::int32_t>{1}, 33, 1, nullptr));
+    const auto of_three = nearest_of_some(three, std::vector<std::int32_t>{1}, 33, {1, nullptr}, 2);
+    EXPECT_EQ(of_three, nearest_of_some(three, std::vector<std::int32_t>{1}, 33, {1, nullptr}));
     EXPECT_EQ(of_three.size(), 3U);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(nearest_of_some(positions, asked, 2, 1, &progress, 50), Cancelled);
+    EXPECT_THROW(nearest_of_some(positions, asked, 2, {1, &progress}, 50), Cancelled);
 }
 
 TEST(ManyPoints, APartOfThemGivesTheSame) {
@@ -68,7 +68,7 @@ TEST(ManyPoints, APartOfThemGivesTheSame) {
             EXPECT_EQ(a.gamma, b.gamma);
             EXPECT_EQ(a.pairs, b.pairs);
         }
-        const LeaveOneOut of_all(all, 16, 60, 1, nullptr), of_few(few, 16, 60, 1, nullptr);
+        const LeaveOneOut of_all(all, 16, 60, {1, nullptr}), of_few(few, 16, 60, {1, nullptr});
         const PredictionErrors a = of_all.errors(Covariance(v), drift);
         const PredictionErrors b = of_few.errors(Covariance(v), drift);
         EXPECT_EQ(a.errors, b.errors);

@@ -25,8 +25,8 @@ struct Conforming {
                                {1, 1.5, 0}, {0, 1, 0},   {0.5, 0.75, 0}};
     }
     CellComplex assembled(std::vector<WallBatch> walls = {}) {
-        return assemble(small.faces, surface_of_plane, conformed, std::move(walls), {5}, 1,
-                        nullptr);
+        return assemble(small.faces, surface_of_plane, conformed, std::move(walls), {5},
+                        {1, nullptr});
     }
     static std::vector<std::int32_t> face(const CellComplex& complex, std::size_t f) {
         return {complex.face_vertices.begin() + complex.face_offsets[f],

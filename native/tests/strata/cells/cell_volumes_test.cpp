@@ -20,7 +20,7 @@ CellComplex landscape(double x0) {
 
 std::vector<double> volumes(const CellComplex& c, int threads = 1) {
     return cell_volumes(c.vertices, c.face_offsets, c.face_vertices, c.face_cells,
-                        c.cell_block.size(), threads);
+                        c.cell_block.size(), {threads});
 }
 
 TEST(CellVolumes, AddUpToTheBlocks) {

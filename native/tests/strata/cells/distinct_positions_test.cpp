@@ -38,7 +38,7 @@ protected:
         loops_.vertex_offsets[3] = 3;
         FaceList faces;
         faces.add(corners, PlaneId(0), 0, kOutsideCell, 0);
-        return make_distinct(geometry_, faces, places_, loops_, border, 1, nullptr);
+        return make_distinct(geometry_, faces, places_, loops_, border, {1, nullptr});
     }
 
     exact::PlanArrangement geometry_;
@@ -72,7 +72,7 @@ TEST_F(DistinctPositionsTest, WhatIsOnTheBorderOfATileStaysThere) {
     spread({{{4, 2}, {4, 2}, {1, 0.5}}}, 0, &border);
     // the second one is coincident
     places_.coincident = {1};
-    make_distinct(geometry_, {}, places_, loops_, &border, 1, nullptr);
+    make_distinct(geometry_, {}, places_, loops_, &border, {1, nullptr});
     EXPECT_EQ(loops_.positions[0], (std::array<double, 3>{4, 2, 0}));
     EXPECT_EQ(loops_.positions[1][0], 4.0);
     EXPECT_NE(loops_.positions[1][1], 2.0);

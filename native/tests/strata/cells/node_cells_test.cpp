@@ -12,7 +12,7 @@ TEST(NodeCells, AreTheUnionsOfLinkedNodesInOrderOfTheFirst) {
         made.add_node(block, true);
     made.links = {{4, 0}, {3, 1}};
     Array<std::int32_t> cell_block;
-    const auto cells = cells_of_nodes(made, {}, WholeTriangles(0), cell_block, 2, nullptr);
+    const auto cells = cells_of_nodes(made, {}, WholeTriangles(0), cell_block, {2, nullptr});
     EXPECT_EQ(cells, (std::vector<std::int32_t>{0, 1, 2, 1, 0}));
     EXPECT_EQ(cell_block, (Array<std::int32_t>{2, 1, 2}));
 }
@@ -29,7 +29,7 @@ TEST(NodeCells, AreJoinedAcrossEdgesOfWholeTriangles) {
     wholes.face[0] = {0, 2, 1};
     wholes.face[1] = {1, 3, 1};
     Array<std::int32_t> cell_block;
-    const auto cells = cells_of_nodes(made, links, wholes, cell_block, 1, nullptr);
+    const auto cells = cells_of_nodes(made, links, wholes, cell_block, {1, nullptr});
     EXPECT_EQ(cells, (std::vector<std::int32_t>{0, 0, 1, 1}));
     EXPECT_EQ(cell_block, (Array<std::int32_t>{1, 0}));
 }

@@ -21,7 +21,7 @@ CellComplex model_at(double east, double north, double unit, CellKind cells) {
     for (const OwnedSurface& surface : surfaces)
         input.surfaces.push_back(surface.view());
     input.base_elevation = -8 * unit;
-    return build_stack(input, 2, nullptr, cells);
+    return build_stack(input, {2, nullptr}, cells);
 }
 
 /// Far from the origin crossings are rounded to 2^-30 here, and volumes are what they are near it.
@@ -39,7 +39,7 @@ TEST(PlanOffsets, VolumesDoNotDependOnWhereAModelIs) {
 TEST(PlanOffsets, VolumesAreThoseOfTheCellsWhereRoundingShows) {
     for (const CellKind cells : {CellKind::kColumns, CellKind::kBlocks}) {
         const CellComplex small = model_at(0x1p22, 3 * 0x1p20, 0x1p-10, cells);
-        EXPECT_EQ(small.volumes, block_volumes(small, small.volumes.size(), 2, nullptr));
+        EXPECT_EQ(small.volumes, block_volumes(small, small.volumes.size(), {2, nullptr}));
     }
 }
 
@@ -50,7 +50,7 @@ TEST(PlanOffsets, AreNoneNearTheOrigin) {
     vertices.position[1] = {1, 1};
     vertices.representative = Array<PointId>(2);
     const exact::PlanArrangement geometry;
-    EXPECT_TRUE(find_plan_offsets(geometry, vertices, 1, nullptr).empty());
+    EXPECT_TRUE(find_plan_offsets(geometry, vertices, {1, nullptr}).empty());
 }
 
 TEST(PlanOffsets, GoWithTheVerticesThatAreLeft) {

@@ -19,9 +19,9 @@ namespace {
 struct Conformed {
     explicit Conformed(SmallFaces& small, const std::vector<ExtraPoint>& extra = {},
                        const Array<std::uint8_t>* cell_is_thick = nullptr)
-        : vertices(find_plan_vertices(small.geometry, small.faces, extra, 1, nullptr)),
-          lines(find_collinear_edges(small.geometry, small.faces, vertices, extra, cell_is_thick, 1,
-                                     nullptr)) {}
+        : vertices(find_plan_vertices(small.geometry, small.faces, extra, {1, nullptr})),
+          lines(find_collinear_edges(small.geometry, small.faces, vertices, extra, cell_is_thick,
+                                     {1, nullptr})) {}
 
     /// Which of the lines this is.
     std::size_t number_of(LineId representative) const {
@@ -84,7 +84,7 @@ TEST(PlanVertices, OnePositionIsOneVertexHoweverOftenItWasFound) {
 TEST(CollinearLines, LinesThroughTheSamePointsAreOne) {
     SmallFaces small({0});
     small.add_t_junction();
-    const CollinearLines found = join_lines(small.geometry, small.faces, 1, nullptr);
+    const CollinearLines found = join_lines(small.geometry, small.faces, {1, nullptr});
     const auto of = [&](std::size_t from, std::size_t to) {
         return found.of_line[index(small.line(from, to))];
     };
@@ -127,8 +127,8 @@ TEST(ConformedFaces, HaveTheTVerticesOfTheirNeighbors) {
     SmallFaces small({0});
     small.add_t_junction();
     Conformed conformed(small);
-    const ConformedFaces found =
-        conform_faces(small.geometry, small.faces, conformed.vertices, conformed.lines, 1, nullptr);
+    const ConformedFaces found = conform_faces(small.geometry, small.faces, conformed.vertices,
+                                               conformed.lines, {1, nullptr});
     const auto face = [&](std::size_t f) {
         return std::vector<std::int32_t>(found.vertices.begin() + found.face_offsets[f],
                                          found.vertices.begin() + found.face_offsets[f + 1]);
@@ -144,9 +144,9 @@ TEST(ConformedFaces, HaveOneVertexForEachHeight) {
     small.add(0, {3, 0, 2}, 0, kOutsideCell);
     small.add(1, {0, 4, 2}, kOutsideCell, 0);
     Conformed conformed(small);
-    ConformedFaces found =
-        conform_faces(small.geometry, small.faces, conformed.vertices, conformed.lines, 1, nullptr);
-    set_vertex_positions(conformed.vertices, found, 1, nullptr);
+    ConformedFaces found = conform_faces(small.geometry, small.faces, conformed.vertices,
+                                         conformed.lines, {1, nullptr});
+    set_vertex_positions(conformed.vertices, found, {1, nullptr});
     ASSERT_EQ(found.positions.size(), 6u);  // two over each end of the line
     const std::vector<double> z{1, 1, 5, 1, 5, 5};
     for (std::size_t v = 0; v < z.size(); ++v)
@@ -158,8 +158,8 @@ TEST(IntervalCurves, AreTheEdgesOverEachInterval) {
     SmallFaces small({0});
     small.add_t_junction();
     Conformed conformed(small);
-    const ConformedFaces found =
-        conform_faces(small.geometry, small.faces, conformed.vertices, conformed.lines, 1, nullptr);
+    const ConformedFaces found = conform_faces(small.geometry, small.faces, conformed.vertices,
+                                               conformed.lines, {1, nullptr});
     IntervalCurves curves(small.faces, conformed.lines, found);
     curves.collect(conformed.number_of(small.line(0, 2)));
     ASSERT_EQ(curves.intervals(), 2u);
@@ -252,9 +252,9 @@ TEST(Walls, StandBetweenTwoColumnsWhetherTheirEdgesMatchOrNot) {
         const Array<std::uint8_t> is_thick(2, 1);
         Conformed conformed(small, {}, matched ? &is_thick : nullptr);
         const ConformedFaces faces = conform_faces(small.geometry, small.faces, conformed.vertices,
-                                                   conformed.lines, 1, nullptr);
+                                                   conformed.lines, {1, nullptr});
         const FoundWalls found =
-            find_walls(small.geometry, small.faces, conformed.lines, faces, nullptr, 1, nullptr);
+            find_walls(small.geometry, small.faces, conformed.lines, faces, nullptr, {1, nullptr});
         EXPECT_TRUE(found.missing.empty());
         std::vector<std::array<std::int32_t, 2>> inner;
         std::size_t outer = 0;

@@ -44,7 +44,7 @@ TEST(CornerOffsets, AreThoseOfASimpleLoop) {
     for (const std::size_t corners : {0, 1, 31, 32, 33, 64, 20000}) {
         for (const int one_of : {1, 2, 60}) {
             const Case made = make_case(corners, one_of, random);
-            const CornerOffsets numbers(made.passed, corners, 3, nullptr);
+            const CornerOffsets numbers(made.passed, corners, {3, nullptr});
             EXPECT_EQ(numbers.corners(), corners);
             for (std::size_t c = 0; c <= corners; ++c)
                 ASSERT_EQ(numbers.first(c), made.expected[c]) << c << " of " << corners;

@@ -48,7 +48,7 @@ TEST(PlanGrid, FindsAllPolygonsThatShareAnAreaOnceAndInOrder) {
     t.finish();
     std::vector<std::uint8_t> is_inner(t.polygons.size(), 1);
     is_inner.back() = 0;
-    const PlanGrid grid(t.geometry, t.polygons, is_inner, 100, 1, nullptr);
+    const PlanGrid grid(t.geometry, t.polygons, is_inner, 100, {1, nullptr});
     LocalArrangement local(t.geometry);
     Clipper clipper(local);
     for (std::size_t i = 0; i < t.polygons.size(); ++i) {
@@ -69,7 +69,7 @@ TEST(PlanGrid, OffersNothingWhoseBoxLiesApart) {
     t.add({{{0, 0}, {1, 0}, {0, 1}}});
     t.add({{{2, 2}, {3, 2}, {2, 3}}});
     t.finish();
-    const PlanGrid grid(t.geometry, t.polygons, {1, 1}, 1, 1, nullptr);
+    const PlanGrid grid(t.geometry, t.polygons, {1, 1}, 1, {1, nullptr});
     EXPECT_EQ(t.candidates(grid, 0), (std::vector<std::int32_t>{0}));
     EXPECT_EQ(t.candidates(grid, 1), (std::vector<std::int32_t>{1}));
 }

@@ -90,8 +90,8 @@ TEST(WantedBoxes, LeavesOutColumnsWhereNothingIsWanted) {
         for (const OwnedSurface& s : surfaces)
             input.surfaces.push_back(s.view());
         if (seed % 2 == 0) input.base_elevation = -2.5;
-        const auto all = build_rock_masses({&input, 1}, 1, nullptr);
-        const auto few = build_rock_masses({&input, 1}, 2, nullptr, CellKind::kColumns, &space);
+        const auto all = build_rock_masses({&input, 1}, {1, nullptr});
+        const auto few = build_rock_masses({&input, 1}, {2, nullptr}, CellKind::kColumns, &space);
         expect_valid(few);
         auto kept = cells_in(few);
         EXPECT_LT(kept.size(), cells_in(all).size());

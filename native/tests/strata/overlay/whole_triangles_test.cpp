@@ -21,7 +21,7 @@ struct Comparing {
           lower(scene.block_tiling(0, links)),
           upper(scene.block_tiling(1, links)),
           borders(scene.geometry(), PlanTiles({0, 0, 6, 6}, 36), links.border),
-          filter(scene.geometry(), borders, 2, 1, nullptr),
+          filter(scene.geometry(), borders, 2, {1, nullptr}),
           cover(filter.tiles().size(), Cover::kFacets) {
         if (raised) lower = upper;
         lower.is_raised = raised;

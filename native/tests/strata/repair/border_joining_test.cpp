@@ -38,7 +38,7 @@ TEST(BorderJoining, DividesEdgesAtVerticesBesideThem) {
     ASSERT_EQ(joined.rocks.size(), 1u);
     for (const SurfaceView& s : joined.rocks[0].surfaces)
         EXPECT_EQ(s.triangles.size(), 9u);  // all have both vertices now
-    const CellComplex columns = build_stack(input, 1, nullptr);
+    const CellComplex columns = build_stack(input, {1, nullptr});
     const double area = Outline::kX * 2e6 / 2;
     EXPECT_NEAR(columns.volumes[1], area, 1e-6 * area);
     EXPECT_NEAR(columns.volumes[2], area, 1e-6 * area);
@@ -52,7 +52,7 @@ TEST(BorderJoining, PartsOfOneSurfaceDoNotOverlapByRounding) {
         both[0].triangles = {0, 1, 2, 0, 4, 3, 3, 4, 1};  // the long edge, and its vertex beyond it
         StackInput input = stack_of(both);
         input.base_elevation = -1;
-        const CellComplex columns = build_stack(input, 1, nullptr);
+        const CellComplex columns = build_stack(input, {1, nullptr});
         const double area = Outline::kX * (2e6 + Outline::kY) / 2;
         EXPECT_NEAR(columns.volumes[0], area, 1e-6 * area);
         EXPECT_EQ(columns.cell_block.size(), columns.warnings.empty() ? 3u : 4u);

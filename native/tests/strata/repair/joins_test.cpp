@@ -53,7 +53,7 @@ TEST(Joins, GiveTheMeshesThatAreBuilt) {
         ASSERT_TRUE(region);
         EXPECT_EQ(region->vertices, owned.corners);
         EXPECT_EQ(joins->snapped(input.region->vertices, 2), owned.corners);
-        const auto built = build_stack(input, 1, nullptr).warnings;
+        const auto built = build_stack(input, {1, nullptr}).warnings;
         ASSERT_EQ(built.size(), 1U);
         EXPECT_EQ(joins->warning().text, built[0].text);
     }

@@ -129,7 +129,7 @@ TEST(PlanSnapping, InSlicesItIsTheSame) {
         const PlanSnapping whole = find_snapping({&input, 1});
         EXPECT_GT(whole.x.size(), 30U);
         for (const std::size_t at_once : {1, 2, 7, 100, 2999}) {
-            const PlanSnapping slices = find_snapping({&input, 1}, 1, nullptr, at_once);
+            const PlanSnapping slices = find_snapping({&input, 1}, {1, nullptr}, at_once);
             expect_same(slices.x, whole.x, vertices);
             expect_same(slices.y, whole.y, vertices);
         }
@@ -146,7 +146,7 @@ TEST(PlanSnapping, ARunGoesOnInTheNextSlices) {
     }
     const StackInput input = of_positions(vertices);
     for (const std::size_t at_once : {2, 3, 10, 1000}) {
-        const PlanSnapping found = find_snapping({&input, 1}, 2, nullptr, at_once);
+        const PlanSnapping found = find_snapping({&input, 1}, {2, nullptr}, at_once);
         EXPECT_EQ(found.x.size(), 49U);
         EXPECT_EQ(found.x(1), 1 + 40 * 0x1p-52);
         EXPECT_EQ(found.x(x), x);

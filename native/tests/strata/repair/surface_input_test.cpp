@@ -16,7 +16,7 @@ struct Entered {
 
     explicit Entered(const OwnedSurface& surface, const PlanSnapping& snapping = {}) {
         const std::vector<SurfaceView> views{surface.view()};
-        surfaces = enter_surfaces(geometry, views, 7, snapping, warnings, 1, nullptr);
+        surfaces = enter_surfaces(geometry, views, 7, snapping, warnings, {1, nullptr});
     }
 };
 

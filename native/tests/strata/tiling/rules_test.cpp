@@ -19,7 +19,7 @@ CellComplex build_ruled(const std::vector<OwnedSurface>& surfaces, std::vector<R
         input.surfaces.push_back(s.view());
     input.rules = std::move(rules);
     input.base_elevation = base;
-    return build_stack(input, 2, nullptr, cells);
+    return build_stack(input, {2, nullptr}, cells);
 }
 
 OwnedSurface flat(double z, bool other = false) {
@@ -80,7 +80,7 @@ std::vector<double> upon_emptied(const std::vector<double>& heights, std::vector
     input.rules = {Rule::kBase, Rule::kConformable};
     input.rules.insert(input.rules.end(), rules.begin(), rules.end());
     input.emptied = {1};
-    const auto c = build_stack(input, 2, nullptr, CellKind::kColumns);
+    const auto c = build_stack(input, {2, nullptr}, CellKind::kColumns);
     expect_valid(c);
     EXPECT_EQ(c.volumes[0], 0);
     EXPECT_EQ(c.volumes[1], 0);
@@ -117,7 +117,7 @@ double upon_oldest(const std::vector<OwnedSurface>& surfaces, std::vector<Rule> 
     input.rules = std::move(rules);
     input.emptied = std::move(emptied);
     input.fills = std::move(fills);
-    const auto c = build_stack(input, 2, nullptr, CellKind::kColumns);
+    const auto c = build_stack(input, {2, nullptr}, CellKind::kColumns);
     expect_valid(c);
     for (std::size_t k = 0; k + 1 < c.volumes.size(); ++k)
         EXPECT_EQ(c.volumes[k], 0);

@@ -11,14 +11,15 @@ from ...base.work import Work, native_module
 from ...heights import heights
 from ...project.project import Surface, surface_item
 from ...settings.methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
+from ...surfaces.rock_input import RockInput
 
+Top = tuple[RockInput, int | None]  # a rock mass that is read, and the number of a surface
 _MANY = 10_000  # points: these are enough for the elevations of a line
 _LIFTS = ("thickness", "minimum_thickness")  # by which a surface may lie above another one's data
 
 
-def plan_of(tops: list[tuple]) -> np.ndarray:
-    """(2, 2) corners around rock masses in plan. tops: of each a RockInput that is read, and the number of a
-    surface, or None."""
+def plan_of(tops: list[Top]) -> np.ndarray:
+    """(2, 2) corners around rock masses in plan."""
     found = []
     for entry, _ in tops:
         if entry.rock.region is not None:
@@ -29,7 +30,7 @@ def plan_of(tops: list[tuple]) -> np.ndarray:
     return np.array([every.min(axis=0), every.max(axis=0)])
 
 
-def levels_of(tops: list[tuple], others: np.ndarray) -> tuple[float, float]:
+def levels_of(tops: list[Top], others: np.ndarray) -> tuple[float, float]:
     """The lowest and the highest elevation of the data of rock masses, and of `others` (NaN: none)."""
     found, lift = [others[~np.isnan(others)]], 0.0
     for entry, _ in tops:
@@ -43,12 +44,12 @@ def levels_of(tops: list[tuple], others: np.ndarray) -> tuple[float, float]:
     return low - lift, high + lift
 
 
-def heights_on(work: Work, plan: np.ndarray, tops: list[tuple], threads: int) -> np.ndarray:
+def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> np.ndarray:
     """(N,) elevations of surfaces at places (N, 2): on the triangles of ready meshes; else by natural
     neighbors between their points, and beyond these as at the nearest. Raises InputRefused."""
     found, points = np.full(len(plan), np.nan), []
-    tops = [(entry, number) for entry, number in tops if number is not None]
-    for entry, number in tops:
+    known = [(entry, number) for entry, number in tops if number is not None]
+    for entry, number in known:
         shape = entry.surfaces[number]
         if shape is not None:
             own = work.native(native_module().surface_heights, *shape, plan, threads=threads)
@@ -60,14 +61,14 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[tuple], threads: int) ->
     rest = np.isnan(found)
     if not rest.any():
         return found
-    known = np.concatenate(points)
-    if not len(known):
-        entry, number = tops[0]
+    data = np.concatenate(points)
+    if not len(data):
+        entry, number = known[0]
         named = surface_item(entry.rock, entry.rock.surfaces[number])
         what = f"the elevation of its trace is not known: {named} has no points or mesh"
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
-    near = np.ascontiguousarray(np.unique(_near(known, plan[rest]), axis=0))
+    near = np.ascontiguousarray(np.unique(_near(data, plan[rest]), axis=0))
     found[rest] = heights(work, near, plan[rest], CONTINUATION, options, threads).z
     return found
 
@@ -80,11 +81,11 @@ def _near(points: np.ndarray, plan: np.ndarray) -> np.ndarray:
     return points[inside] if np.count_nonzero(inside) >= _MANY else points
 
 
-def _every_data(entry) -> list[np.ndarray]:
+def _every_data(entry: RockInput) -> list[np.ndarray]:
     return [_data(entry, number) for number in range(len(entry.surfaces))]
 
 
-def _data(entry, number: int) -> np.ndarray:
+def _data(entry: RockInput, number: int) -> np.ndarray:
     """(P, 3) the points of a surface, or the vertices of its mesh."""
     shape, points = entry.surfaces[number], entry.rock.surfaces[number].points
     if shape is not None:
