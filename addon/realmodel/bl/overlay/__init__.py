@@ -3,8 +3,6 @@
 (`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
 an image."""
 
-import pickle
-
 import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
@@ -52,10 +50,11 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     placed[:3, 3] -= placed[:3, :3] @ origin
     low, high = explosion.bounds(scene)
     shown = Shown(low + origin, high + origin, placed, group.units, factor)
-    given = (eye, shown, keys, *wanted, margins)
-    name = pickle.dumps(given)
+    arrays = eye.projection, eye.back, eye.right, eye.up, shown.low, shown.high, shown.placed
+    of_keys = tuple((k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes()) for k in keys)
+    name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, of_keys, wanted, tuple(margins))
     if name not in _drawings:
-        _drawings[name] = draw_overlay(*given)
+        _drawings[name] = draw_overlay(eye, shown, keys, *wanted, margins)
     return _drawings[name]
 
 
