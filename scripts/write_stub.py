@@ -50,7 +50,7 @@ _TYPES = (  # what pybind11 writes, and what a caller may give or gets
     (r"realmodel\._native\.(\w+)( = None)", r"Native.\1 | None\2"),
     (r"realmodel\._native\.", "Native."),
     (r"\(self: [\w.]+", "(self"),
-    (r" = (?!None)(?:'[^']*'|array\(.*?\)|[^,)]+)", " = ..."),
+    (r" = (?!None)(?:'[^']*'|(?:array)?\(.*?\)|[^,)]+)", " = ..."),
     (r"\bdict\b(?!\[)", "dict[str, Any]"),
     (r"-> object", "-> Any"),  # of numpy.vectorize: a number for numbers, an array for arrays
 )

@@ -69,7 +69,7 @@ void digest(std::uint64_t& value, const Array& array) {
 
 void measure(const TriangleMesh& a, const TriangleMesh& b, int threads) {
     const auto start = std::chrono::steady_clock::now();
-    const auto r = realmodel::booleans::intersect(a, b, threads);
+    const auto r = realmodel::booleans::intersect(a, b, {threads});
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::uint64_t value = 0xcbf29ce484222325ULL;

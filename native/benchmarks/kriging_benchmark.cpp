@@ -54,18 +54,17 @@ int main(int argc, char** argv) {
             std::snprintf(name, sizeof name, "kriging, %s, %d neighbours",
                           std::string(name_of(model)).c_str(), neighbours);
             time_it(name, nodes.size(), "nodes", [&] {
-                (void)krige(points, nodes, {model, 1500, 2500, 0, {}}, {neighbours, threads});
+                (void)krige(points, nodes, {model, 1500, 2500, 0, {}}, {{neighbours}}, {threads});
             });
         }
     }
-    time_it("inverse distance, 16 neighbours", nodes.size(), "nodes", [&] {
-        (void)inverse_distance(points, nodes, {2, 16, threads});
-    });
+    time_it("inverse distance, 16 neighbours", nodes.size(), "nodes",
+            [&] { (void)inverse_distance(points, nodes, {}, {threads}); });
     const std::vector<std::array<double, 3>> few(points.begin(),
                                                  points.begin() + std::min(point_count, 1000));
     const std::vector<std::array<double, 2>> part(
         nodes.begin(), nodes.begin() + std::min<std::ptrdiff_t>(20'000, std::ssize(nodes)));
     time_it("kriging, spherical, all of 1000 points", part.size(), "nodes", [&] {
-        (void)krige(few, part, {VariogramModel::kSpherical, 1500, 2500, 0, {}}, {0, threads});
+        (void)krige(few, part, {VariogramModel::kSpherical, 1500, 2500, 0, {}}, {{0}}, {threads});
     });
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VERSION, Control, InputError and Cancelled.
+// VERSION, Execution, InputError and Cancelled.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <exception>
 
+#include "execution.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/base/version.hpp"
 
 namespace py = pybind11;
@@ -65,16 +65,29 @@ void bind_base(py::module_& module) {
         "The input cannot be used: kind (str), surface (int, -1: none), items (list of int), "
         "place ((x, y, z) or None).");
     cancelled_type = add_exception(module, "Cancelled", PyExc_Exception,
-                                   "The work was stopped by Control.cancel().");
+                                   "The work was stopped by Execution.cancel().");
     py::register_exception_translator(&translate);
 
-    py::class_<Progress>(module, "Control",
-                         "Watches a long call from another thread, and stops it.")
-        .def(py::init<>())
-        .def_property_readonly("fraction", &Progress::fraction, "Share of the work done, 0 to 1.")
-        .def_property_readonly("text", &Progress::text, "What is being done.")
-        .def_property_readonly("cancelled", &Progress::cancelled, "True once cancel() was called.")
-        .def("cancel", &Progress::cancel, "Makes the call raise Cancelled soon.");
+    py::class_<WatchedExecution>(module, "Execution",
+                                 "How a long call is run, watched from another thread and stopped. "
+                                 "threads: 0 for as many as "
+                                 "there are; no result depends on it.")
+        .def(py::init([](int threads) {
+                 return new WatchedExecution{threads, {}};
+             }),
+             py::arg("threads") = 0)
+        .def_property_readonly(
+            "fraction", [](const WatchedExecution& of) { return of.progress.fraction(); },
+            "Share of the work done, 0 to 1.")
+        .def_property_readonly(
+            "text", [](const WatchedExecution& of) { return of.progress.text(); },
+            "What is being done.")
+        .def_property_readonly(
+            "cancelled", [](const WatchedExecution& of) { return of.progress.cancelled(); },
+            "True once cancel() was called.")
+        .def(
+            "cancel", [](WatchedExecution& of) { of.progress.cancel(); },
+            "Makes the call raise Cancelled soon.");
 }
 
 }  // namespace realmodel::bindings

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "execution.hpp"
 #include "rock_arrays.hpp"
 
 namespace py = pybind11;
@@ -29,8 +30,8 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
     const Indices& face_vertices, const Indices& face_cells,
     const std::vector<HistoryArrays>& given, const Indices& faces, const Array<bool>& reversed,
-    const Indices& history, const Indices& layer, const Indices& histories_of_corners, int threads,
-    Progress* control) {
+    const Indices& history, const Indices& layer, const Indices& histories_of_corners,
+    WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -57,7 +58,7 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     {
         const py::gil_scoped_release unlocked;
         made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
-                                   {threads, control});
+                                   run(execution));
     }
     return {to_array(std::move(made.height)), to_array(std::move(made.thickness)),
             to_array(std::move(made.depth))};
@@ -69,8 +70,7 @@ void bind_bedding(py::module_& module) {
     module.def("bedding", &bedding_arrays, py::arg("vertices"), py::arg("face_offsets"),
                py::arg("face_vertices"), py::arg("face_cells"), py::arg("histories"),
                py::arg("faces"), py::arg("reversed"), py::arg("history"), py::arg("layer"),
-               py::arg("histories_of_corners"), py::arg("threads") = 0,
-               py::arg("control") = py::none(),
+               py::arg("histories_of_corners"), py::arg("execution") = py::none(),
                R"(Where the corners of polygons lie in their layers as they were deposited.
 
 The arrays are those of docs/dev/geometry.md. histories: (sheets, base elevation or None, rules) of each rock

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/booleans/intersect.hpp"
 
 namespace py = pybind11;
@@ -86,8 +86,8 @@ py::array_t<bool> is_in(const py::object& self) {
 std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
                                       const Indices& first_triangles,
                                       const Array<double>& second_vertices,
-                                      const Indices& second_triangles, int threads,
-                                      Progress* control) {
+                                      const Indices& second_triangles,
+                                      WatchedExecution* execution) {
     require_columns(first_vertices, 3, "vertices of the first surface");
     require_columns(first_triangles, 3, "triangles of the first surface");
     require_columns(second_vertices, 3, "vertices of the second surface");
@@ -98,7 +98,7 @@ std::unique_ptr<Refinement> intersect(const Array<double>& first_vertices,
     const booleans::TriangleMesh first{view(first_vertices), view(first_triangles)};
     const booleans::TriangleMesh second{view(second_vertices), view(second_triangles)};
     const py::gil_scoped_release release;
-    return std::make_unique<Refinement>(booleans::intersect(first, second, {threads, control}));
+    return std::make_unique<Refinement>(booleans::intersect(first, second, run(execution)));
 }
 
 }  // namespace
@@ -140,8 +140,8 @@ void bind_booleans(py::module_& module) {
                       "[bool, bool]: whether each surface is the boundary of a solid.");
 
     module.def("intersect", &intersect, py::arg("first_vertices"), py::arg("first_triangles"),
-               py::arg("second_vertices"), py::arg("second_triangles"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+               py::arg("second_vertices"), py::arg("second_triangles"),
+               py::arg("execution") = py::none(),
                R"(Intersects two triangulated surfaces and returns a Refinement.
 
 vertices (N, 3) float64, triangles (T, 3) int32 of each. Raises InputError kinds not_finite, bad_index,

@@ -8,7 +8,7 @@
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace py = pybind11;
@@ -57,18 +57,18 @@ py::dict to_dict(cutting::Cut&& cut) {
 }
 
 py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
-                      const std::array<double, 3>& normal, int threads, Progress* control) {
+                      const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, {threads, control});
+        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, run(execution));
     }
     return to_dict(std::move(cut));
 }
 
 py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
-                        const Array<std::int32_t>& triangles, int threads, Progress* control) {
+                        const Array<std::int32_t>& triangles, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices of the surface");
     require_columns(triangles, 3, "triangles of the surface");
     const ModelArrays arrays(model);
@@ -76,47 +76,47 @@ py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
     {
         const py::gil_scoped_release release;
         cut = cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)},
-                                      {threads, control});
+                                      run(execution));
     }
     return to_dict(std::move(cut));
 }
 
-py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t block, int threads,
-                      Progress* control) {
+py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t block,
+                      WatchedExecution* execution) {
     const ModelArrays arrays(model), others(other);
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_block(arrays.complex, others.complex, block, {threads, control});
+        cut = cutting::cut_by_block(arrays.complex, others.complex, block, run(execution));
     }
     return to_dict(std::move(cut));
 }
 
 py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& point,
-                          const std::array<double, 3>& normal, int threads, Progress* control) {
+                          const std::array<double, 3>& normal, WatchedExecution* execution) {
     const ModelArrays arrays(model);
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::section_by_plane(arrays.complex, {point, normal}, {threads, control});
+        section = cutting::section_by_plane(arrays.complex, {point, normal}, run(execution));
     }
     return to_dict(std::move(section));
 }
 
 py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
-                     const std::array<double, 2>& end, int threads, Progress* control) {
+                     const std::array<double, 2>& end, WatchedExecution* execution) {
     const ModelArrays arrays(model);
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::fence_panel(arrays.complex, start, end, {threads, control});
+        section = cutting::fence_panel(arrays.complex, start, end, run(execution));
     }
     return to_dict(std::move(section));
 }
 
 std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
     const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-    const Indices& face_vertices, int threads, Progress* control) {
+    const Indices& face_vertices, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices");
     const auto positions = view(vertices);
     const auto offsets = view(face_offsets);
@@ -125,7 +125,7 @@ std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
     cutting::FaceTriangles found;
     {
         const py::gil_scoped_release unlocked;
-        found = cutting::triangulate_faces(positions, offsets, corners, {threads, control});
+        found = cutting::triangulate_faces(positions, offsets, corners, run(execution));
     }
     return {to_array(std::move(found.triangles)), to_array(std::move(found.offsets))};
 }
@@ -135,7 +135,7 @@ std::tuple<Array<std::int32_t>, Array<std::int64_t>> triangulate_faces(
 void bind_cutting(py::module_& module) {
     module.def(
         "cut_by_plane", &cut_by_plane, py::arg("model"), py::arg("point"), py::arg("normal"),
-        py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("execution") = py::none(),
         R"(A model cut by a plane into what lies below and above it (where the normal points).
 
 model: dict of the arrays of docs/dev/geometry.md, and "blocks" (number of blocks) and "cell_kind".
@@ -145,29 +145,29 @@ Returns a dict: "below" and "above", each with the arrays of a model, "volumes" 
 InputError kinds not_finite, bad_plane, bad_model, and Cancelled.)");
     module.def(
         "cut_by_surface", &cut_by_surface, py::arg("model"), py::arg("vertices"),
-        py::arg("triangles"), py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("triangles"), py::arg("execution") = py::none(),
         R"(A model cut by a triangulated surface, vertices (N, 3) float64, triangles (T, 3) int32, that
 parts it; as cut_by_plane. Above is the surface's upper side, or the outside of a closed one. Raises
 InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, ends_inside, two_sides,
 bad_model, and Cancelled.)");
     module.def(
         "cut_by_block", &cut_by_block, py::arg("model"), py::arg("other"), py::arg("block"),
-        py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("execution") = py::none(),
         R"(A model cut by the boundary of a block of another model, or of itself; as cut_by_plane,
 "below" is what is inside. Raises InputError kinds no_block, bad_model, and Cancelled.)");
     module.def(
         "section_by_plane", &section_by_plane, py::arg("model"), py::arg("point"),
-        py::arg("normal"), py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("normal"), py::arg("execution") = py::none(),
         R"(The section alone: vertices (V, 3) float64, offsets (K + 1,) int64, polygon_vertices
 int32, convex polygons counter-clockwise seen from above; cells (K, 2) int32, the cells below and
 above, -1 outside.)");
     module.def("fence_panel", &fence_panel, py::arg("model"), py::arg("start"), py::arg("end"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                "The vertical section over the stretch from start to end, (x, y) each; as of "
                "section_by_plane, above is to its right.");
     module.def(
         "triangulate_faces", &triangulate_faces, py::arg("vertices"), py::arg("face_offsets"),
-        py::arg("face_vertices"), py::arg("threads") = 0, py::arg("control") = py::none(),
+        py::arg("face_vertices"), py::arg("execution") = py::none(),
         R"(Faces divided into triangles, turned as the faces are, always the same for the same face.
 
 vertices: (V, 3) float64; face_offsets: (F + 1,) int64; face_vertices: int32. Returns triangles (T, 3) int32,

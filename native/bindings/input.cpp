@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "execution.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/input/lzw.hpp"
 #include "realmodel/input/number_table.hpp"
@@ -29,7 +30,7 @@ input::Values values_of(const ValuesTuple& given) {
 std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
     const py::bytes& text, std::size_t begin, std::size_t end, char separator, char decimal,
     const std::vector<std::size_t>& columns, const std::vector<FilterTuple>& filters,
-    const ValuesTuple& missing, int threads) {
+    const ValuesTuple& missing, WatchedExecution* execution) {
     const std::string_view whole = text;
     if (begin > end || end > whole.size() || columns.empty()) {
         throw InputError("bad_range", "no columns, or bytes beyond the text");
@@ -40,7 +41,8 @@ std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
     input::NumberTable table;
     {
         const py::gil_scoped_release unlocked;  // bytes do not change
-        table = input::read_numbers(whole.substr(begin, end - begin), format, threads);
+        table =
+            input::read_numbers(whole.substr(begin, end - begin), format, run(execution).threads);
     }
     return {to_array(std::move(table.values), columns.size()), table.lines, table.filtered,
             table.missing};
@@ -62,7 +64,7 @@ py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {
 void bind_input(py::module_& module) {
     module.def("read_numbers", &read_numbers, py::arg("text"), py::arg("begin"), py::arg("end"),
                py::arg("separator"), py::arg("decimal"), py::arg("columns"), py::arg("filters"),
-               py::arg("missing"), py::arg("threads") = 0,
+               py::arg("missing"), py::arg("execution") = py::none(),
                R"(Numbers of whole lines of a table of text: text[begin:end].
 
 text       bytes in any encoding that keeps ASCII

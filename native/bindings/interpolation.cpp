@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "execution.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/inverse_distance.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/line_sums.hpp"
@@ -27,15 +27,29 @@ namespace {
 
 /// model, range, sill, anisotropy ratio and azimuth.
 using NestedTuple = std::tuple<std::string, double, double, double, double>;
+/// At most how many neighbors, how many in an eighth of the directions, and how far away.
+using NeighborhoodTuple = std::tuple<int, int, double>;
+constexpr NeighborhoodTuple kNearest{16, 0, 0.0};
 
-interpolation::Variogram variogram_of(const std::string& model, double range, double sill,
-                                      double nugget, double ratio, double azimuth,
-                                      const std::vector<NestedTuple>& further) {
+interpolation::Neighborhood neighborhood_of(const NeighborhoodTuple& of) {
+    return std::make_from_tuple<interpolation::Neighborhood>(of);
+}
+
+/// Of what fit_variogram gives.
+/// @throws KeyError
+interpolation::Variogram variogram_of(const py::dict& of) {
+    const auto number = [&](const char* name) { return py::cast<double>(of[name]); };
     interpolation::Variogram variogram{
-        interpolation::variogram_model(model), range, sill, nugget, {ratio, azimuth}, {}};
-    for (const auto& [name, reach, part, its_ratio, its_azimuth] : further) {
+        interpolation::variogram_model(py::cast<std::string>(of["model"])),
+        number("range"),
+        number("sill"),
+        number("nugget"),
+        {number("anisotropy_ratio"), number("anisotropy_azimuth")},
+        {}};
+    for (const auto& [name, range, sill, ratio, azimuth] :
+         py::cast<std::vector<NestedTuple>>(of["further"])) {
         variogram.further.push_back(
-            {interpolation::variogram_model(name), reach, part, {its_ratio, its_azimuth}});
+            {interpolation::variogram_model(name), range, sill, {ratio, azimuth}});
     }
     return variogram;
 }
@@ -55,75 +69,69 @@ KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
 }
 
 KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
-                   const std::string& model, double range, double sill, double nugget, double ratio,
-                   double azimuth, const std::vector<NestedTuple>& further, int neighbours,
-                   int octants, double radius, const std::string& drift, int threads,
-                   Progress* control) {
+                   const py::dict& variogram, const NeighborhoodTuple& neighborhood,
+                   const std::string& drift, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
-    const interpolation::KrigingOptions options{neighbours, threads, drift_of(drift), octants,
-                                                radius};
+    const auto model = variogram_of(variogram);
+    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
-        kriged = interpolation::krige(from, to, variogram, options, control);
+        kriged = interpolation::krige(from, to, model, options, run(execution));
     }
     return kriged_tuple(std::move(kriged));
 }
 
-KrigedArrays krige_left_out(const Array<double>& points, const std::string& model, double range,
-                            double sill, double nugget, double ratio, double azimuth,
-                            const std::vector<NestedTuple>& further, int neighbours, int octants,
-                            double radius, const std::string& drift, int threads,
-                            Progress* control) {
+KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
+                            const NeighborhoodTuple& neighborhood, const std::string& drift,
+                            WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
-    const interpolation::KrigingOptions options{neighbours, threads, drift_of(drift), octants,
-                                                radius};
+    const auto model = variogram_of(variogram);
+    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
-        kriged = interpolation::krige_left_out(from, variogram, options, control);
+        kriged = interpolation::krige_left_out(from, model, options, run(execution));
     }
     return kriged_tuple(std::move(kriged));
 }
 
 Array<double> idw(const Array<double>& points, const Array<double>& nodes, double power,
-                  int neighbours, int octants, double radius, int threads, Progress* control) {
+                  const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::inverse_distance(from, to, {power, neighbours, threads, octants, radius},
-                                            control);
+        z = interpolation::inverse_distance(from, to, {power, neighborhood_of(neighborhood)},
+                                            run(execution));
     }
     return to_array(std::move(z));
 }
 
-Array<double> idw_left_out(const Array<double>& points, double power, int neighbours, int octants,
-                           double radius, int threads, Progress* control) {
+Array<double> idw_left_out(const Array<double>& points, double power,
+                           const NeighborhoodTuple& neighborhood, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::inverse_distance_left_out(
-            from, {power, neighbours, threads, octants, radius}, control);
+        z = interpolation::inverse_distance_left_out(from, {power, neighborhood_of(neighborhood)},
+                                                     run(execution));
     }
     return to_array(std::move(z));
 }
 
 Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
-                     int neighbours, int octants, double radius, double spacing, int threads,
-                     Progress* control) {
+                     const NeighborhoodTuple& neighborhood, double spacing,
+                     WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::thin_plate(
-            from, to, {smoothing, neighbours, threads, octants, radius, spacing}, control);
+        z = interpolation::thin_plate(from, to, {smoothing, neighborhood_of(neighborhood), spacing},
+                                      run(execution));
     }
     return to_array(std::move(z));
 }
@@ -134,21 +142,21 @@ double mean_spacing(const Array<double>& points, bool are_apart) {
     return interpolation::mean_spacing(from, are_apart);
 }
 
-Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes, int threads,
-                               Progress* control) {
+Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes,
+                               WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> distances;
     {
         const py::gil_scoped_release unlocked;
-        distances = interpolation::nearest_distances(from, to, {threads, control});
+        distances = interpolation::nearest_distances(from, to, run(execution));
     }
     return to_array(std::move(distances));
 }
 
 Array<double> line_sums(const Array<double>& nodes, const Array<double>& directions,
                         const Array<double>& starts, const Array<double>& values, double step,
-                        int threads, Progress* control) {
+                        WatchedExecution* execution) {
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::Lines lines{rows<2>(directions, "directions"),
                                      {starts.data(), static_cast<std::size_t>(starts.size())},
@@ -157,21 +165,21 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
     std::vector<double> sums;
     {
         const py::gil_scoped_release unlocked;
-        sums = interpolation::line_sums(to, lines, {threads, control});
+        sums = interpolation::line_sums(to, lines, run(execution));
     }
     return to_array(std::move(sums));
 }
 
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
                        bool finds_anisotropy, const std::string& drift, int neighbours,
-                       bool are_apart, int threads, Progress* control) {
+                       bool are_apart, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours, threads, finds_anisotropy,
+    const interpolation::FitOptions options{drift_of(drift), neighbours, finds_anisotropy,
                                             are_apart};
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control, options);
+        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, options, run(execution));
     }
     const interpolation::Variogram& variogram = fitted.variogram;
     std::vector<NestedTuple> further;
@@ -197,65 +205,57 @@ py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth
 
 void bind_interpolation(py::module_& module) {
     using py::arg;
-    const std::vector<NestedTuple> none;
-    module.def("krige", &krige, arg("points"), arg("nodes"), arg("model"), arg("range"),
-               arg("sill"), arg("nugget"), arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("further") = none, arg("neighbours") = 16,
-               arg("octants") = 0, arg("radius") = 0.0, arg("drift") = "constant",
-               arg("threads") = 0, arg("control") = py::none(),
+    module.def("krige", &krige, arg("points"), arg("nodes"), arg("variogram"),
+               arg("neighborhood") = kNearest, arg("drift") = "constant",
+               arg("execution") = py::none(),
                R"(Kriging: ordinary, or with a drift universal.
 
-points              (P, 3) float64: x, y, z; points that repeat another count once
-nodes               (N, 2) float64: x, y
-model               spherical, exponential, gaussian, cubic, matern32 or matern52
-range, sill, nugget of the variogram; the sill includes the nugget, the range is the practical one
-anisotropy_ratio    longest to shortest range (2 and 0.5 mean the same); `range` is the longest
-anisotropy_azimuth  of the longest range, degrees, clockwise from north (+y)
-further             structures of a nested variogram: (model, range, sill, ratio, azimuth) each;
-                    `sill` includes theirs
-neighbours          the nearest in plan that make a node's system; 0: all points, factored once
-octants             at most so many points from each eighth of the directions; 0: any
-radius              points farther away do not count; 0: all do
-drift               constant, linear or quadratic
-threads             0: as many as there are; the result does not depend on it
-control             Control to watch and stop it, or None
+points        (P, 3) float64: x, y, z; points that repeat another count once
+nodes         (N, 2) float64: x, y
+variogram     dict as fit_variogram returns it, of:
+  model               spherical, exponential, gaussian, cubic, matern32 or matern52
+  range, sill, nugget the sill includes the nugget, the range is the practical one
+  anisotropy_ratio    longest to shortest range (2 and 0.5 mean the same); `range` is the longest
+  anisotropy_azimuth  of the longest range, degrees, clockwise from north (+y)
+  further             structures of a nested variogram: (model, range, sill, ratio, azimuth) each;
+                      `sill` includes theirs
+neighborhood  (neighbors, octants, radius): the nearest in plan that make a node's system, 0: all
+              points, factored once; at most so many points from each eighth of the directions, 0:
+              any; points farther away do not count, 0: all do
+drift         constant, linear or quadratic
+execution     Execution, or None
 
 Returns (z (N,), variance of its error (N,) float64, number of nodes without a point within the
 radius: there the nearest alone counts). A node on a point gets the point's value.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points" (items, place),
 "variogram", "anisotropy", "option", "too_large"; Cancelled.)");
     module.def(
-        "krige_left_out", &krige_left_out, arg("points"), arg("model"), arg("range"), arg("sill"),
-        arg("nugget"), arg("anisotropy_ratio") = 1.0, arg("anisotropy_azimuth") = 0.0,
-        arg("further") = none, arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0,
-        arg("drift") = "constant", arg("threads") = 0, arg("control") = py::none(),
+        "krige_left_out", &krige_left_out, arg("points"), arg("variogram"),
+        arg("neighborhood") = kNearest, arg("drift") = "constant", arg("execution") = py::none(),
         R"(krige at each of the points, from all the others. Returns and raises as krige does.)");
-    module.def("idw", &idw, arg("points"), arg("nodes"), arg("power") = 2.0, arg("neighbours") = 16,
-               arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
-               arg("control") = py::none(),
+    module.def("idw", &idw, arg("points"), arg("nodes"), arg("power") = 2.0,
+               arg("neighborhood") = kNearest, arg("execution") = py::none(),
                R"(Inverse distance: means of the nearest points weighted by distance ** -power.
 
-points      (P, 3) float64: x, y, z
-nodes       (N, 2) float64: x, y
-neighbours  the nearest in plan that count; 0: all points
-octants, radius  as krige
+points        (P, 3) float64: x, y, z
+nodes         (N, 2) float64: x, y
+neighborhood  as krige
 
 Returns z (N,) float64; a node on a point gets the point's value.
 Raises InputError as krige does; Cancelled.)");
     module.def("idw_left_out", &idw_left_out, arg("points"), arg("power") = 2.0,
-               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
-               arg("control") = py::none(),
+               arg("neighborhood") = kNearest, arg("execution") = py::none(),
                R"(idw at each of the points, from all the others. Returns z (P,).)");
     module.def("spline", &spline, arg("points"), arg("nodes"), arg("smoothing") = 0.0,
-               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0,
-               arg("spacing") = 0.0, arg("threads") = 0, arg("control") = py::none(),
+               arg("neighborhood") = kNearest, arg("spacing") = 0.0, arg("execution") = py::none(),
                R"(Thin plate splines through the nearest points of each node.
 
-points      (P, 3) float64: x, y, z
-nodes       (N, 2) float64: x, y
-smoothing   added to the diagonal where distances count in the points' mean spacing; 0: points hold
-neighbours, octants, radius  as krige
-spacing     the unit of distances, mean_spacing of all points where these are a part; 0: of these
+points        (P, 3) float64: x, y, z
+nodes         (N, 2) float64: x, y
+smoothing     added to the diagonal where distances count in the points' mean spacing; 0: points
+              hold
+neighborhood  as krige
+spacing       the unit of distances, mean_spacing of all points where these are a part; 0: of these
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
     module.def(
@@ -266,12 +266,12 @@ are_apart   no two points have one place, and all are finite: they stay where th
 
 Raises InputError as krige does for points.)");
     module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
-               arg("threads") = 0, arg("control") = py::none(),
+               arg("execution") = py::none(),
                R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
 
 Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
     module.def("line_sums", &line_sums, arg("nodes"), arg("directions"), arg("starts"),
-               arg("values"), arg("step"), arg("threads") = 0, arg("control") = py::none(),
+               arg("values"), arg("step"), arg("execution") = py::none(),
                R"(Sums of processes on lines, by linear interpolation of their samples.
 
 nodes       (N, 2) float64
@@ -284,16 +284,15 @@ Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
                arg("anisotropy_azimuth") = 0.0, arg("finds_anisotropy") = false,
                arg("drift") = "constant", arg("neighbours") = 32, arg("are_apart") = false,
-               arg("threads") = 0, arg("control") = py::none(),
+               arg("execution") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
 finds_anisotropy  instead of taking the one that is given
 neighbours        with which points that are left out are told, at most 64
 are_apart         no two points have one place, and all are finite: of many only some are copied
-threads           0: as many as there are; the result does not depend on it
 
 Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as
-krige takes them, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
+krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
 Cancelled.)");
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "execution.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/ear_clipping.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 #include "realmodel/meshing/triangulation.hpp"
@@ -88,14 +88,14 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, double edge_le
                          const std::vector<Size>& sizes,
                          const std::vector<Array<double>>& constraints,
                          const std::optional<Array<double>>& constraint_points,
-                         const std::optional<Array<double>>& density, Progress* control) {
+                         const std::optional<Array<double>>& density, WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request =
         to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
     meshing::PlanarMesh mesh;
     {
         const py::gil_scoped_release unlocked;
-        mesh = meshing::mesh_region(region, request, control);
+        mesh = meshing::mesh_region(region, request, run(execution).progress);
     }
     return to_tuple(std::move(mesh));
 }
@@ -104,12 +104,13 @@ std::tuple<double, double> estimate_region_mesh(
     const std::vector<Array<double>>& rings, double edge_length, const std::string& mesher,
     double triangles, const std::vector<Size>& sizes, const std::vector<Array<double>>& constraints,
     const std::optional<Array<double>>& constraint_points,
-    const std::optional<Array<double>>& density, Progress* control) {
+    const std::optional<Array<double>>& density, WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
     const meshing::MeshRequest request =
         to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
     const py::gil_scoped_release unlocked;
-    const meshing::MeshEstimate estimate = meshing::estimate_region_mesh(region, request, control);
+    const meshing::MeshEstimate estimate =
+        meshing::estimate_region_mesh(region, request, run(execution).progress);
     return {estimate.triangles, estimate.bytes};
 }
 
@@ -124,12 +125,12 @@ PlanarArrays triangulate_rings(const std::vector<Array<double>>& rings) {
 }
 
 Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
-                                        Progress* control) {
+                                        WatchedExecution* execution) {
     const std::vector<meshing::Ring> polygon = to_rings(rings);
     std::vector<std::array<std::int32_t, 3>> triangles;
     {
         const py::gil_scoped_release unlocked;
-        triangles = meshing::triangulate_polygon(polygon, control);
+        triangles = meshing::triangulate_polygon(polygon, run(execution).progress);
     }
     return to_array(std::move(triangles));
 }
@@ -142,7 +143,7 @@ void bind_meshing(py::module_& module) {
                py::arg("sizes") = std::vector<Size>(),
                py::arg("constraints") = std::vector<Array<double>>(),
                py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
-               py::arg("control") = py::none(),
+               py::arg("execution") = py::none(),
                R"(Meshes what lies inside an odd number of rings.
 
 rings        list of (N, 2) float64: outlines and holes alike, either way round
@@ -155,7 +156,7 @@ constraints  list of (N, 2) float64: lines that the mesh must contain
 constraint_points  (N, 2) float64: points that it must contain
 density      (N, 2) float64: edges become half as long as these points are apart; edge_length may
              be 0 then, else it is the longest
-control      Control to watch and stop it, or None
+execution    Execution, or None
 
 Returns (vertices (V, 2) float64, triangles (T, 3) int32, counter-clockwise). The mesh's border
 is the rings' corners and points added on their edges; the corners come first in `vertices`.
@@ -170,7 +171,7 @@ Cancelled.)");
         py::arg("sizes") = std::vector<Size>(),
         py::arg("constraints") = std::vector<Array<double>>(),
         py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
-        py::arg("control") = py::none(),
+        py::arg("execution") = py::none(),
         R"(What mesh_region with the same arguments will take: (triangles, bytes at the peak).
 
 Takes and raises what mesh_region does.)");
@@ -179,11 +180,11 @@ Takes and raises what mesh_region does.)");
 
 No vertex is added. Takes, returns and raises what mesh_region does.)");
     module.def("triangulate_polygon", &triangulate_polygon, py::arg("rings"),
-               py::arg("control") = py::none(),
+               py::arg("execution") = py::none(),
                R"(Triangles of a polygon by ear clipping and edge swaps to Delaunay.
 
-rings    list of (N, 2) float64: the outline, then its holes, either way round
-control  Control to stop it, or None
+rings      list of (N, 2) float64: the outline, then its holes, either way round
+execution  Execution, or None
 
 Returns (T, 3) int32, counter-clockwise: corner numbers, counted through the rings. Raises
 InputError: kind "no_outline", "not_finite", "outline_degenerate", "outline_crosses",

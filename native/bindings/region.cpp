@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "execution.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/region_check.hpp"
 #include "rows.hpp"
 
@@ -21,7 +21,8 @@ namespace {
 
 std::vector<Array<double>> check_region(const std::vector<Array<double>>& rings,
                                         const std::vector<std::int32_t>& polygons,
-                                        const std::vector<bool>& holes, Progress* control) {
+                                        const std::vector<bool>& holes,
+                                        WatchedExecution* execution) {
     if (polygons.size() != rings.size() || holes.size() != rings.size()) {
         throw InputError("bad_range", "polygons and holes must be as many as there are rings");
     }
@@ -33,7 +34,7 @@ std::vector<Array<double>> check_region(const std::vector<Array<double>>& rings,
     std::vector<meshing::Ring> checked;
     {
         const py::gil_scoped_release unlocked;
-        checked = meshing::checked_region(given, control);
+        checked = meshing::checked_region(given, run(execution).progress);
     }
     std::vector<Array<double>> arrays;
     for (meshing::Ring& ring : checked)
@@ -45,7 +46,7 @@ std::vector<Array<double>> check_region(const std::vector<Array<double>>& rings,
 
 void bind_region(py::module_& module) {
     module.def("check_region", &check_region, py::arg("rings"), py::arg("polygons"),
-               py::arg("holes"), py::arg("control") = py::none(),
+               py::arg("holes"), py::arg("execution") = py::none(),
                R"(Checks the rings of a region, and dissolves borders that polygons share.
 
 rings     list of (N, 2) float64, either way round

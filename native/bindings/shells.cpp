@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "rock_arrays.hpp"
 #include "rows.hpp"
 
@@ -55,7 +55,7 @@ py::list shell_arrays(std::vector<shells::Shell>&& shells) {
 py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                         const Indices& face_vertices, const Indices& face_cells,
                         const Indices& cell_block, std::size_t blocks, const Position& origin,
-                        std::optional<double> shrink, int threads, Progress* control) {
+                        std::optional<double> shrink, WatchedExecution* execution) {
     require_columns(vertices, 3, "vertices");
     require_columns(face_cells, 2, "face_cells");
     const ComplexView complex{.vertices = view(vertices),
@@ -68,8 +68,8 @@ py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>
     std::vector<shells::Shell> found;
     {
         const py::gil_scoped_release unlocked;
-        found = shrink ? shells::cell_shells(complex, *shrink, origin, {threads, control})
-                       : shells::block_shells(complex, origin, {threads, control});
+        found = shrink ? shells::cell_shells(complex, *shrink, origin, run(execution))
+                       : shells::block_shells(complex, origin, run(execution));
     }
     return shell_arrays(std::move(found));
 }
@@ -88,7 +88,7 @@ Raises InputError kind "bad_index" (items: the polygon).)");
     module.def("complex_shells", &complex_shells, py::arg("vertices"), py::arg("face_offsets"),
                py::arg("face_vertices"), py::arg("face_cells"), py::arg("cell_block"),
                py::arg("blocks"), py::arg("origin"), py::arg("shrink") = py::none(),
-               py::arg("threads") = 0, py::arg("control") = py::none(),
+               py::arg("execution") = py::none(),
                R"(The blocks of a cell complex as closed meshes of polygons.
 
 The arrays are those of docs/dev/geometry.md; blocks: how many there are; origin: three numbers that are

@@ -13,7 +13,7 @@
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/simulation/clean_cells.hpp"
 #include "realmodel/simulation/face_lists.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
@@ -55,13 +55,13 @@ std::span<const T> view_of(const Array<T>& array) {
 
 std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices& block_rock,
                                             double edge_length, const std::vector<Size>& sizes,
-                                            int threads, Progress* control) {
+                                            WatchedExecution* execution) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
     const auto lengths = lengths_of<simulation::LineLength>(sizes);
     const py::gil_scoped_release unlocked;
     return std::make_unique<PlanLines>(simulation::plan_lines(
-        arrays.complex, view_of(block_rock), edge_length, lengths, {threads, control}));
+        arrays.complex, view_of(block_rock), edge_length, lengths, run(execution)));
 }
 
 py::list rings_of(const PlanLines& lines) {
@@ -111,7 +111,7 @@ py::tuple faces_tuple(LayeredMesh::Faces<N>& faces) {
 py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const PlanLines& lines,
                       const Array<double>& vertices, const Indices& triangles,
                       double minimum_thickness, const std::vector<std::int32_t>& layers,
-                      double layer_thickness, bool divided, int threads, Progress* control) {
+                      double layer_thickness, bool divided, WatchedExecution* execution) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
     if (layers.size() != arrays.complex.blocks) throw py::value_error("layers: one for each block");
@@ -124,7 +124,7 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
                                         {{plan_vertices.begin(), plan_vertices.end()},
                                          {plan_triangles.begin(), plan_triangles.end()}},
                                         {minimum_thickness, layers, layer_thickness, divided},
-                                        {threads, control});
+                                        run(execution));
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -145,14 +145,14 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
 
 py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
                      const Array<std::uint8_t>& kept, double edge_length, double tolerance,
-                     const std::vector<Size>& sizes, int threads, Progress* control) {
+                     const std::vector<Size>& sizes, WatchedExecution* execution) {
     const ComplexArrays arrays(model);
     const auto lengths = lengths_of<meshing::LocalLength>(sizes);
     simulation::FilledMesh mesh;
     {
         const py::gil_scoped_release unlocked;
         mesh = simulation::filled_mesh(arrays.complex, view_of(cell_region), view_of(kept),
-                                       edge_length, tolerance, lengths, {threads, control});
+                                       edge_length, tolerance, lengths, run(execution));
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));
@@ -172,14 +172,14 @@ py::dict counts_dict(const simulation::ComplexCounts& counts) {
 }
 
 py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& surface_kind,
-                     double tolerance, int threads, Progress* control) {
+                     double tolerance, WatchedExecution* execution) {
     ComplexArrays arrays(model);
     arrays.complex.blocks = blocks;
     simulation::CleanedCells cells;
     {
         const py::gil_scoped_release unlocked;
         cells = simulation::clean_cells(arrays.complex, view_of(surface_kind), tolerance,
-                                        {threads, control});
+                                        run(execution));
     }
     py::dict made = complex_arrays(cells.complex);
     made["cell_origin"] = to_array(std::move(cells.cell_origin));
@@ -248,8 +248,7 @@ void bind_simulation(py::module_& module) {
         .def_property_readonly("inner_lines", &inner_lines,
                                "(2, 2) float64 each: lines that the planar mesh must contain.");
     module.def("simulation_lines", &simulation_lines, py::arg("model"), py::arg("block_rock"),
-               py::arg("edge_length"), py::arg("sizes"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+               py::arg("edge_length"), py::arg("sizes"), py::arg("execution") = py::none(),
                R"(The lines of a model in plan for a mesh of columns, simplified to an edge length.
 
 model: dict of the arrays of docs/dev/geometry.md. block_rock: (B,) int32, the rock mass of each block.
@@ -258,7 +257,7 @@ Raises InputError kinds "nothing", "bad_index"; Cancelled.)");
     module.def("layered_mesh", &layered_mesh, py::arg("model"), py::arg("block_rock"),
                py::arg("lines"), py::arg("vertices"), py::arg("triangles"),
                py::arg("minimum_thickness"), py::arg("layers"), py::arg("layer_thickness"),
-               py::arg("divided"), py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("divided"), py::arg("execution") = py::none(),
                R"(Columns of prisms, pyramids and tetrahedra on a planar mesh that contains `lines`.
 
 vertices (V, 2) float64, triangles (T, 3) int32: the planar mesh. layers: of each block, how many it is
@@ -270,7 +269,7 @@ skewed: how many faces have a skewness above 4, the largest, its place, and the 
 Raises InputError kinds "bad_index", "too_large"; Cancelled.)");
     module.def("filled_mesh", &filled_mesh, py::arg("model"), py::arg("cell_region"),
                py::arg("kept"), py::arg("edge_length"), py::arg("tolerance"), py::arg("sizes"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(Each region of a model filled with tetrahedra, for models without columns.
 
 model: dict of the arrays of docs/dev/geometry.md. cell_region: (C,) int32. kept: (S,) uint8, surfaces
@@ -280,8 +279,7 @@ Returns a dict: points (P, 3), tetrahedra (E, 4), region (E,), triangles (F, 3) 
 and on kept surfaces, surface (F,).
 Raises InputError kinds "bad_index", "size", "too_large", "nothing", "flat", "endless"; Cancelled.)");
     module.def("clean_cells", &clean_cells, py::arg("model"), py::arg("blocks"),
-               py::arg("surface_kind"), py::arg("tolerance"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+               py::arg("surface_kind"), py::arg("tolerance"), py::arg("execution") = py::none(),
                R"(The cells of a model without edges, faces and cells smaller than a tolerance.
 
 model: dict of the arrays of docs/dev/geometry.md. surface_kind: (S,) int32. Returns a dict: the same arrays,

@@ -13,8 +13,8 @@
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
+#include "execution.hpp"
 #include "realmodel/base/memory.hpp"
-#include "realmodel/base/progress.hpp"
 #include "realmodel/strata/cell_components.hpp"
 #include "realmodel/strata/joins.hpp"
 #include "realmodel/strata/stack.hpp"
@@ -80,7 +80,7 @@ std::optional<strata::WantedSpace> space_of(const std::optional<WantedArrays>& w
 }
 
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
-                           int threads, Progress* control,
+                           WatchedExecution* execution,
                            const std::vector<std::vector<std::size_t>>& emptied,
                            const std::vector<std::vector<std::uint8_t>>& fills,
                            const std::optional<WantedArrays>& wanted, bool is_local) {
@@ -105,14 +105,14 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, {threads, control}, kind,
-                                            space ? &*space : nullptr, is_local);
+        complex = strata::build_rock_masses(input, run(execution), kind, space ? &*space : nullptr,
+                                            is_local);
     }
     return to_dict(std::move(complex));
 }
 
 py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<double, 4>& window,
-                    const std::string& cells, int threads, Progress* control) {
+                    const std::string& cells, WatchedExecution* execution) {
     const CellKind kind = kind_of(cells);
     const auto input = views_of(rocks);
     strata::Tile tile;
@@ -123,7 +123,7 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
         tile = strata::build_tile(input, {window[0], window[1], window[2], window[3]},
-                                  {threads, control}, kind);
+                                  run(execution), kind);
         for (const strata::BorderVertex& vertex : tile.border) {
             numbers.push_back(vertex.vertex);
             nearest.insert(nearest.end(), vertex.nearest.begin(), vertex.nearest.end());
@@ -139,11 +139,11 @@ py::dict build_tile(const std::vector<RockArrays>& rocks, const std::array<doubl
 }
 
 std::optional<strata::Joins> find_joins(const std::vector<RockArrays>& rocks, bool borders,
-                                        int threads, Progress* control) {
+                                        WatchedExecution* execution) {
     const auto input = views_of(rocks);
     const py::gil_scoped_release release;
     const MemoryGivenBack at_the_end;
-    return strata::find_joins(input, borders, {threads, control});
+    return strata::find_joins(input, borders, run(execution));
 }
 
 /// The columns of vertices of a surface or a region.
@@ -155,17 +155,17 @@ std::size_t columns_of(const Array<double>& vertices) {
 
 std::optional<std::tuple<Array<double>, Array<std::int32_t>>> joined_mesh(
     const strata::Joins& joins, const Array<double>& vertices, const Indices& triangles,
-    int threads, Progress* control) {
+    WatchedExecution* execution) {
     const std::size_t columns = columns_of(vertices);
     require_columns(triangles, 3, "triangles");
     std::optional<strata::JoinedMesh> mesh;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        mesh = columns == 3 ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)},
-                                         {threads, control})
-                            : joins.mesh(strata::RegionView{view(vertices), view(triangles)},
-                                         {threads, control});
+        mesh =
+            columns == 3
+                ? joins.mesh(strata::SurfaceView{view(vertices), view(triangles)}, run(execution))
+                : joins.mesh(strata::RegionView{view(vertices), view(triangles)}, run(execution));
     }
     if (!mesh) return std::nullopt;
     return std::tuple(to_array(std::move(mesh->vertices), columns),
@@ -184,31 +184,31 @@ Array<double> snapped(const strata::Joins& joins, const Array<double>& vertices)
 
 py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      const std::optional<SurfaceArrays>& region,
-                     std::optional<double> base_elevation, const std::string& cells, int threads,
-                     Progress* control, const std::vector<std::string>& rules) {
-    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control,
-                             {}, {}, std::nullopt, false);
+                     std::optional<double> base_elevation, const std::string& cells,
+                     WatchedExecution* execution, const std::vector<std::string>& rules) {
+    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, execution, {}, {},
+                             std::nullopt, false);
 }
 
 std::tuple<Array<std::uint32_t>, Array<std::uint32_t>> cell_sides(const Indices& face_cells,
                                                                   std::size_t cells,
-                                                                  Progress* control) {
+                                                                  WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
     strata::CellSides found;
     {
         const py::gil_scoped_release release;
-        found = strata::cell_sides(faces, cells, control);
+        found = strata::cell_sides(faces, cells, run(execution).progress);
     }
     return {to_array(std::move(found.offsets)), to_array(std::move(found.sides))};
 }
 
 Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
-                                    Progress* control) {
+                                    WatchedExecution* execution) {
     const auto faces = rows<2>(face_cells, "face_cells");
     std::vector<std::int32_t> component;
     {
         const py::gil_scoped_release release;
-        component = strata::cell_components(faces, view(cell_block), control);
+        component = strata::cell_components(faces, view(cell_block), run(execution).progress);
     }
     return to_array(std::move(component));
 }
@@ -217,7 +217,7 @@ Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& ce
 
 void bind_strata(py::module_& module) {
     module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
-               py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("cells") = "columns", py::arg("execution") = py::none(),
                py::arg("emptied") = std::vector<std::vector<std::size_t>>(),
                py::arg("fills") = std::vector<std::vector<std::uint8_t>>(),
                py::arg("wanted") = std::nullopt, py::arg("is_local") = false,
@@ -242,7 +242,7 @@ float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int
 beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,
 surface, items, text); decisions, exact_decisions: int. Raises InputError and Cancelled.)");
     module.def("build_tile", &build_tile, py::arg("rocks"), py::arg("window"),
-               py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("cells") = "columns", py::arg("execution") = py::none(),
                R"(build_rock_masses of what lies in a window (low x, low y, high x, high y).
 
 Borders are taken as they are: those of all of the model are to be joined before (find_joins). And
@@ -257,7 +257,7 @@ equal where points are, in all tiles.)");
             "text", [](const strata::Joins& joins) { return joins.warning().text; },
             "The warning of build_rock_masses where it joins the same.")
         .def("mesh", &joined_mesh, py::arg("vertices"), py::arg("triangles"),
-             py::arg("threads") = 0, py::arg("control") = nullptr,
+             py::arg("execution") = py::none(),
              R"(A mesh of these rock masses as build_rock_masses builds it.
 
 vertices: (V, 3) float64, of a region (V, 2); triangles: (T, 3) int32. Returns (vertices, triangles) as new
@@ -269,25 +269,24 @@ then all meshes are built as they are given, also after an InputError. Raises In
 vertices: (V, 3) float64, of a region (V, 2). Returns a new array.)");
     module.def(
         "find_joins", &find_joins, py::arg("rocks"), py::arg("borders") = true,
-        py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("execution") = py::none(),
         R"(What build_rock_masses joins in its input before it builds, as Joins; None where that is nothing.
 
 rocks: as build_rock_masses takes them. borders: whether borders are compared, too, or plan coordinates alone.
 Takes the memory of some millions of coordinates, and of one mesh. Raises InputError and Cancelled.)");
     module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
                py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
-               py::arg("threads") = 0, py::arg("control") = nullptr,
-               py::arg("rules") = std::vector<std::string>(),
+               py::arg("execution") = py::none(), py::arg("rules") = std::vector<std::string>(),
                "build_rock_masses of a single rock mass.");
     module.def("cell_components", &cell_components, py::arg("face_cells"), py::arg("cell_block"),
-               py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(Connected parts of blocks.
 
 face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cell_block: (C,) int32.
 Returns (C,) int32: for each cell the least cell that it reaches through faces between cells of its
 own block. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
     module.def("cell_sides", &cell_sides, py::arg("face_cells"), py::arg("cells"),
-               py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(The sides of each cell, in the order of the faces.
 
 face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cells: how many there are.

@@ -10,7 +10,7 @@
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 
 namespace py = pybind11;
 
@@ -58,14 +58,14 @@ Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::
 }
 
 std::tuple<Array<std::int8_t>, Array<double>, Array<double>> structure_parts(
-    const py::dict& rock, const std::vector<StructureArrays>& structures, int threads,
-    Progress* control) {
+    const py::dict& rock, const std::vector<StructureArrays>& structures,
+    WatchedExecution* execution) {
     const PartArrays arrays(rock);
     const auto views = views_of(structures);
     std::vector<structures::Part> parts;
     {
         const py::gil_scoped_release release;
-        parts = structures::parts_of(arrays.complex, views, {threads, control});
+        parts = structures::parts_of(arrays.complex, views, run(execution));
     }
     std::vector<structures::Sides> sides;
     std::vector<std::array<double, 3>> low, high;
@@ -120,7 +120,7 @@ std::vector<ContinuedArrays> continued_structures(const std::vector<StructureArr
 
 py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides>>& models,
                          const std::vector<StructureArrays>& structures,
-                         const Array<std::uint8_t>& acts, int threads, Progress* control,
+                         const Array<std::uint8_t>& acts, WatchedExecution* execution,
                          const std::vector<ContinuedArrays>& continued, double largest) {
     std::vector<PartArrays> arrays;
     for (const auto& [model, sides] : models)
@@ -142,7 +142,7 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
         const py::gil_scoped_release release;
         joined = structures::join_models(parts, views,
                                          {acts.data(), static_cast<std::size_t>(acts.size())},
-                                         {threads, control}, beyond, largest);
+                                         run(execution), beyond, largest);
     }
     py::dict result = complex_arrays(joined.complex);
     result["cell_part"] = to_array(std::move(joined.cell_part));
@@ -150,7 +150,7 @@ py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides
 }
 
 Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structures,
-                                   const Array<double>& points, int threads, Progress* control) {
+                                   const Array<double>& points, WatchedExecution* execution) {
     require_columns(points, 3, "points");
     const auto views = views_of(structures);
     if (views.empty()) throw py::value_error("structures: none is given");
@@ -158,15 +158,15 @@ Array<std::int8_t> structure_sides(const std::vector<StructureArrays>& structure
     {
         const py::gil_scoped_release release;
         sides = structures::sides_of_points(
-            views, {points.data(), static_cast<std::size_t>(points.size())}, {threads, control});
+            views, {points.data(), static_cast<std::size_t>(points.size())}, run(execution));
     }
     return to_array(std::move(sides));
 }
 
 Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
                                      const Array<double>& low, const Array<double>& high,
-                                     const Array<std::int32_t>& triangles, int threads,
-                                     Progress* control) {
+                                     const Array<std::int32_t>& triangles,
+                                     WatchedExecution* execution) {
     require_columns(low, 3, "low");
     require_columns(high, 3, "high");
     require_columns(triangles, 3, "triangles");
@@ -183,7 +183,7 @@ Array<std::uint8_t> structure_beyond(const std::vector<StructureArrays>& faults,
         found = structures::triangles_beyond(
             views, {low.data(), static_cast<std::size_t>(low.size())},
             {high.data(), static_cast<std::size_t>(high.size())},
-            {triangles.data(), static_cast<std::size_t>(triangles.size())}, {threads, control});
+            {triangles.data(), static_cast<std::size_t>(triangles.size())}, run(execution));
     }
     return to_array(std::move(found));
 }
@@ -199,7 +199,7 @@ Array<double> structure_continuation(const std::vector<StructureArrays>& faults,
 
 void bind_structures(py::module_& module) {
     module.def("structure_parts", &structure_parts, py::arg("rock"), py::arg("structures"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(The parts that faults and bodies divide rock into.
 
 rock: dict of the arrays of docs/dev/geometry.md, "blocks" and "surfaces" (their numbers) and
@@ -209,7 +209,7 @@ outside of a body, -1 below or inside, 0 where there is none beyond a fault that
 (P, 3), high (P, 3) float64: a box around each part), each combination of sides once. Raises
 InputError (surface: the number of the structure) and Cancelled.)");
     module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
-               py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("acts"), py::arg("execution") = py::none(),
                py::arg("continued") = std::vector<ContinuedArrays>(), py::arg("largest") = 0.0,
                R"(Models of the parts that faults and bodies leave, cut by them and joined.
 
@@ -228,15 +228,14 @@ structures: as of structure_parts. box: two corners of a box around the rock. Re
 at on which it is). Raises InputError.)");
     module.def(
         "structure_sides", &structure_sides, py::arg("structures"), py::arg("points"),
-        py::arg("threads") = 0, py::arg("control") = nullptr,
+        py::arg("execution") = py::none(),
         R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
 below or inside; of a fault by its nearest triangle.
 
 structures: as of structure_parts, the one that is asked for, then the faults that it ends at. Raises
 InputError and Cancelled.)");
     module.def("structure_beyond", &structure_beyond, py::arg("faults"), py::arg("low"),
-               py::arg("high"), py::arg("triangles"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+               py::arg("high"), py::arg("triangles"), py::arg("execution") = py::none(),
                R"(Which triangles of a sheet a fault meets where it goes on beyond its border.
 
 faults: as of structure_parts, the one that is asked for, then those that it ends at. low, high: (N, 3) float64, the lowest and the highest place of each

@@ -8,7 +8,7 @@
 #include <array>
 #include <utility>
 
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/interpolation/convex_hull.hpp"
 #include "realmodel/interpolation/dsi.hpp"
 #include "realmodel/interpolation/surface_heights.hpp"
@@ -41,27 +41,27 @@ Array<std::int32_t> hull_border(const Array<double>& nodes) {
     return to_array(std::move(border));
 }
 
-Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes, int threads,
-                         Progress* control) {
+Array<bool> outside_hull(const Array<double>& points, const Array<double>& nodes,
+                         WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<std::uint8_t> outside;
     {
         const py::gil_scoped_release unlocked;
-        outside = interpolation::outside_hull(from, to, {threads, control});
+        outside = interpolation::outside_hull(from, to, run(execution));
     }
     return to_array(std::move(outside)).attr("view")("bool");
 }
 
 template <auto method>
-Array<double> on_triangulation(const Array<double>& points, const Array<double>& nodes, int threads,
-                               Progress* control) {
+Array<double> on_triangulation(const Array<double>& points, const Array<double>& nodes,
+                               WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = method(from, to, {threads, control});
+        z = method(from, to, run(execution));
     }
     return to_array(std::move(z));
 }
@@ -72,35 +72,35 @@ std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
                                                const Array<double>& border,
                                                const std::array<double, 4>& all,
                                                const std::array<double, 4>& window, bool is_whole,
-                                               int threads, Progress* control) {
+                                               WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
     interpolation::PartValues found;
     {
         const py::gil_scoped_release unlocked;
-        found = method(from, to, around, {threads, control});
+        found = method(from, to, around, run(execution));
     }
     return {to_array(std::move(found.z)), to_array(std::move(found.certain)).attr("view")("bool")};
 }
 
 Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
-                              const Array<double>& nodes, int threads, Progress* control) {
+                              const Array<double>& nodes, WatchedExecution* execution) {
     const auto corners = rows<3>(vertices, "vertices");
     const auto faces = rows<3>(triangles, "triangles");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::heights_on_surface(corners, faces, to, {threads, control});
+        z = interpolation::heights_on_surface(corners, faces, to, run(execution));
     }
     return to_array(std::move(z));
 }
 
 py::dict dsi(const Array<double>& points, const Array<double>& nodes,
              const Array<std::int32_t>& triangles, const Array<double>& equal,
-             const Array<double>& least, const Array<double>& most, double weight, int threads,
-             Progress* control) {
+             const Array<double>& least, const Array<double>& most, double weight,
+             WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
@@ -111,7 +111,7 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     interpolation::DsiHeights found;
     {
         const py::gil_scoped_release unlocked;
-        found = interpolation::dsi(from, to, faces, constraints, {weight, threads}, control);
+        found = interpolation::dsi(from, to, faces, constraints, weight, run(execution));
     }
     py::dict out;
     out["z"] = to_array(std::move(found.z));
@@ -133,23 +133,23 @@ void bind_surfaces(py::module_& module) {
                R"(The numbers (B,) of nodes (N, 2) on the border of their convex hull, no two equal.
 
 Counterclockwise; of nodes in one line all, from one end. Exact.)");
-    module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"), arg("threads") = 0,
-               arg("control") = py::none(),
+    module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"),
+               py::arg("execution") = py::none(),
                R"(The nodes (N, 2) outside the convex hull of points (P, 3) in plan: (N,) bool.)");
     module.def(
         "tin", &on_triangulation<interpolation::linear_on_triangulation>, arg("points"),
-        arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
+        arg("nodes"), py::arg("execution") = py::none(),
         R"(Linear interpolation on the Delaunay triangulation of points (P, 3) at nodes (N, 2).
 
 Outside the convex hull of the points the value at the nearest place of its border. Returns z (N,).
 Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cancelled.)");
     module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbors>,
-               arg("points"), arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
+               arg("points"), arg("nodes"), py::arg("execution") = py::none(),
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
     module.def(
         "tin_of_part", &on_part<interpolation::linear_on_part>, arg("points"), arg("nodes"),
-        arg("border"), arg("all"), arg("window"), arg("is_whole"), arg("threads") = 0,
-        arg("control") = py::none(),
+        arg("border"), arg("all"), arg("window"), arg("is_whole"),
+        py::arg("execution") = py::none(),
         R"(tin at nodes (N, 2) from a part of some points, in their order, the first of all before them.
 
 points    (P, 3) float64, no two at one place
@@ -161,18 +161,18 @@ is_whole  whether these are all points
 Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)");
     module.def("natural_neighbour_of_part", &on_part<interpolation::natural_neighbors_of_part>,
                arg("points"), arg("nodes"), arg("border"), arg("all"), arg("window"),
-               arg("is_whole"), arg("threads") = 0, arg("control") = py::none(),
+               arg("is_whole"), py::arg("execution") = py::none(),
                R"(natural_neighbour at nodes; arguments and result as tin_of_part.)");
     module.def(
         "surface_heights", &surface_heights, arg("vertices"), arg("triangles"), arg("nodes"),
-        arg("threads") = 0, arg("control") = py::none(),
+        py::arg("execution") = py::none(),
         R"(Heights of a triangulated surface, vertices (V, 3), triangles (T, 3), at nodes (N, 2).
 
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
     module.def(
         "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("equal") = Array<double>(0),
         arg("least") = Array<double>(0), arg("most") = Array<double>(0), arg("weight") = 0.0,
-        arg("threads") = 0, arg("control") = py::none(),
+        py::arg("execution") = py::none(),
         R"(Discrete smooth interpolation of points (P, 3) on a mesh: nodes (N, 2), triangles (T, 3).
 
 equal, least, most  (N,) heights that nodes have, are not below, are not above; NaN: none; empty: none

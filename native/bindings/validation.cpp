@@ -8,7 +8,7 @@
 
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/validation/sampling.hpp"
 #include "realmodel/validation/topology.hpp"
 #include "rock_arrays.hpp"
@@ -60,19 +60,19 @@ struct ModelArrays : ComplexArrays {
     }
 };
 
-py::list check_topology(const py::dict& model, int threads, Progress* control) {
+py::list check_topology(const py::dict& model, WatchedExecution* execution) {
     const ModelArrays arrays(model);
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_topology(arrays.complex, {threads, control});
+        results = validation::check_topology(arrays.complex, run(execution));
     }
     return to_list(results);
 }
 
 py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
                        const Indices& block_of_surface, std::int64_t places, std::uint64_t seed,
-                       int threads, Progress* control) {
+                       WatchedExecution* execution) {
     const ModelArrays arrays(model);
     std::vector<strata::StackInput> input;
     std::size_t surfaces = 0;
@@ -87,8 +87,8 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_samples(arrays.complex, {input, block}, places, seed,
-                                            {threads, control});
+        results =
+            validation::check_samples(arrays.complex, {input, block}, places, seed, run(execution));
     }
     return to_list(results);
 }
@@ -96,8 +96,8 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
 }  // namespace
 
 void bind_validation(py::module_& module) {
-    module.def("check_topology", &check_topology, py::arg("model"), py::arg("threads") = 0,
-               py::arg("control") = nullptr,
+    module.def("check_topology", &check_topology, py::arg("model"),
+               py::arg("execution") = py::none(),
                R"(Every test of cells that needs nothing but the cells, of all of them.
 
 model: dict of vertices (V, 3) float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells
@@ -107,7 +107,7 @@ bool. Returns a list of tests, each a dict of name, unit, examined, failed, unde
 (list of dicts: text, cell, face, vertex, block, place), seconds. Raises Cancelled.)");
     module.def("check_samples", &check_samples, py::arg("model"), py::arg("rocks"),
                py::arg("block_of_surface"), py::arg("places"), py::arg("seed") = 1,
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(Compares a model with the closed form of what it was built from, at plan places.
 
 model as for check_topology, which it must have passed so far that its arrays fit together; rocks as for

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "realmodel/base/progress.hpp"
+#include "execution.hpp"
 #include "realmodel/strata/cell_volumes.hpp"
 #include "rock_arrays.hpp"
 #include "rows.hpp"
@@ -18,14 +18,14 @@ namespace {
 
 Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                            const Indices& face_vertices, const Indices& face_cells,
-                           std::size_t cells, int threads, Progress* control) {
+                           std::size_t cells, WatchedExecution* execution) {
     const auto positions = rows<3, double>(vertices, "vertices");
     const auto sides = rows<2, std::int32_t>(face_cells, "face_cells");
     std::vector<double> volumes;
     {
         const py::gil_scoped_release release;
         volumes = strata::cell_volumes(positions, view(face_offsets), view(face_vertices), sides,
-                                       cells, {threads, control});
+                                       cells, run(execution));
     }
     return to_array(std::move(volumes));
 }
@@ -35,7 +35,7 @@ Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64
 void bind_volumes(py::module_& module) {
     module.def("cell_volumes", &cell_volumes, py::arg("vertices"), py::arg("face_offsets"),
                py::arg("face_vertices"), py::arg("face_cells"), py::arg("cells"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("execution") = py::none(),
                R"(Volume of every cell.
 
 vertices: (V, 3) float64; face_offsets: (F + 1,) int64; face_vertices: int32; face_cells: (F, 2) int32, the

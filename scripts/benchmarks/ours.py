@@ -16,7 +16,9 @@ def stack(spec: dict, cells: str, threads: int, base: float | None = None) -> di
     native = native_module()
     surfaces = StackSpec(**spec).make()
     began = time.perf_counter()
-    built = native.build_stack(surfaces, base_elevation=base, cells=cells, threads=threads)
+    built = native.build_stack(
+        surfaces, base_elevation=base, cells=cells, execution=native.Execution(threads)
+    )
     seconds = time.perf_counter() - began
     return {
         "seconds": seconds,

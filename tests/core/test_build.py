@@ -336,7 +336,7 @@ def counted_after_cancel(project, share, monkeypatch):
     """What native work counts of itself, 1 being a whole call, after cancel() has said yes; it does so once
     this share of the build is done."""
     controls, fractions, asked = [], [0.0], []
-    control = _native.Control
+    control = _native.Execution
 
     def recorded():
         controls.append(control())
@@ -352,7 +352,7 @@ def counted_after_cancel(project, share, monkeypatch):
         return True
 
     with monkeypatch.context() as patch:
-        patch.setattr(_native, "Control", recorded)
+        patch.setattr(_native, "Execution", recorded)
         with pytest.raises(Cancelled):
             build(project, progress=lambda fraction, text: fractions.append(fraction), cancel=cancel)
         run(lambda work: None)  # waits for the work that was stopped

@@ -58,10 +58,10 @@ def test_a_face_of_a_cell_that_is_not_there_is_refused(bad):
 
 
 def test_cancelled():
-    control = _native.Control()
+    control = _native.Execution()
     control.cancel()
     with pytest.raises(_native.Cancelled):
-        _native.cell_components(np.array([[0, 1]], np.int32), np.zeros(2, np.int32), control=control)
+        _native.cell_components(np.array([[0, 1]], np.int32), np.zeros(2, np.int32), execution=control)
 
 
 def test_sides_of_cells_are_in_the_order_of_the_faces():

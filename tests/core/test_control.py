@@ -5,12 +5,12 @@ from realmodel import _native
 
 
 def test_a_new_control_has_nothing_done():
-    control = _native.Control()
+    control = _native.Execution()
     assert (control.fraction, control.text, control.cancelled) == (0.0, "", False)
 
 
 def test_cancel_stays():
-    control = _native.Control()
+    control = _native.Execution()
     control.cancel()
     assert control.cancelled
 

@@ -61,12 +61,12 @@ def test_triangles():
 
 def test_cancelled(model):
     native = native_module()
-    control = native.Control()
+    control = native.Execution()
     control.cancel()
     arrays = (model.vertices, model.face_offsets, model.face_vertices, model.face_cells, model.cell_block)
     for shrink in (None, 0.5):
         with pytest.raises(native.Cancelled):
-            native.complex_shells(*arrays, len(model.blocks), (0, 0, 0), shrink, control=control)
+            native.complex_shells(*arrays, len(model.blocks), (0, 0, 0), shrink, execution=control)
 
 
 def expect_edges(shape):

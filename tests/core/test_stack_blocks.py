@@ -116,8 +116,8 @@ def test_middles_of_facets_on_edges_beneath_them():
 
 
 def compare(given):
-    columns = _native.build_stack(**given, cells="columns", threads=1)
-    blocks = _native.build_stack(**given, cells="blocks", threads=2)
+    columns = _native.build_stack(**given, cells="columns", execution=_native.Execution(1))
+    blocks = _native.build_stack(**given, cells="blocks", execution=_native.Execution(2))
     count = len(given["surfaces"])
     assert blocks["volumes"] == pytest.approx(columns["volumes"], rel=1e-9, abs=1e-9)
     parts = np.bincount(blocks["cell_block"], minlength=count)
@@ -135,7 +135,7 @@ def test_untouched_triangles_stay_whole():
     low, high = surface(chance, 30, 0, "waves", True), surface(chance, 30, 0, "waves", True)
     high[0][:, 2] += 50.0
     keep = [(v, triangulated(chance, 30)) for v, _ in (low, high)]
-    built = _native.build_stack(surfaces=keep, cells="blocks", threads=1)
+    built = _native.build_stack(surfaces=keep, cells="blocks", execution=_native.Execution(1))
     assert len(built["cell_block"]) == 1
     on_surface = built["face_surface"] >= 0
     sizes = np.diff(built["face_offsets"])
@@ -160,6 +160,7 @@ def waves(chance, size):
 @pytest.mark.parametrize("given", [3, 11, 29, "waves"])
 def test_same_bytes_for_any_number_of_threads(given, cells):
     given = waves(np.random.default_rng(1), 66) if given == "waves" else stack(given)
-    one, two, many = (_native.build_stack(**given, cells=cells, threads=n) for n in (1, 2, 5))
+    runs = map(_native.Execution, (1, 2, 5))
+    one, two, many = (_native.build_stack(**given, cells=cells, execution=run) for run in runs)
     for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block"):
         assert one[name].tobytes() == two[name].tobytes() == many[name].tobytes()

@@ -83,20 +83,19 @@ void print_mesh_and_heights() {
               .value());
     const interpolation::Variogram spherical{.range = 60, .sill = 4, .nugget = 0.1};
     for (const int neighbours : {0, 16, 32}) {
-        interpolation::KrigingOptions options;
-        options.neighbors = neighbours;
-        options.threads = threads;
-        const auto kriged = interpolation::krige(points, mesh.vertices, spherical, options);
+        const interpolation::KrigingOptions options{{neighbours}};
+        const auto kriged =
+            interpolation::krige(points, mesh.vertices, spherical, options, {threads});
         print("kriging, " + std::to_string(neighbours) + " neighbours",
               Digest().add(kriged.z).add(kriged.variance).value());
-        const auto left_out = interpolation::krige_left_out(points, fitted, options);
+        const auto left_out = interpolation::krige_left_out(points, fitted, options, {threads});
         print("kriging left out points, " + std::to_string(neighbours) + " neighbours",
               Digest().add(left_out.z).add(left_out.variance).value());
     }
-    interpolation::InverseDistanceOptions options;
-    options.threads = threads;
     print("inverse distance",
-          Digest().add(interpolation::inverse_distance(points, mesh.vertices, options)).value());
+          Digest()
+              .add(interpolation::inverse_distance(points, mesh.vertices, {}, {threads}))
+              .value());
 }
 
 }  // namespace

@@ -33,12 +33,17 @@ _PACKAGE = __package__.removesuffix(".core.base")  # "realmodel", or the name of
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
+def on_threads(threads: int) -> Native.Execution:
+    """How a native call is run. threads: 0 for as many as there are."""
+    return native_module().Execution(threads)
+
+
 class Work:
     """The progress of a working thread, and the request to cancel it."""
 
     def __init__(self):
         self._lock = threading.Lock()
-        self._control: Native.Control | None = None
+        self._execution: Native.Execution | None = None
         self._works: list[Work] = []  # of the items of `each`, while it runs
         self._start, self._end = 0.0, 1.0  # of the present phase, in the present part
         self._part = 0.0, 1.0
@@ -90,14 +95,14 @@ class Work:
     def native(
         self, function: Callable[Arguments, Result], *arguments: Arguments.args, **options: Arguments.kwargs
     ) -> Result:
-        """Calls a native function that takes a `control`, as the present phase."""
+        """Calls a native function that takes an `execution`, as the present phase."""
         native, call = native_module(), cast(Callable[..., Result], function)
-        control = native.Control()
+        execution = options.setdefault("execution", native.Execution())
         with self._lock:
-            self._control = control
+            self._execution = cast("Native.Execution", execution)
         try:
             self.check()
-            return call(*arguments, control=control, **options)
+            return call(*arguments, **options)
         except native.Cancelled as error:
             raise Cancelled("cancelled") from error
         except MemoryError as error:
@@ -110,7 +115,7 @@ class Work:
             ) from error
         finally:
             with self._lock:
-                self._control = None
+                self._execution = None
 
     def each(
         self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
@@ -157,8 +162,8 @@ class Work:
         """(fraction of the whole, never falling; what is being done)."""
         with self._lock:
             share = self._share
-            if self._control is not None:
-                share = max(share, self._control.fraction)
+            if self._execution is not None:
+                share = max(share, self._execution.fraction)
             text = self._text
             if self._works:
                 states = [work.state() for work in self._works]
@@ -172,8 +177,8 @@ class Work:
     def cancel(self) -> None:
         with self._lock:
             self._cancelled = True
-            if self._control is not None:
-                self._control.cancel()
+            if self._execution is not None:
+                self._execution.cancel()
             for work in self._works:
                 work.cancel()
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
 from ..project.build_options import check_cells, check_stage
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
@@ -67,7 +67,8 @@ def intersect(
     with work.phase(start, end, "intersecting and cutting"):
         try:
             return BuiltCells.of(
-                work.native(native.build_rock_masses, rocks, cells=cells, threads=threads), cells
+                work.native(native.build_rock_masses, rocks, cells=cells, execution=on_threads(threads)),
+                cells,
             )
         except native.InputError as error:
             raise refused_stack(error, inputs) from error

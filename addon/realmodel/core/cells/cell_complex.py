@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from .blocks import BlockBoundary
 
 ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
@@ -86,7 +86,7 @@ class CellComplex:
             self.face_vertices,
             self.face_cells,
             len(self.cell_block),
-            threads,
+            on_threads(threads),
         )
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
@@ -78,7 +78,7 @@ def build_joined(
                 divides,
                 continued=structures.continued or [],
                 largest=structures.largest,
-                threads=threads,
+                execution=on_threads(threads),
             )
         except native.InputError as error:
             raise refused_structure(error, structures) from error
@@ -183,7 +183,10 @@ def _part_model(
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
         built = BuiltCells.of(
-            work.native(native.build_rock_masses, rocks, cells=built_as, threads=threads, **more), cells
+            work.native(
+                native.build_rock_masses, rocks, cells=built_as, execution=on_threads(threads), **more
+            ),
+            cells,
         )
     except native.InputError as error:
         if 0 <= error.surface < len(surfaces):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
 from ..surfaces.sides import fault_sides
@@ -95,7 +95,7 @@ def bedding_of(
         history,
         layer[block],
         np.zeros(0, np.int32) if of_corners is None else of_corners,
-        threads,
+        on_threads(threads),
     )
     grows = (model.surface_kind == 0) | np.isin(np.arange(len(model.surface_kind)), surface)
     is_top = (model.face_cells[faces, 1] < 0) & (model.face_surface[faces] >= 0)

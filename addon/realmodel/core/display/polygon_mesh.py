@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.work import Cancel, native_module, run
+from ..base.work import Cancel, native_module, on_threads, run
 from ..cells.model_data import ModelData
 from .bedding import Bedding, bedding_of, seen_from_below
 
@@ -190,7 +190,7 @@ def _shells(
             count,
             tuple(float(value) for value in origin),
             shrink,
-            threads,
+            on_threads(threads),
         )
         there = [arrays for arrays in shells if arrays is not None]
         if not there:

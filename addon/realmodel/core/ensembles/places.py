@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.work import native_module
+from ..base.work import native_module, on_threads
 from ..proof.closed_form import AIR, history
 from ..proof.random_points import closed_forms
 
@@ -74,4 +74,4 @@ class Probabilities:
 
 def _heights(shape, plan: np.ndarray, threads: int) -> np.ndarray:
     vertices, triangles = shape
-    return native_module().surface_heights(vertices, triangles, plan, threads=threads)
+    return native_module().surface_heights(vertices, triangles, plan, execution=on_threads(threads))

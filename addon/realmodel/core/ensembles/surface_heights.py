@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.work import native_module
+from ..base.work import native_module, on_threads
 from ..model.model import Model
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import Triangulation
@@ -51,7 +51,7 @@ def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -
             z = nodes[:, 2]
         else:
             plan = np.ascontiguousarray(vertices[:, :2])
-            z = native_module().surface_heights(nodes, triangles, plan, threads=threads)
+            z = native_module().surface_heights(nodes, triangles, plan, execution=on_threads(threads))
         found.append(z - vertices[:, 2])
     return np.concatenate(found)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import InputRefused, UsageError
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
@@ -162,5 +162,5 @@ def _in_folds(work: Work, points, method: str, settings: dict, threads: int, fol
                 [nodes, heights(work, others, nodes, method, settings, threads, triangles).z]
             )
             surface_heights = native_module().surface_heights
-            z[out] = work.native(surface_heights, shape, triangles, places, threads=threads)
+            z[out] = work.native(surface_heights, shape, triangles, places, execution=on_threads(threads))
     return z

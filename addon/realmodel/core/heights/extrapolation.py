@@ -54,9 +54,9 @@ def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Res
     nodes = np.ascontiguousarray(task.nodes[outside])
     if result.variogram is not None:
         # Kriging from one point gives its height, with twice the semivariance as variance of the error.
-        arguments = result.variogram.native(task.settings["anisotropy"])
+        variogram = result.variogram.native(task.settings["anisotropy"])
         krige = native_module().krige
-        z[outside], deviation, _ = task.run(krige, task.points, nodes, **arguments, neighbours=1)
+        z[outside], deviation, _ = task.run(krige, task.points, nodes, variogram, (1, 0, 0.0))
         if variance is not None:
             variance[outside] = deviation
     else:

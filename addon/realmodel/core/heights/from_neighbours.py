@@ -13,12 +13,8 @@ from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
 from .interpolation import Result, Task
 
 
-def _neighbourhood(settings: dict) -> dict:
-    return {
-        "neighbours": settings["neighbours"],
-        "octants": settings["octants"],
-        "radius": settings["radius"] or 0.0,
-    }
+def _neighborhood(settings: dict, neighbours: int) -> tuple[int, int, float]:
+    return neighbours, settings["octants"], settings["radius"] or 0.0
 
 
 @dataclass(frozen=True)
@@ -62,16 +58,16 @@ def krige(task: Task, known: Structure | None = None) -> Result:
     if known is None:
         known = structure(task)
     warnings = list(known.warnings)
-    arguments = {
-        **known.variogram.native(settings["anisotropy"]),
-        **_neighbourhood({**settings, "neighbours": known.neighbours}),
-        "drift": settings.get("drift", "constant"),
-    }
+    arguments = (
+        known.variogram.native(settings["anisotropy"]),
+        _neighborhood(settings, known.neighbours),
+        settings.get("drift", "constant"),
+    )
     if task.left_out:
-        z, variance, alone = task.run(native.krige_left_out, task.points, **arguments)
+        z, variance, alone = task.run(native.krige_left_out, task.points, *arguments)
         warnings += without_near_points(alone, len(z))
     else:
-        z, variance, _ = task.run(native.krige, task.points, task.nodes, **arguments)
+        z, variance, _ = task.run(native.krige, task.points, task.nodes, *arguments)
         warnings += _beyond_radius(task)
     return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
 
@@ -100,21 +96,22 @@ def _beyond_radius(task: Task) -> list[str]:
 
 def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:
     """(N,) heights of the points nearest to nodes."""
-    return task.run(native_module().idw, task.points, nodes, neighbours=1)
+    return task.run(native_module().idw, task.points, nodes, neighborhood=(1, 0, 0.0))
 
 
 def inverse_distance(task: Task) -> Result:
     native = native_module()
-    arguments = {**_neighbourhood(task.settings), "power": task.settings["power"]}
+    arguments = task.settings["power"], _neighborhood(task.settings, task.settings["neighbours"])
     if task.left_out:
-        return Result(task.run(native.idw_left_out, task.points, **arguments))
-    z = task.run(native.idw, task.points, task.nodes, **arguments)
+        return Result(task.run(native.idw_left_out, task.points, *arguments))
+    z = task.run(native.idw, task.points, task.nodes, *arguments)
     return Result(z, warnings=_beyond_radius(task))
 
 
 def thin_plate(task: Task, spacing: float = 0.0) -> Result:
     """Thin-plate splines. spacing: the mean spacing of all points, where the task has a part of them; 0: it
     has all."""
-    arguments = {**_neighbourhood(task.settings), "smoothing": task.settings["smoothing"]}
-    z = task.run(native_module().spline, task.points, task.nodes, **arguments, spacing=spacing)
+    settings = task.settings
+    near = _neighborhood(settings, settings["neighbours"])
+    z = task.run(native_module().spline, task.points, task.nodes, settings["smoothing"], near, spacing)
     return Result(z, warnings=_beyond_radius(task))

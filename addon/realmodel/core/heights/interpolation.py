@@ -9,7 +9,7 @@ from importlib import import_module
 
 import numpy as np
 
-from ..base.work import Work
+from ..base.work import Work, on_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 
@@ -52,7 +52,7 @@ class Task:
 
     def run(self, function, *arguments, **options):
         """A native function, with this task's threads."""
-        return self.work.native(function, *arguments, **options, threads=self.threads)
+        return self.work.native(function, *arguments, **options, execution=on_threads(self.threads))
 
 
 @dataclass

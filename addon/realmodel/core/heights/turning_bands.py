@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.elementary import cos, exp, hypot, sin
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..settings.variogram import NO_ANISOTROPY, Structure, Variogram
 
 LINES = 320
@@ -133,7 +133,7 @@ def _of_structure(
             starts,
             values,
             step,
-            threads=threads,
+            execution=on_threads(threads),
         )
     return scale * field
 

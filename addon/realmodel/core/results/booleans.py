@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
 from ..settings.method_options import check_threads
 
 SURFACES = ("the first surface", "the second surface")  # as refusals name them
@@ -220,7 +220,7 @@ def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Inte
     native = native_module()
     with work.phase(0.0, share, "intersecting"):
         try:
-            return Intersection(work.native(native.intersect, *first, *second, threads=threads))
+            return Intersection(work.native(native.intersect, *first, *second, execution=on_threads(threads)))
         except native.InputError as error:
             raise _refused(error) from error
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
 from ..cells.joining import build_joined
 from ..cells.native_rocks import native_rocks
 from ..settings.rules import RULES
@@ -147,7 +147,10 @@ def _stage_volumes(
     volumes = np.full(len(model.blocks), np.nan)
     if bodies is None:
         volume = work.native(
-            native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
+            native_module().build_rock_masses,
+            native_rocks(model, m),
+            cells="blocks",
+            execution=on_threads(threads),
         )["volumes"]
     else:
         inputs = [entry.stage(m) for entry in model.rock_inputs]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.work import native_module
+from ..base.work import native_module, on_threads
 
 # Cividis (Nunez, Anderton, Renslow 2018, PLoS ONE 13): even in lightness, also for the color-blind; and blue
 # over white to red (ColorBrewer's RdBu, Harrower and Brewer 2003). sRGB from 0 to 1, the lowest first.
@@ -55,6 +55,6 @@ def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, thr
         np.ascontiguousarray(vertices, np.float64),
         np.ascontiguousarray(triangles, np.int32),
         np.ascontiguousarray(plan, np.float64),
-        threads,
+        on_threads(threads),
     )
     return np.asarray(found)

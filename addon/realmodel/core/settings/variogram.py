@@ -131,7 +131,7 @@ class Variogram:
         return self.structures or (own,)
 
     def native(self, anisotropy: dict | None) -> dict:
-        """The arguments of the native kriging functions. anisotropy: of parts that have none of their own."""
+        """As the native kriging functions take it. anisotropy: of parts that have none of their own."""
         first, *further = self.parts()
         anisotropy = anisotropy or NO_ANISOTROPY
         own = first.anisotropy or anisotropy

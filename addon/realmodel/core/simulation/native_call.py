@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..base.errors import BuildFailed, InputRefused
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 
 
 def call_native(work: Work, function, *arguments):
@@ -12,7 +12,7 @@ def call_native(work: Work, function, *arguments):
     BuildFailed."""
     native = native_module()
     try:
-        return work.native(function, *arguments[:-1], threads=arguments[-1])
+        return work.native(function, *arguments[:-1], execution=on_threads(arguments[-1]))
     except native.InputError as error:
         if error.kind == "nothing":
             raise InputRefused(str(error), advice="use a shorter edge length") from error

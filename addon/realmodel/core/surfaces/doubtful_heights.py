@@ -12,7 +12,7 @@ from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
 from ..base.errors import number_list, place_text
 from ..base.units import number_text
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
 from ..settings.methods import SURFACE_OPTIONS
@@ -207,9 +207,11 @@ class _Reach:
 
     def _outside(self, points: np.ndarray) -> np.ndarray:
         native = native_module()
-        outside = self.work.native(native.outside_hull, points, self.plan, threads=self.threads)
+        outside = self.work.native(native.outside_hull, points, self.plan, execution=on_threads(self.threads))
         if outside.any():
-            away = self.work.native(native.nearest_distance, points, self.plan, threads=self.threads)
+            away = self.work.native(
+                native.nearest_distance, points, self.plan, execution=on_threads(self.threads)
+            )
             along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)  # of points on a line
             spacing = float(native.mean_spacing(mean_heights(points), are_apart=True))
             outside &= away > max(spacing, along)

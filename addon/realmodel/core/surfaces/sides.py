@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 
 
 class FaultShape(NamedTuple):
@@ -76,7 +76,7 @@ def fault_sides(work: Work, points: np.ndarray, shape: FaultShape, threads: int 
     points = np.ascontiguousarray(points, np.float64)
     if not len(points):
         return np.zeros(0, np.int8)
-    return work.native(native_module().structure_sides, shape.native(), points, threads=threads)
+    return work.native(native_module().structure_sides, shape.native(), points, execution=on_threads(threads))
 
 
 def sides_of(

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..heights import Interpolation, chosen, heights
 from ..heights.interpolation import Task
 from ..heights.mis_ties import without_mis_ties
@@ -87,7 +87,7 @@ def _vertex_attributes(
         kept = used_vertices(nodes, triangles[kept[triangles].all(axis=1)])
     variance = np.full(len(nodes), np.nan) if result.variance is None else result.variance
     if len(points):
-        distance = work.native(native_module().nearest_distance, points, nodes, threads=threads)
+        distance = work.native(native_module().nearest_distance, points, nodes, execution=on_threads(threads))
     else:
         distance = np.full(len(nodes), np.nan)
     return {"variance": variance[kept], "distance": distance[kept]}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..project.project import Rock
 from ..settings.rules import RULES
 
@@ -20,7 +20,7 @@ Triangulation = tuple[np.ndarray, np.ndarray]
 def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
     surface_heights = native_module().surface_heights
-    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
+    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), execution=on_threads(threads))
 
 
 def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:

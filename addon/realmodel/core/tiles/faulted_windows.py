@@ -13,7 +13,7 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.mapped_arrays import Keep, as_it_is
 from ..base.triangles import extents
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, on_threads
 from ..cells.joining import beyond_all
 from ..cells.reach import Reach
 from ..project.structure_entries import Body, Fault
@@ -339,7 +339,10 @@ def _are_any_close(work: Work, plans: list[np.ndarray], threads: int) -> bool:
     might keep them apart: that is to be decided by those of all sheets."""
     none = np.empty((0, 3), np.int32)
     rocks: list[tuple] = [([], (plan, none), None, []) for plan in plans]
-    return work.native(native_module().find_joins, rocks, borders=False, threads=threads) is not None
+    return (
+        work.native(native_module().find_joins, rocks, borders=False, execution=on_threads(threads))
+        is not None
+    )
 
 
 def _snapped(
@@ -355,7 +358,7 @@ def _snapped(
         (list(sheets.values()), entry.region, None, [])
         for sheets, entry in zip(distinct, inputs, strict=True)
     ]
-    joins = work.native(native_module().find_joins, rocks, borders=False, threads=threads)
+    joins = work.native(native_module().find_joins, rocks, borders=False, execution=on_threads(threads))
     if joins is None:
         return inputs, None
 

@@ -16,7 +16,7 @@ from ..base.atomic import Outputs, explained
 from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
-from ..base.work import Work, native_module, run
+from ..base.work import Work, native_module, on_threads, run
 from ..cells.assembly import assemble
 from ..cells.blocks import Block
 from ..cells.built_cells import BuiltCells
@@ -364,7 +364,9 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     began = time.perf_counter()
     with work.phase(0.0, 0.8, "intersecting and cutting"):
         try:
-            arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind, threads=threads)
+            arrays = work.native(
+                native.build_tile, rocks, box, cells=frame.cell_kind, execution=on_threads(threads)
+            )
         except native.InputError as error:
             raise refused_stack(_NumberedError(error, numbers), inputs) from error
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])

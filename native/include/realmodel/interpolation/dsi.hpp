@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
 
 namespace realmodel::interpolation {
 
@@ -18,12 +16,6 @@ struct NodeConstraints {
     std::span<const double> equal;  ///< heights that nodes have, such as a fixed border
     std::span<const double> least;  ///< lower bounds
     std::span<const double> most;   ///< upper bounds
-};
-
-struct DsiOptions {
-    double weight =
-        0;  ///< of a point's misfit against the roughness of one node; 0: points are met exactly
-    int threads = 0;  ///< 0: as many as there are
 };
 
 struct DsiHeights {
@@ -58,7 +50,6 @@ struct DsiHeights {
 DsiHeights dsi(std::span<const std::array<double, 3>> points,
                std::span<const std::array<double, 2>> nodes,
                std::span<const std::array<std::int32_t, 3>> triangles,
-               const NodeConstraints& constraints, const DsiOptions& options,
-               Progress* progress = nullptr);
+               const NodeConstraints& constraints, double weight, const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

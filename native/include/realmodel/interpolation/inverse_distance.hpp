@@ -5,18 +5,14 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/neighborhood.hpp"
 
 namespace realmodel::interpolation {
 
 struct InverseDistanceOptions {
-    double power = 2;    ///< positive
-    int neighbors = 16;  ///< nearest points in plan that are used; 0: all points
-    int threads = 0;     ///< 0: as many as there are
-    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
+    double power = 2;  ///< positive
+    Neighborhood neighborhood;
 };
 
 /// Means of the values of the nearest points weighted by distance^-power (Shepard 1968). A node on
@@ -30,11 +26,11 @@ struct InverseDistanceOptions {
 std::vector<double> inverse_distance(std::span<const std::array<double, 3>> points,
                                      std::span<const std::array<double, 2>> nodes,
                                      const InverseDistanceOptions& options,
-                                     Progress* progress = nullptr);
+                                     const Execution& execution = {});
 
 /// The same at each of the points, from all the others; a single point gives its own value.
 std::vector<double> inverse_distance_left_out(std::span<const std::array<double, 3>> points,
                                               const InverseDistanceOptions& options,
-                                              Progress* progress = nullptr);
+                                              const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

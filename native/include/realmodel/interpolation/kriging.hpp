@@ -6,22 +6,16 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/base/execution.hpp"
 #include "realmodel/interpolation/drift.hpp"
+#include "realmodel/interpolation/neighborhood.hpp"
 #include "realmodel/interpolation/variogram.hpp"
-
-namespace realmodel {
-class Progress;
-}
 
 namespace realmodel::interpolation {
 
 struct KrigingOptions {
-    /// Nearest in plan that make a node's system; 0: all points, factored once.
-    int neighbors = 16;
-    int threads = 0;  ///< 0: as many as there are
+    Neighborhood neighborhood;  ///< all points are factored once
     Drift drift = Drift::kConstant;
-    int octants = 0;    ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;  ///< points farther away are left out; 0: none is
 };
 
 struct Kriged {
@@ -48,13 +42,13 @@ struct Kriged {
 /// @throws Cancelled  within 0.2 s of Progress::cancel
 Kriged krige(std::span<const std::array<double, 3>> points,
              std::span<const std::array<double, 2>> nodes, const Variogram& variogram,
-             const KrigingOptions& options, Progress* progress = nullptr);
+             const KrigingOptions& options, const Execution& execution = {});
 
 /// The same at each of the points, from all the others: what cross-validation compares with the
 /// points' values. With all points as neighbors by the identities of Dubrule (1983,
 /// "Cross validation of kriging in a unique neighborhood"), from one factor. Of a single point the
 /// variance is infinite.
 Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
-                      const KrigingOptions& options, Progress* progress = nullptr);
+                      const KrigingOptions& options, const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
-namespace realmodel {
-class Progress;
-}
+#include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/neighborhood.hpp"
 
 namespace realmodel::interpolation {
 
@@ -15,10 +14,7 @@ struct ThinPlateOptions {
     /// Added to the diagonal where distances are measured in the points' mean spacing; 0: points
     /// are met exactly.
     double smoothing = 0;
-    int neighbors = 16;  ///< nearest in plan that make a node's spline; 0: all points, solved once
-    int threads = 0;     ///< 0: as many as there are
-    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
+    Neighborhood neighborhood;  ///< a spline of all points is solved once
     /// The unit of distances; 0: the points' mean spacing. A part of the points gives heights of
     /// the whole with that of the whole.
     double spacing = 0;
@@ -41,6 +37,6 @@ double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apar
 /// @throws Cancelled
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                std::span<const std::array<double, 2>> nodes,
-                               const ThinPlateOptions& options, Progress* progress = nullptr);
+                               const ThinPlateOptions& options, const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

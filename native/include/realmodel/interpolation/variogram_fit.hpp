@@ -6,12 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/base/execution.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/variogram.hpp"
-
-namespace realmodel {
-class Progress;
-}
 
 namespace realmodel::interpolation {
 
@@ -33,7 +30,6 @@ ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 
 struct FitOptions {
     Drift drift = Drift::kConstant;
     int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
-    int threads = 0;                ///< 0: as many as there are
     bool finds_anisotropy = false;  ///< instead of taking the one that is given
     bool are_apart = false;         ///< no two points lie at one position, and all are finite
 };
@@ -71,7 +67,7 @@ struct FittedVariogram {
 ///         "anisotropy", "option"
 /// @throws Cancelled
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
-                              const Anisotropy& anisotropy, Progress* progress = nullptr,
-                              const FitOptions& options = {});
+                              const Anisotropy& anisotropy, const FitOptions& options = {},
+                              const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

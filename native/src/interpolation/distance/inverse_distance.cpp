@@ -21,24 +21,23 @@ void check_options(const InverseDistanceOptions& options) {
         std::snprintf(text, sizeof text, "the power is %.6g; it must be positive", options.power);
         throw InputError("option", text);
     }
-    check_neighborhood({options.neighbors, options.octants, options.radius});
+    check_neighborhood(options.neighborhood);
 }
 
 /// @param leave_out  the means are those of the data's own positions, each from the others
 std::vector<double> means(const DataPoints& data, std::span<const Position> nodes, bool leave_out,
-                          const InverseDistanceOptions& options, Progress* progress) {
+                          const InverseDistanceOptions& options, const Execution& execution) {
     const spatial::NearestPoints tree(data.local);
     const std::size_t points = data.local.size();
-    const bool all = options.neighbors == 0 && options.octants == 0 && options.radius == 0;
-    const Neighborhood neighborhood{all ? 1 : options.neighbors, options.octants, options.radius};
+    Neighborhood neighborhood = options.neighborhood;
+    const bool all = neighborhood.neighbors == 0 && neighborhood.plain();
+    if (all) neighborhood.neighbors = 1;
     std::vector<double> z(leave_out ? points : nodes.size());
     struct Scratch {
         NeighborSearch search;
         std::vector<spatial::Neighbor> near;
     };
-    const NodeLoop loop{z.size(),
-                        all ? 1 + 1'000'000 / points : 256,
-                        {options.threads, progress},
+    const NodeLoop loop{z.size(), all ? 1 + 1'000'000 / points : 256, execution,
                         "inverse distance"};
     loop.over_nodes(
         [&] {
@@ -85,18 +84,19 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
 
 std::vector<double> inverse_distance(std::span<const std::array<double, 3>> points,
                                      std::span<const std::array<double, 2>> nodes,
-                                     const InverseDistanceOptions& options, Progress* progress) {
+                                     const InverseDistanceOptions& options,
+                                     const Execution& execution) {
     check_options(options);
     require_finite_nodes(nodes);
-    return means(prepare_points(points), nodes, false, options, progress);
+    return means(prepare_points(points), nodes, false, options, execution);
 }
 
 std::vector<double> inverse_distance_left_out(std::span<const std::array<double, 3>> points,
                                               const InverseDistanceOptions& options,
-                                              Progress* progress) {
+                                              const Execution& execution) {
     check_options(options);
     const DataPoints data = prepare_points(points);
-    return data.for_given(means(data, {}, true, options, progress));
+    return data.for_given(means(data, {}, true, options, execution));
 }
 
 }  // namespace realmodel::interpolation

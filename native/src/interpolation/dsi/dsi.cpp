@@ -70,14 +70,14 @@ class Interpolation {
 public:
     Interpolation(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
                   std::span<const Triangle> triangles, const spatial::MeshLocator& locator,
-                  const NodeConstraints& constraints, const DsiOptions& options, Progress* progress)
-        : weight_(options.weight), progress_(progress), mesh_(ordered_mesh(nodes, triangles)) {
+                  const NodeConstraints& constraints, double weight, const Execution& execution)
+        : weight_(weight), progress_(execution.progress), mesh_(ordered_mesh(nodes, triangles)) {
         report(0.01, "triangles and their neighbors");
         check();
         const std::vector<Hinge> of_mesh = hinges(mesh_.nodes, mesh_.triangles);
         check();
         system_.emplace(mesh_.nodes, mesh_.first_in_cell, of_mesh, mesh_.grid,
-                        thread_count(options.threads), [this] { check(); });
+                        thread_count(execution.threads), [this] { check(); });
         report(0.1, "points on the mesh");
         add_points(points, locator, triangles);
         add_nodes(constraints.equal, Kind::kEqual);
@@ -299,8 +299,8 @@ private:
 
 DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
                std::span<const Triangle> triangles, const NodeConstraints& constraints,
-               const DsiOptions& options, Progress* progress) {
-    if (!(options.weight >= 0) || !std::isfinite(options.weight)) {
+               double weight, const Execution& execution) {
+    if (!(weight >= 0) || !std::isfinite(weight)) {
         throw InputError("option",
                          "the weight of points is negative or infinite; 0 makes them hold");
     }
@@ -320,8 +320,8 @@ DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Po
         }
     }
     const spatial::MeshLocator locator(nodes, triangles);
-    Interpolation interpolation(distinct, nodes, triangles, locator, constraints, options,
-                                progress);
+    Interpolation interpolation(distinct, nodes, triangles, locator, constraints, weight,
+                                execution);
     DsiHeights out = interpolation.heights();
     // To the last digit: the plane was subtracted and added again.
     for (std::size_t i = 0; i < nodes.size(); ++i) {

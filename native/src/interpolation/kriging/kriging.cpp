@@ -21,9 +21,9 @@ constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some
 /// One system after another: neighbors in octants or within a radius, or more than the lanes take.
 void krige_one_by_one(const KrigingTask& task) {
     const std::size_t points = task.data.local.size();
-    const auto wanted = static_cast<std::size_t>(task.options.neighbors);
+    const auto wanted = static_cast<std::size_t>(task.options.neighborhood.neighbors);
     const auto n = static_cast<double>(wanted > 0 ? std::min(wanted, points) : points);
-    require_memory(thread_count(task.options.threads) * n * (n + 8) * sizeof(double), n,
+    require_memory(thread_count(task.execution.threads) * n * (n + 8) * sizeof(double), n,
                    "kriging each node from its nearest", 16);
     struct Scratch {
         NeighborKriging kriging;
@@ -31,10 +31,10 @@ void krige_one_by_one(const KrigingTask& task) {
         std::vector<spatial::Neighbor> near;
     };
     std::atomic<std::int64_t> alone{0};
-    NodeLoop{task.count(), 256, {task.options.threads, task.progress}, "kriging"}.over_nodes(
+    NodeLoop{task.count(), 256, task.execution, "kriging"}.over_nodes(
         [&] {
             return Scratch{NeighborKriging(task.data, task.covariance, task.options.drift),
-                           NeighborSearch(task.data, task.tree, task.neighborhood()),
+                           NeighborSearch(task.data, task.tree, task.options.neighborhood),
                            {}};
         },
         [&](Scratch& own, std::size_t i) {
@@ -45,7 +45,7 @@ void krige_one_by_one(const KrigingTask& task) {
             } else if (own.near[0].squared_distance == 0) {
                 task.set(i, {task.data.values[own.near[0].point], 0});
             } else {
-                task.set(i, own.kriging.at(node, own.near, task.progress));
+                task.set(i, own.kriging.at(node, own.near, task.execution.progress));
             }
         });
     task.out.alone = alone;
@@ -60,7 +60,7 @@ std::size_t nodes_in_chunk(std::size_t neighbors) {
 /// The nearest of all directions and distances, few enough: several systems at once. Those that are
 /// not well posed - points in one line and a drift across it - one by one.
 void krige_in_lanes(const KrigingTask& task) {
-    const auto neighbors = static_cast<std::size_t>(task.options.neighbors);
+    const auto neighbors = static_cast<std::size_t>(task.options.neighborhood.neighbors);
     const std::size_t count = task.count();
     struct Scratch {
         std::vector<LaneKriging::Node> nodes;
@@ -74,7 +74,7 @@ void krige_in_lanes(const KrigingTask& task) {
                        LaneKriging(task.data, task.tree, task.covariance, neighbors,
                                    task.leaves_out, lane_kernels().front(), task.options.drift),
                        NeighborKriging(task.data, task.covariance, task.options.drift),
-                       NeighborSearch(task.data, task.tree, task.neighborhood()),
+                       NeighborSearch(task.data, task.tree, task.options.neighborhood),
                        {}};
     };
     std::vector<Position> positions;
@@ -87,12 +87,8 @@ void krige_in_lanes(const KrigingTask& task) {
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };
-        NodeLoop{here,
-                 nodes_in_chunk(neighbors),
-                 {task.options.threads, task.progress},
-                 "kriging",
-                 share(first),
-                 share(first + here)}
+        NodeLoop{here,         nodes_in_chunk(neighbors), task.execution, "kriging",
+                 share(first), share(first + here)}
             .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
                 own.nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
@@ -104,7 +100,8 @@ void krige_in_lanes(const KrigingTask& task) {
                     [&](std::uint32_t i, const Estimate& found) { task.set(first + i, found); },
                     [&](std::uint32_t i) {
                         own.search.find(positions[i], own.near, task.left_out(first + i));
-                        task.set(first + i, own.single.at(positions[i], own.near, task.progress));
+                        task.set(first + i,
+                                 own.single.at(positions[i], own.near, task.execution.progress));
                     });
             });
     }
@@ -112,18 +109,14 @@ void krige_in_lanes(const KrigingTask& task) {
 
 void krige_from_all(const KrigingTask& task) {
     const auto n = static_cast<double>(task.data.local.size());
-    const double solved_at_once = thread_count(task.options.threads) * kNodesAtOnce;
+    const double solved_at_once = thread_count(task.execution.threads) * kNodesAtOnce;
     require_memory(TiledCholesky::bytes(n) + solved_at_once * n * sizeof(double), n,
                    "kriging from all of", 16);
     const double factor_work = n * n * n / 3;
     const double solve_work = n * n * static_cast<double>(task.count());
     const double factor_share = factor_work / (factor_work + solve_work);
     const UniqueNeighborhood all(task, factor_share);
-    NodeLoop{task.count(),
-             kNodesAtOnce,
-             {task.options.threads, task.progress},
-             "kriging from all points",
-             factor_share}
+    NodeLoop{task.count(), kNodesAtOnce, task.execution, "kriging from all points", factor_share}
         .over_chunks([&] { return all.scratch(); },
                      [&](UniqueNeighborhood::Scratch& own, std::size_t begin, std::size_t end) {
                          if (task.leaves_out) {
@@ -136,18 +129,19 @@ void krige_from_all(const KrigingTask& task) {
 
 /// @param leaves_out  the points instead of nodes
 Kriged krige_nodes(const DataPoints& data, std::span<const Position> nodes, bool leaves_out,
-                   const Variogram& variogram, const KrigingOptions& options, Progress* progress) {
+                   const Variogram& variogram, const KrigingOptions& options,
+                   const Execution& execution) {
     const spatial::NearestPoints tree(data.local);
     const Covariance covariance(variogram);
     Kriged out;
     const KrigingTask task{data,       tree,           covariance, options, nodes,
-                           leaves_out, variogram.sill, progress,   out};
+                           leaves_out, variogram.sill, execution,  out};
     out.z.resize(task.count());
     out.variance.resize(task.count());
-    const auto neighbors = static_cast<std::size_t>(options.neighbors);
-    if (task.neighborhood().plain() && (neighbors == 0 || neighbors >= data.local.size())) {
+    const auto neighbors = static_cast<std::size_t>(options.neighborhood.neighbors);
+    if (task.options.neighborhood.plain() && (neighbors == 0 || neighbors >= data.local.size())) {
         krige_from_all(task);
-    } else if (task.neighborhood().plain() && neighbors <= LaneKriging::kMostNeighbors) {
+    } else if (task.options.neighborhood.plain() && neighbors <= LaneKriging::kMostNeighbors) {
         krige_in_lanes(task);
     } else {
         krige_one_by_one(task);
@@ -157,26 +151,26 @@ Kriged krige_nodes(const DataPoints& data, std::span<const Position> nodes, bool
 
 void check_options(const Variogram& variogram, const KrigingOptions& options) {
     check_variogram(variogram);
-    check_neighborhood({options.neighbors, options.octants, options.radius});
+    check_neighborhood(options.neighborhood);
 }
 
 }  // namespace
 
 Kriged krige(std::span<const std::array<double, 3>> points,
              std::span<const std::array<double, 2>> nodes, const Variogram& variogram,
-             const KrigingOptions& options, Progress* progress) {
+             const KrigingOptions& options, const Execution& execution) {
     check_options(variogram, options);
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     if (nodes.empty()) return {};
-    return krige_nodes(data, nodes, false, variogram, options, progress);
+    return krige_nodes(data, nodes, false, variogram, options, execution);
 }
 
 Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
-                      const KrigingOptions& options, Progress* progress) {
+                      const KrigingOptions& options, const Execution& execution) {
     check_options(variogram, options);
     const DataPoints data = prepare_points(points);
-    const Kriged found = krige_nodes(data, {}, true, variogram, options, progress);
+    const Kriged found = krige_nodes(data, {}, true, variogram, options, execution);
     return {data.for_given(found.z), data.for_given(found.variance), found.alone};
 }
 

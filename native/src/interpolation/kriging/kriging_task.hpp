@@ -20,7 +20,7 @@ struct KrigingTask {
     std::span<const Position> nodes;  ///< without any each point is left out and estimated instead
     bool leaves_out;
     double sill;
-    Progress* progress;
+    const Execution& execution;
     Kriged& out;
 
     std::size_t count() const { return leaves_out ? data.local.size() : nodes.size(); }
@@ -30,9 +30,6 @@ struct KrigingTask {
     }
     std::int32_t left_out(std::size_t i) const {
         return leaves_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;
-    }
-    Neighborhood neighborhood() const {
-        return {options.neighbors, options.octants, options.radius};
     }
     void set(std::size_t node, const Estimate& estimate) const {
         out.z[node] = estimate.value;

@@ -21,7 +21,7 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
           [&](Eigen::Index i, Eigen::Index j) {
               return i == j ? 1.0 : task.covariance(position(i), position(j));
           },
-          kRedundantVariance, {task.options.threads, task.progress}, factor_share) {
+          kRedundantVariance, task.execution, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
     Eigen::MatrixXd plain = frame_.terms(std::span<const Position>(task.data.local));
     Eigen::MatrixXd given(count_, terms + 1);
@@ -30,7 +30,7 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
         given(p, terms) = task.data.values[p] - base_;
         if (factor_.left_out(p)) plain.row(p).setZero();
     }
-    factor_.solve(given, task.progress);
+    factor_.solve(given, task.execution.progress);
     basis_.make(plain, given.leftCols(terms));
     t_ = given.col(terms);
     qt_ = basis_.project(t_);
@@ -46,10 +46,10 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
         const auto column = static_cast<Eigen::Index>(i - begin);
         for (Eigen::Index p = 0; p < count_; ++p)
             u(p, column) = task_.covariance(node, position(p));
-        if (cancelled(task_.progress)) return;
+        if (cancelled(task_.execution.progress)) return;
     }
-    factor_.solve(u, task_.progress);
-    for (std::size_t i = begin; i < end && !cancelled(task_.progress); ++i) {
+    factor_.solve(u, task_.execution.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
         const Position node = task_.node(i);
         task_.tree.find(node, 1, scratch.near);
         const spatial::Neighbor& nearest = scratch.near[0];
@@ -71,8 +71,8 @@ void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end, Scratch& 
     u.setZero(count_, static_cast<Eigen::Index>(end - begin));
     for (std::size_t i = begin; i < end; ++i)
         u(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i - begin)) = 1;
-    factor_.solve(u, task_.progress);
-    for (std::size_t i = begin; i < end && !cancelled(task_.progress); ++i) {
+    factor_.solve(u, task_.execution.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.execution.progress); ++i) {
         const auto column = u.col(static_cast<Eigen::Index>(i - begin));
         const DriftBasis::Coefficients qu = basis_.project(column);
         const double whole = column.squaredNorm(), b = whole - qu.squaredNorm();
@@ -84,9 +84,9 @@ void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end, Scratch& 
         // The point alone determines a term of the drift, or others determine the point.
         NeighborSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
         search.find(task_.node(i), scratch.near, task_.left_out(i));
-        task_.set(i, scratch.near.empty()
-                         ? unknown(value)
-                         : scratch.others.at(task_.node(i), scratch.near, task_.progress));
+        task_.set(i, scratch.near.empty() ? unknown(value)
+                                          : scratch.others.at(task_.node(i), scratch.near,
+                                                              task_.execution.progress));
     }
 }
 

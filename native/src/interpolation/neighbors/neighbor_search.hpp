@@ -6,19 +6,11 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "realmodel/interpolation/neighborhood.hpp"
 #include "spatial/nearest_points.hpp"
 #include "spatial/octant_search.hpp"
 
 namespace realmodel::interpolation {
-
-/// Which points make a node's system.
-struct Neighborhood {
-    int neighbors = 16;  ///< at most so many; 0: no limit
-    int octants = 0;     ///< at most so many from each eighth of the directions; 0: no limit
-    double radius = 0;   ///< none farther than this, in plan; 0: no limit
-
-    bool plain() const { return octants == 0 && radius == 0; }
-};
 
 /// Refuses negative and infinite numbers.
 /// @throws InputError kind "option"

@@ -99,7 +99,7 @@ void check_options(const ThinPlateOptions& options) {
     }
     if (!(options.spacing >= 0) || !std::isfinite(options.spacing))
         throw InputError("option", "the spacing is negative or infinite");
-    check_neighborhood({options.neighbors, options.octants, options.radius});
+    check_neighborhood(options.neighborhood);
 }
 
 }  // namespace
@@ -116,21 +116,21 @@ double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apar
 
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                std::span<const std::array<double, 2>> nodes,
-                               const ThinPlateOptions& options, Progress* progress) {
+                               const ThinPlateOptions& options, const Execution& execution) {
     check_options(options);
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     const spatial::NearestPoints tree(data.local);
-    const Neighborhood neighborhood{options.neighbors, options.octants, options.radius};
+    const Neighborhood& neighborhood = options.neighborhood;
     const double spacing = options.spacing > 0 ? options.spacing : mean_spacing_of(data.local);
-    const std::size_t points_used = static_cast<std::size_t>(options.neighbors);
+    const std::size_t points_used = static_cast<std::size_t>(neighborhood.neighbors);
     const bool all = neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
     Spline whole(spacing, options.smoothing);
     if (all) {
         const auto order = static_cast<double>(data.local.size() + 3);
         require_memory(3 * order * order * sizeof(double), order - 3, "a spline through all of",
                        32);
-        if (progress != nullptr) progress->check();
+        if (execution.progress != nullptr) execution.progress->check();
         whole.make(data.local, data.values);
     }
     std::vector<double> z(nodes.size());
@@ -141,7 +141,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
         std::vector<Position> positions;
         std::vector<double> values;
     };
-    const NodeLoop loop{nodes.size(), 256, {options.threads, progress}, "thin plate spline"};
+    const NodeLoop loop{nodes.size(), 256, execution, "thin plate spline"};
     loop.over_nodes(
         [&] {
             return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}};

@@ -38,14 +38,13 @@ constexpr double kLeastScale = 0.25;
 /// The choice among models, ranges, nuggets and anisotropies by points left out.
 class Choice {
 public:
-    Choice(const ManyPoints& all, const FitOptions& options, Progress* progress)
+    Choice(const ManyPoints& all, const FitOptions& options, const Execution& execution)
         : all_(all),
           options_(options),
-          progress_(progress),
-          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut,
-                  {options.threads, progress}),
+          execution_(execution),
+          points_(all, static_cast<std::size_t>(options.neighbors), kPointsLeftOut, execution),
           few_(all, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
-               kPointsSearched, {options.threads, progress}) {}
+               kPointsSearched, execution) {}
 
     /// Leaves `out` as it is where no model fits at all. Its experimental values and its
     /// variogram's anisotropy are given; they change where an anisotropy is found.
@@ -59,7 +58,7 @@ public:
             const Anisotropy found = find_anisotropy(few_, best, *square_of_);
             if (found.ratio > 1 && better_with(found, best)) {
                 out.variogram.anisotropy = found;
-                out.experimental = experimental_variogram(all_, found, progress_);
+                out.experimental = experimental_variogram(all_, found, execution_.progress);
                 all = search(out, hopeful_models(all), 0.4, 0.75);
             }
         }
@@ -76,9 +75,9 @@ public:
 
 private:
     void report(double share) const {
-        if (progress_ == nullptr) return;
-        progress_->report(share, "fitting the variogram");
-        progress_->check();
+        if (execution_.progress == nullptr) return;
+        execution_.progress->report(share, "fitting the variogram");
+        execution_.progress->check();
     }
 
     double extent(const Anisotropy& anisotropy) const {
@@ -137,8 +136,7 @@ private:
         const bool drifts = options_.drift != Drift::kConstant;
         std::optional<LeaveOneOut> fewer;
         if (drifts) {
-            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift,
-                          Execution{options_.threads, progress_});
+            fewer.emplace(all_, points_.neighbors(), kPointsLeftOutOfDrift, execution_);
         }
         const LeaveOneOut& points = drifts ? *fewer : points_;
         const auto errors_with = [&](const Variogram& v) {
@@ -214,7 +212,7 @@ private:
 
     const ManyPoints& all_;
     const FitOptions& options_;
-    Progress* progress_;
+    Execution execution_;
     LeaveOneOut points_, few_;  // all that are left out, and those that search
     std::optional<CappedSquare> square_of_;
 };
@@ -235,8 +233,8 @@ Variogram plain_variogram(const ManyPoints& all, const ExperimentalVariogram& e,
 }  // namespace
 
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
-                              const Anisotropy& given_anisotropy, Progress* progress,
-                              const FitOptions& options) {
+                              const Anisotropy& given_anisotropy, const FitOptions& options,
+                              const Execution& execution) {
     const Anisotropy anisotropy = options.finds_anisotropy ? Anisotropy{} : given_anisotropy;
     check_anisotropy(anisotropy);
     if (options.neighbors < 1) {
@@ -246,13 +244,13 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
     // Kriging the residuals with the drift gives the same errors as kriging the values.
     if (options.drift != Drift::kConstant) all.take_drift_out(options.drift);
     FittedVariogram out;
-    out.experimental = experimental_variogram(all, anisotropy, progress);
+    out.experimental = experimental_variogram(all, anisotropy, execution.progress);
     const ExperimentalVariogram& e = out.experimental;
     out.variogram = plain_variogram(all, e, anisotropy);
     const bool varies = !e.gamma.empty() && *std::max_element(e.gamma.begin(), e.gamma.end()) >
                                                 1e-12 * out.variogram.sill;
     if (all.size() < 3 || e.lags.size() < 2 || !varies) return out;
-    Choice(all, options, progress).make(out);
+    Choice(all, options, execution).make(out);
     return out;
 }
 

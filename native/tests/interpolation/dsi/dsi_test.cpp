@@ -36,7 +36,7 @@ TEST(Dsi, IterationsDoNotGrowWithTheMesh) {
                 return 100 * std::sin(5 * x / side) * std::cos(4 * y / side);
             };
             const DsiHeights found =
-                dsi(on(mesh, 150, height), mesh.nodes, mesh.triangles, {}, {weight, 1});
+                dsi(on(mesh, 150, height), mesh.nodes, mesh.triangles, {}, weight, {1});
             iterations.push_back(found.iterations);
             double worst = 0;
             for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
@@ -57,11 +57,11 @@ TEST(Dsi, GradedMeshesAndSlivers) {
             node[0] = std::pow(node[0] / 39, power) * 39;
         const auto plane_at = [](double x, double y) { return 1 + 0.2 * x - 0.3 * y; };
         const DsiHeights plane =
-            dsi(on(mesh, 60, plane_at), mesh.nodes, mesh.triangles, {}, {0, 1});
+            dsi(on(mesh, 60, plane_at), mesh.nodes, mesh.triangles, {}, 0, {1});
         for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
             EXPECT_NEAR(plane.z[i], plane_at(mesh.nodes[i][0], mesh.nodes[i][1]), 1e-9);
         const auto bowl_at = [](double x, double y) { return 0.01 * (x * x + y * y); };
-        const DsiHeights bowl = dsi(on(mesh, 60, bowl_at), mesh.nodes, mesh.triangles, {}, {1, 1});
+        const DsiHeights bowl = dsi(on(mesh, 60, bowl_at), mesh.nodes, mesh.triangles, {}, 1, {1});
         EXPECT_TRUE(bowl.converged);
         double sum = 0;
         for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
@@ -73,7 +73,7 @@ TEST(Dsi, GradedMeshesAndSlivers) {
 TEST(Dsi, EqualNodesAndBoundsAreMetToTheLastDigit) {
     const Lattice mesh = lattice(30, 20);
     const Points points = on(mesh, 20, [](double x, double y) { return std::sin(x / 3) + y / 5; });
-    const DsiHeights free = dsi(points, mesh.nodes, mesh.triangles, {}, {0, 1});
+    const DsiHeights free = dsi(points, mesh.nodes, mesh.triangles, {}, 0, {1});
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const auto& p : points) {
         low = std::min(low, p[2] - 0.001);
@@ -84,7 +84,7 @@ TEST(Dsi, EqualNodesAndBoundsAreMetToTheLastDigit) {
     Vector equal(mesh.nodes.size(), std::nan("")), least(mesh.nodes.size(), low),
         most(mesh.nodes.size(), high);
     equal[17] = free.z[17] < high ? 0.5 * (low + high) : high;
-    const DsiHeights found = dsi(points, mesh.nodes, mesh.triangles, {equal, least, most}, {0, 1});
+    const DsiHeights found = dsi(points, mesh.nodes, mesh.triangles, {equal, least, most}, 0, {1});
     EXPECT_EQ(found.z[17], equal[17]);
     EXPECT_EQ(*std::min_element(found.z.begin(), found.z.end()), low);
     EXPECT_EQ(*std::max_element(found.z.begin(), found.z.end()), high);
@@ -95,38 +95,38 @@ TEST(Dsi, SameBytesForAnyNumberOfThreads) {
     const Lattice mesh = lattice(300, 260);
     const Points points =
         on(mesh, 400, [](double x, double y) { return std::sin(x / 30) * std::cos(y / 20); });
-    const DsiHeights one = dsi(points, mesh.nodes, mesh.triangles, {}, {1, 1});
-    const DsiHeights three = dsi(points, mesh.nodes, mesh.triangles, {}, {1, 3});
+    const DsiHeights one = dsi(points, mesh.nodes, mesh.triangles, {}, 1, {1});
+    const DsiHeights three = dsi(points, mesh.nodes, mesh.triangles, {}, 1, {3});
     EXPECT_EQ(std::memcmp(one.z.data(), three.z.data(), 8 * one.z.size()), 0);
 }
 
 TEST(Dsi, RefusesAndStops) {
     const Lattice mesh = lattice(5, 5);
     const Points points{{1, 1, 0}, {2, 3, 1}};
-    const auto kind = [&](const Points& of, const NodeConstraints& c, const DsiOptions& options) {
+    const auto kind = [&](const Points& of, const NodeConstraints& c, double weight) {
         try {
-            dsi(of, mesh.nodes, mesh.triangles, c, options);
+            dsi(of, mesh.nodes, mesh.triangles, c, weight);
         } catch (const InputError& error) {
             return error.kind;
         }
         return std::string("accepted");
     };
-    EXPECT_EQ(kind(points, {}, {}), "accepted");
-    EXPECT_EQ(kind({}, {}, {}), "no_points");
-    EXPECT_EQ(kind({{-9, -9, 1}}, {}, {}), "no_points");
-    EXPECT_EQ(kind({{1, 1, 1}, {1, 1, 2}}, {}, {}), "contradicting_points");
-    EXPECT_EQ(kind(points, {}, {-1, 0}), "option");
+    EXPECT_EQ(kind(points, {}, 0), "accepted");
+    EXPECT_EQ(kind({}, {}, 0), "no_points");
+    EXPECT_EQ(kind({{-9, -9, 1}}, {}, 0), "no_points");
+    EXPECT_EQ(kind({{1, 1, 1}, {1, 1, 2}}, {}, 0), "contradicting_points");
+    EXPECT_EQ(kind(points, {}, -1), "option");
     const Vector two(2, 0.0), infinite(25, HUGE_VAL), low(25, 0.0), high(25, 1.0);
-    EXPECT_EQ(kind(points, {two, {}, {}}, {}), "option");
-    EXPECT_EQ(kind(points, {infinite, {}, {}}, {}), "not_finite");
-    EXPECT_EQ(kind(points, {{}, high, low}, {}), "option");
-    EXPECT_EQ(kind({}, {low, {}, {}}, {}), "accepted");
-    EXPECT_THROW(dsi(points, mesh.nodes, {}, {}, {}), InputError);
+    EXPECT_EQ(kind(points, {two, {}, {}}, 0), "option");
+    EXPECT_EQ(kind(points, {infinite, {}, {}}, 0), "not_finite");
+    EXPECT_EQ(kind(points, {{}, high, low}, 0), "option");
+    EXPECT_EQ(kind({}, {low, {}, {}}, 0), "accepted");
+    EXPECT_THROW(dsi(points, mesh.nodes, {}, {}, 0), InputError);
     const std::vector<std::array<std::int32_t, 3>> bad{{0, 1, 25}};
-    EXPECT_THROW(dsi(points, mesh.nodes, bad, {}, {}), InputError);
+    EXPECT_THROW(dsi(points, mesh.nodes, bad, {}, 0), InputError);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(dsi(points, mesh.nodes, mesh.triangles, {}, {}, &progress), Cancelled);
+    EXPECT_THROW(dsi(points, mesh.nodes, mesh.triangles, {}, 0, {0, &progress}), Cancelled);
 }
 
 }  // namespace

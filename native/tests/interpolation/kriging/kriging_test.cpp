@@ -32,7 +32,7 @@ InputError refusal(const std::function<void()>& run) {
 
 void expect_as_dense(const Points& points, const Nodes& nodes, const Variogram& variogram,
                      int neighbors, double tolerance) {
-    const Kriged kriged = krige(points, nodes, variogram, {neighbors, 0});
+    const Kriged kriged = krige(points, nodes, variogram, {{neighbors}});
     const std::size_t count = neighbors == 0 ? points.size() : static_cast<std::size_t>(neighbors);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [z, variance] = dense_kriging(points, nodes[i], variogram, count);
@@ -46,7 +46,7 @@ TEST(Kriging, TwoPointsByHand) {
     const Points points{{0, 0, 1}, {4, 0, 5}};
     const Variogram v = spherical(10, 2);
     for (const int neighbors : {0, 2, 16}) {
-        const Kriged kriged = krige(points, Nodes{{2, 0}}, v, {neighbors, 0});
+        const Kriged kriged = krige(points, Nodes{{2, 0}}, v, {{neighbors}});
         EXPECT_NEAR(kriged.z[0], 3, 1e-14);
         const double gamma2 = 2 * (0.3 - 0.5 * 0.008), gamma4 = 2 * (0.6 - 0.5 * 0.064);
         EXPECT_NEAR(kriged.variance[0], 2 * gamma2 - gamma4 / 2, 1e-14);
@@ -112,7 +112,7 @@ TEST(Kriging, HonorsTheDataAndMergesRepeats) {
     points.push_back(points[7]);
     for (const int neighbors : {0, 16}) {
         for (const double nugget : {0.0, 1.0}) {
-            const Kriged kriged = krige(points, nodes, spherical(5, 4, nugget), {neighbors, 0});
+            const Kriged kriged = krige(points, nodes, spherical(5, 4, nugget), {{neighbors}});
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 EXPECT_EQ(kriged.z[i], points[i][2]);
                 EXPECT_EQ(kriged.variance[i], 0);
@@ -150,7 +150,7 @@ void expect_sane(const Points& points, const Nodes& nodes, const Variogram& v, i
         high = std::max(high, p[2]);
     }
     const double margin = 2 * (high - low) + 1e-9;
-    const Kriged kriged = krige(points, nodes, v, {neighbors, 0});
+    const Kriged kriged = krige(points, nodes, v, {{neighbors}});
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         ASSERT_GE(kriged.z[i], low - margin);
         ASSERT_LE(kriged.z[i], high + margin);
@@ -197,7 +197,7 @@ TEST(Kriging, GaussianWithoutNuggetFollowsASmoothSurface) {
     }
     const Variogram v{VariogramModel::kGaussian, 20, 10, 0, {}};
     for (const int neighbors : {0, 16}) {
-        const Kriged kriged = krige(points, Nodes{{5.5, 5.5}, {3.3, 7.1}}, v, {neighbors, 0});
+        const Kriged kriged = krige(points, Nodes{{5.5, 5.5}, {3.3, 7.1}}, v, {{neighbors}});
         EXPECT_NEAR(kriged.z[0], 3 + 0.5 * 5.5 - 0.2 * 5.5, 1e-3);
         EXPECT_NEAR(kriged.z[1], 3 + 0.5 * 3.3 - 0.2 * 7.1, 1e-3);
     }
@@ -207,9 +207,9 @@ TEST(Kriging, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(700, 100);
     const Nodes nodes = scattered_nodes(2000, 100);
     for (const int neighbors : {0, 16}) {
-        const Kriged one = krige(points, nodes, spherical(40, 4), {neighbors, 1});
+        const Kriged one = krige(points, nodes, spherical(40, 4), {{neighbors}}, {1});
         for (const int threads : {2, 3, 5}) {
-            const Kriged more = krige(points, nodes, spherical(40, 4), {neighbors, threads});
+            const Kriged more = krige(points, nodes, spherical(40, 4), {{neighbors}}, {threads});
             EXPECT_EQ(std::memcmp(one.z.data(), more.z.data(), 8 * nodes.size()), 0);
             EXPECT_EQ(std::memcmp(one.variance.data(), more.variance.data(), 8 * nodes.size()), 0);
         }
@@ -240,7 +240,7 @@ TEST(Kriging, RefusesWhatIsNoInput) {
                                spherical(1, 1, -1), spherical(nan, 1)}) {
         EXPECT_EQ(refusal([&] { krige(points, nodes, v, {}); }).kind, "variogram");
     }
-    EXPECT_EQ(refusal([&] { krige(points, nodes, spherical(1, 1), {-1, 0}); }).kind, "option");
+    EXPECT_EQ(refusal([&] { krige(points, nodes, spherical(1, 1), {{-1}}); }).kind, "option");
     EXPECT_EQ(refusal([&] { variogram_model("linear"); }).kind, "variogram");
 }
 
@@ -249,7 +249,7 @@ TEST(Kriging, RefusesWhatMemoryDoesNotAllow) {
     for (int i = 0; i < 3'000'000; ++i)
         points.push_back({1.0 * (i % 2000), 1.0 * (i / 2000), 0});
     const InputError error = refusal([&] {
-        krige(points, Nodes{{0.5, 0.5}}, spherical(1, 1), {0, 0});
+        krige(points, Nodes{{0.5, 0.5}}, spherical(1, 1), {{0}});
     });
     EXPECT_EQ(error.kind, "too_large");
     EXPECT_NE(std::string(error.what()).find("3.6e+04 GB"), std::string::npos) << error.what();
@@ -267,7 +267,8 @@ TEST(Kriging, StopsSoonAfterCancel) {
             progress.cancel();
             asked = progress.fraction();
         });
-        EXPECT_THROW(krige(points, nodes, spherical(40, 4), {neighbors, 2}, &progress), Cancelled);
+        EXPECT_THROW(krige(points, nodes, spherical(40, 4), {{neighbors}}, {2, &progress}),
+                     Cancelled);
         watcher.join();
         // What each of two threads had in hand: at most 512 of the nodes, however long that takes.
         EXPECT_LT(progress.fraction() - asked.load(), 0.01);

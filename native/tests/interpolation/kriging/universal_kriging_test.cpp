@@ -16,8 +16,8 @@ namespace {
 
 const Variogram spherical{VariogramModel::kSpherical, 40, 4, 0.5, {}, {}};
 
-KrigingOptions with(Drift drift, int neighbors, int threads = 0) {
-    return {neighbors, threads, drift, 0, 0};
+KrigingOptions with(Drift drift, int neighbors) {
+    return {{neighbors}, drift};
 }
 
 double polynomial(const std::array<double, 2>& p, bool quadratic) {
@@ -82,8 +82,9 @@ TEST(UniversalKriging, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(500, 100);
     const Nodes nodes = scattered_nodes(1000, 100);
     for (const int neighbors : {0, 20}) {
-        const Kriged one = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors, 1));
-        const Kriged three = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors, 3));
+        const Kriged one = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors), {1});
+        const Kriged three =
+            krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors), {3});
         EXPECT_EQ(std::memcmp(one.z.data(), three.z.data(), 8 * nodes.size()), 0);
         EXPECT_EQ(std::memcmp(one.variance.data(), three.variance.data(), 8 * nodes.size()), 0);
     }
@@ -96,10 +97,10 @@ TEST(UniversalKriging, TheVariogramIsThatOfTheResiduals) {
     std::normal_distribution<double> normal;
     for (auto& p : points)
         p[2] += normal(random);
-    const Variogram plain = fit_variogram(points, {}, nullptr, {Drift::kLinear}).variogram;
+    const Variogram plain = fit_variogram(points, {}, {Drift::kLinear}).variogram;
     for (auto& p : points)
         p[2] += 40 * p[0] - 25 * p[1];
-    const Variogram tilted = fit_variogram(points, {}, nullptr, {Drift::kLinear}).variogram;
+    const Variogram tilted = fit_variogram(points, {}, {Drift::kLinear}).variogram;
     EXPECT_EQ(tilted.model, plain.model);
     EXPECT_NEAR(tilted.sill, plain.sill, 1e-6 * plain.sill);
     EXPECT_NEAR(tilted.range, plain.range, 1e-6 * plain.range);
@@ -132,8 +133,8 @@ TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {
     EXPECT_DOUBLE_EQ(nested.first_sill(), 2.25);
     EXPECT_DOUBLE_EQ(nested.gamma(13), spherical.gamma(13));
     for (const int neighbors : {0, 16}) {
-        const Kriged a = krige(points, nodes, nested, {neighbors, 0});
-        const Kriged b = krige(points, nodes, spherical, {neighbors, 0});
+        const Kriged a = krige(points, nodes, nested, {{neighbors}});
+        const Kriged b = krige(points, nodes, spherical, {{neighbors}});
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             EXPECT_NEAR(a.z[i], b.z[i], 1e-11);
             EXPECT_NEAR(a.variance[i], b.variance[i], 1e-11);
@@ -162,7 +163,7 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
     points.push_back(points[5]);  // repeats one: the two leave together
     for (const Drift drift : {Drift::kConstant, Drift::kLinear, Drift::kQuadratic}) {
         for (const int neighbors : {0, 12}) {
-            const KrigingOptions options = with(drift, neighbors, 1);
+            const KrigingOptions options = with(drift, neighbors);
             const Kriged found = krige_left_out(points, spherical, options);
             ASSERT_EQ(found.z.size(), points.size());
             EXPECT_EQ(found.z[5], found.z.back());
@@ -193,7 +194,7 @@ TEST(LeftOut, WhatOthersTellWhollyOrNotAtAll) {
     for (int i = 0; i < 144; ++i)
         smooth.push_back({1.0 * (i % 12), 1.0 * (i / 12), 0.5 * (i % 12)});
     const Variogram gaussian{VariogramModel::kGaussian, 30, 10, 0, {}, {}};
-    const Kriged found = krige_left_out(smooth, gaussian, {0, 0});
+    const Kriged found = krige_left_out(smooth, gaussian, {{0}});
     for (std::size_t i = 0; i < smooth.size(); ++i)
         EXPECT_NEAR(found.z[i], smooth[i][2], 0.01);
 }

@@ -17,7 +17,7 @@ TEST(ThinPlate, PlanesComeOutAndPointsAreMet) {
     Points points = hills(60, 100, {4e5, 5e6});
     const Nodes nodes = scattered_nodes(200, 140, {4e5, 5e6});
     for (const int neighbors : {0, 12}) {
-        const ThinPlateOptions options{0, neighbors, 2, 0, 0};
+        const ThinPlateOptions options{0, {neighbors}};
         const std::vector<double> at_points =
             thin_plate(points, Nodes{{points[3][0], points[3][1]}}, options);
         EXPECT_EQ(at_points[0], points[3][2]);
@@ -35,12 +35,12 @@ TEST(ThinPlate, FourPointsByHand) {
     // in the middle, and the diagonal through the lifted corner keeps its sign.
     const Points corners{{-1, -1, 0}, {1, -1, 0}, {1, 1, 1}, {-1, 1, 0}};
     const std::vector<double> z =
-        thin_plate(corners, Nodes{{0, 0}, {0.5, 0}, {0, 0.5}}, {0, 0, 1, 0, 0});
+        thin_plate(corners, Nodes{{0, 0}, {0.5, 0}, {0, 0.5}}, {0, {0}}, {1});
     EXPECT_NEAR(z[0], 0.25, 1e-12);
     EXPECT_NEAR(z[1], z[2], 1e-12);
     // Smoothed without end it is the plane of least squares.
     const std::vector<double> smooth =
-        thin_plate(corners, Nodes{{1, 1}, {-1, -1}}, {1e12, 0, 1, 0, 0});
+        thin_plate(corners, Nodes{{1, 1}, {-1, -1}}, {1e12, {0}}, {1});
     EXPECT_NEAR(smooth[0], 0.75, 1e-9);
     EXPECT_NEAR(smooth[1], -0.25, 1e-9);
 }
@@ -53,7 +53,7 @@ TEST(ThinPlate, APartOfThePointsGivesTheHeightsOfAll) {
         if (all[i][0] < 4e5 + 60 && all[i][1] < 5e6 + 60) part.push_back(all[i]);
     ASSERT_LT(part.size(), all.size() / 2);
     const Nodes nodes = scattered_nodes(200, 20, {4e5, 5e6});
-    ThinPlateOptions options{0.2, 12, 2, 0, 0};
+    ThinPlateOptions options{0.2, {12}};
     const std::vector<double> z = thin_plate(all, nodes, options);
     EXPECT_NE(thin_plate(part, nodes, options), z);
     options.spacing = mean_spacing(all);
@@ -66,14 +66,14 @@ TEST(ThinPlate, APartOfThePointsGivesTheHeightsOfAll) {
 TEST(ThinPlate, SameBytesForAnyNumberOfThreadsAndRefusals) {
     const Points points = hills(300, 100);
     const Nodes nodes = scattered_nodes(1000, 120);
-    const std::vector<double> one = thin_plate(points, nodes, {0.1, 16, 1, 2, 0});
-    const std::vector<double> three = thin_plate(points, nodes, {0.1, 16, 3, 2, 0});
+    const std::vector<double> one = thin_plate(points, nodes, {0.1, {16, 2}}, {1});
+    const std::vector<double> three = thin_plate(points, nodes, {0.1, {16, 2}}, {3});
     EXPECT_EQ(std::memcmp(one.data(), three.data(), 8 * one.size()), 0);
-    EXPECT_THROW(thin_plate(points, nodes, {-1, 16, 1, 0, 0}), InputError);
-    EXPECT_THROW(thin_plate(points, nodes, {0, -1, 1, 0, 0}), InputError);
+    EXPECT_THROW(thin_plate(points, nodes, {-1, {16}}, {1}), InputError);
+    EXPECT_THROW(thin_plate(points, nodes, {0, {-1}}, {1}), InputError);
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(thin_plate(points, nodes, {}, &progress), Cancelled);
+    EXPECT_THROW(thin_plate(points, nodes, {}, {0, &progress}), Cancelled);
 }
 
 }  // namespace

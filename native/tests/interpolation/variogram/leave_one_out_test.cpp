@@ -20,7 +20,7 @@ TEST(LeaveOneOut, TheErrorsOfCrossValidation) {
     const ManyPoints data(points);
     const Variogram v{VariogramModel::kMatern32, 500, 4, 0.1, {}, {}};
     for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
-        const Kriged expected = krige_left_out(points, v, {12, 1, drift});
+        const Kriged expected = krige_left_out(points, v, {{12}, drift}, {1});
         for (const int threads : {1, 3}) {
             const LeaveOneOut some(data, 12, 100, {threads, nullptr});
             ASSERT_EQ(some.size(), 100U);

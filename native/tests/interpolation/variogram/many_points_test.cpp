@@ -87,7 +87,7 @@ TEST(ManyPoints, RepeatedOnesCountOnce) {
     EXPECT_EQ(a.experimental.gamma, b.experimental.gamma);
     FitOptions options;
     options.are_apart = true;
-    EXPECT_EQ(fit_variogram(once, {}, nullptr, options).variogram.range, b.variogram.range);
+    EXPECT_EQ(fit_variogram(once, {}, options).variogram.range, b.variogram.range);
     EXPECT_EQ(mean_spacing(once, true), mean_spacing(points));
     points.push_back({points[0][0], points[0][1], 1e9});
     EXPECT_THROW(ManyPoints{points}, InputError);

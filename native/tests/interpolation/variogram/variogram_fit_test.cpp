@@ -165,7 +165,7 @@ TEST(VariogramFit, VariancesAreHonest) {
         for (int i = 0; every > 0 && i < 900; i += every)
             points[static_cast<std::size_t>(i)][2] += 4;
         const Variogram v = fit_variogram(points, {}).variogram;
-        const Kriged found = krige_left_out(points, v, {32, 0});
+        const Kriged found = krige_left_out(points, v, {{32}});
         int within = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (std::abs(found.z[i] - points[i][2]) <= 2 * std::sqrt(found.variance[i])) ++within;
@@ -182,7 +182,7 @@ TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
     FitOptions options;
     options.finds_anisotropy = true;
     // What is given beside it does not count.
-    const FittedVariogram fitted = fit_variogram(points, {3, 10}, nullptr, options);
+    const FittedVariogram fitted = fit_variogram(points, {3, 10}, options);
     expect_usable(fitted);
     const Anisotropy& found = fitted.variogram.anisotropy;
     EXPECT_NEAR(found.ratio, 2.5, 0.8);
@@ -192,7 +192,7 @@ TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
     // Distances of the experimental values are those under it.
     EXPECT_EQ(fitted.experimental.gamma, experimental_variogram(points, found).gamma);
     const auto square = [&](const Variogram& v) {
-        const Kriged kriged = krige_left_out(points, v, {32, 0});
+        const Kriged kriged = krige_left_out(points, v, {{32}});
         double sum = 0;
         for (std::size_t i = 0; i < points.size(); ++i)
             sum += std::pow(kriged.z[i] - points[i][2], 2);
@@ -210,7 +210,7 @@ TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
     for (const Points& points :
          {drawn_field({VariogramModel::kMatern32, 60, 4, 0, {}}, 900, 200, 3), hills(20, 100),
           line}) {
-        const FittedVariogram found = fit_variogram(points, {}, nullptr, options);
+        const FittedVariogram found = fit_variogram(points, {}, options);
         const FittedVariogram plain = fit_variogram(points, {});
         EXPECT_EQ(found.variogram.anisotropy.ratio, 1);
         EXPECT_EQ(found.variogram.range, plain.variogram.range);
@@ -237,14 +237,14 @@ TEST(VariogramFit, ARougherPartWhereItTellsPointsBetter) {
 TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbors) {
     const Points points = hills(3000, 100);
     for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
-        const Variogram one = fit_variogram(points, {}, nullptr, {drift, 16, 1}).variogram;
-        const Variogram three = fit_variogram(points, {}, nullptr, {drift, 16, 3}).variogram;
+        const Variogram one = fit_variogram(points, {}, {drift, 16}, {1}).variogram;
+        const Variogram three = fit_variogram(points, {}, {drift, 16}, {3}).variogram;
         EXPECT_EQ(one.model, three.model);
         EXPECT_EQ(one.range, three.range);
         EXPECT_EQ(one.sill, three.sill);
         EXPECT_EQ(one.nugget, three.nugget);
     }
-    EXPECT_THROW(fit_variogram(points, {}, nullptr, {Drift::kConstant, 0}), InputError);
+    EXPECT_THROW(fit_variogram(points, {}, {Drift::kConstant, 0}), InputError);
 }
 
 TEST(VariogramFit, SameEveryTime) {
@@ -272,7 +272,7 @@ TEST(VariogramFit, Refuses) {
     EXPECT_EQ(kind(hills(9, 1), {1, HUGE_VAL}), "anisotropy");
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(fit_variogram(hills(50, 1), {}, &progress), Cancelled);
+    EXPECT_THROW(fit_variogram(hills(50, 1), {}, {}, {0, &progress}), Cancelled);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ import numpy as np
 from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
-from ...base.work import native_module
+from ...base.work import native_module, on_threads
 from ...settings.point_file import PointFile, list_of
 from .table_layout import (
     Expected,
@@ -180,7 +180,8 @@ def _pieces(table: Table, reading: tuple, step: Step, gather: Gather) -> PointRo
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
     def read(piece: bytes):
-        return native.read_numbers(piece, 0, len(piece), table.layout.separator, *reading, 1)
+        execution = on_threads(1)
+        return native.read_numbers(piece, 0, len(piece), table.layout.separator, *reading, execution)
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts

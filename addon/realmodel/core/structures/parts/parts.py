@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import body_times, displaced_surfaces
 from ...surfaces.rock_structure import RockStructure, Triangulation
@@ -175,7 +175,7 @@ def divide(work: Work, structures: Structures, box: np.ndarray, threads: int) ->
     native = native_module()
     try:
         sides, low, high = work.native(
-            native.structure_parts, _box_complex(*box), structures.native(), threads=threads
+            native.structure_parts, _box_complex(*box), structures.native(), execution=on_threads(threads)
         )
     except native.InputError as error:
         raise refused_structure(error, structures) from error

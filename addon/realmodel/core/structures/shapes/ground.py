@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...heights import heights
 from ...project.project import Surface, surface_item
 from ...settings.methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
@@ -52,7 +52,7 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> n
     for entry, number in known:
         shape = entry.surfaces[number]
         if shape is not None:
-            own = work.native(native_module().surface_heights, *shape, plan, threads=threads)
+            own = work.native(native_module().surface_heights, *shape, plan, execution=on_threads(threads))
             found = np.where(np.isnan(found), own, found)
         value = _constant(entry.rock.surfaces[number])
         if value is not None and not len(_data(entry, number)):

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.sides import FaultShape, fault_sides
 
 _RINGS = 2  # of triangles around those in which a compartment is
@@ -28,7 +28,7 @@ def triangles_met(work: Work, fault: FaultShape, low, high, triangles, threads: 
     heights."""
     triangles = np.ascontiguousarray(triangles)
     return work.native(
-        native_module().structure_beyond, fault.native(), low, high, triangles, threads=threads
+        native_module().structure_beyond, fault.native(), low, high, triangles, execution=on_threads(threads)
     )
 
 

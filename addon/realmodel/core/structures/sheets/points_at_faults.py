@@ -15,7 +15,7 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
 from ...base.triangles import median_edge, nearest_triangles
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
 from ...surfaces.sides import FaultShape, sides_of
 
@@ -230,7 +230,14 @@ def expected_heights(
     """(N,) the heights at plan points (N, 2) of splines through the nearest of points (P, 3), no two of which
     are at one place."""
     spline, plan = native_module().spline, np.ascontiguousarray(plan)
-    return work.native(spline, points, plan, smoothing=smoothing, neighbours=_EXPECTED_BY, threads=threads)
+    return work.native(
+        spline,
+        points,
+        plan,
+        smoothing=smoothing,
+        neighborhood=(_EXPECTED_BY, 0, 0.0),
+        execution=on_threads(threads),
+    )
 
 
 def distances(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tuple[float, np.ndarray]:

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "realmodel/base/execution.hpp"
+
+namespace realmodel::bindings {
+
+/// What Python knows as Execution: a call's number of threads, and its progress, which another
+/// thread of Python watches.
+struct WatchedExecution {
+    int threads = 0;
+    Progress progress;
+};
+
+/// How a call is run; null: on all threads, and nobody watches.
+inline Execution run(WatchedExecution* execution) {
+    return execution == nullptr ? Execution{} : Execution{execution->threads, &execution->progress};
+}
+
+}  // namespace realmodel::bindings
