@@ -131,7 +131,9 @@ class MeshRows:
         raise AssertionError("there is none")
 
 
-def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
+def mesh_of_faces(
+    file: Path, vertices, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None
+) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
     found = MeshRows(file)

@@ -57,7 +57,9 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
     try:
         arrays = _Arrays(root, appended)
         for piece in root.iter("Piece"):
-            places = arrays.values(piece.find("Points/DataArray")).reshape(-1, 3)
+            if (points := piece.find("Points/DataArray")) is None:
+                raise ValueError("a piece has no points")
+            places = arrays.values(points).reshape(-1, 3)
             faces += [[corner + first for corner in face] for face in _faces(arrays, piece)]
             vertices.append(places)
             first += len(places)

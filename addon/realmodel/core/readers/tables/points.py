@@ -173,7 +173,9 @@ def _read_rows(
             raise _refused(table, columns, mark, error) from error
 
 
-def _pieces(table: Table, reading: tuple, step: Step, gather: Gather) -> PointRows:
+def _pieces(
+    table: Table, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: Gather
+) -> PointRows:
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
     beginning of the file. reading: its decimal mark, columns, filters and missing values."""
     native = native_module()
