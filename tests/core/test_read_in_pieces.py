@@ -420,9 +420,9 @@ def test_room_on_a_full_disk(monkeypatch, tmp_path):
     with MappedArrays(tmp_path / "arrays") as arrays:
         monkeypatch.setattr(os, "posix_fallocate", refused(errno.ENOSPC))
         with pytest.raises(OutputFailed, match="No space left on device; make room"):
-            arrays.room((5, 2), float)
+            arrays.zeros((5, 2), float)
         monkeypatch.setattr(os, "posix_fallocate", refused(errno.EOPNOTSUPP))
-        found = arrays.room((5, 2), float)
+        found = arrays.zeros((5, 2), float)
         found[3] = 7
         assert found.sum() == 14
 

@@ -37,7 +37,7 @@ from . import (
     settings,
     shapes,
     structure_settings,
-    surface_figures,
+    surface_statistics,
     uncertainty,
     viewports,
     weathering,
@@ -53,8 +53,8 @@ class Prepared:
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
     PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
-    and the stamp of the file. figures: for each surface the text of surface_figures. attributes: by place the
-    attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by place
+    the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
     `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 
@@ -101,7 +101,7 @@ def prepare(model, composed, stage=None, threads=0):
     for place in composed.edited:  # the digits lost in Blender's 32 bits
         entry = project_settings.entry_at(model.project, place)
         prepared.stored[place] = (project_settings.packed(entry), "")
-    prepared.figures = surface_figures.of_model(model)
+    prepared.figures = surface_statistics.of_model(model)
     prepared.compartments = compartments.of_model(model)
     if stage is not None:
         at_stage = build_stage(model, stage, cells="blocks")

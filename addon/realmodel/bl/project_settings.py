@@ -377,7 +377,7 @@ def fill(scene, project):
             add_rock(group, rock)
         structure_settings.fill(scene, project)
     settings.follow_youngest(scene)
-    names.know(scene)
+    names.store(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.text import Step, no_step, read_bytes
-from .damaged_mesh import UNREADABLE, Damaged, unreadable
+from .damaged_mesh import UNREADABLE, DamagedError, unreadable
 from .triangle_mesh import TriangleMesh, mesh_of_corners
 
 _CORNER = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
@@ -39,9 +39,9 @@ def read_stl(file: str | Path, step: Step = no_step) -> TriangleMesh:
         else:
             corners = np.array(_CORNER.findall(raw)).astype(np.float64).reshape(-1, 3)
             if len(corners) != 3 * raw.count(_END):
-                raise Damaged("a triangle does not have three vertices", line=_wrong_facet(raw))
+                raise DamagedError("a triangle does not have three vertices", line=_wrong_facet(raw))
             if not len(corners):
-                raise Damaged("it has no triangles", line=1)
+                raise DamagedError("it has no triangles", line=1)
     except UNREADABLE as error:
         raise unreadable(file, "STL", error) from error
     step(0.5)
