@@ -20,9 +20,10 @@ def rocks_of(case):
     return [case] if isinstance(case, Stack) else list(case)
 
 
-def built(case, **options):
-    """What the native builder makes of a case; options: cells, threads."""
+def built(case, threads=0, **options):
+    """What the native builder makes of a case; options: cells."""
     native = places.native()
+    options["execution"] = native.Execution(threads)
     if isinstance(case, Stack):
         rules = list(case.rules)
         return native.build_stack(case.surfaces, case.region, case.base_elevation, rules=rules, **options)

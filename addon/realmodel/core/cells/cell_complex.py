@@ -86,7 +86,7 @@ class CellComplex:
             self.face_vertices,
             self.face_cells,
             len(self.cell_block),
-            on_threads(threads),
+            execution=on_threads(threads),
         )
 
     def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

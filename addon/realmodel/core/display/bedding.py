@@ -95,7 +95,7 @@ def bedding_of(
         history,
         layer[block],
         np.zeros(0, np.int32) if of_corners is None else of_corners,
-        on_threads(threads),
+        execution=on_threads(threads),
     )
     grows = (model.surface_kind == 0) | np.isin(np.arange(len(model.surface_kind)), surface)
     is_top = (model.face_cells[faces, 1] < 0) & (model.face_surface[faces] >= 0)

@@ -190,7 +190,7 @@ def _shells(
             count,
             tuple(float(value) for value in origin),
             shrink,
-            on_threads(threads),
+            execution=on_threads(threads),
         )
         there = [arrays for arrays in shells if arrays is not None]
         if not there:

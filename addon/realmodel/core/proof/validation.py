@@ -214,7 +214,7 @@ def validate(
                         _block_of_surface(model),
                         int(places),
                         int(seed),
-                        on_threads(threads),
+                        execution=on_threads(threads),
                     )
         tests = [_test(entry, model) for entry in found]
         return sorted(tests, key=lambda test: test.number)

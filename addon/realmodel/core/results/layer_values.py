@@ -55,6 +55,6 @@ def at_places(vertices: np.ndarray, triangles: np.ndarray, plan: np.ndarray, thr
         np.ascontiguousarray(vertices, np.float64),
         np.ascontiguousarray(triangles, np.int32),
         np.ascontiguousarray(plan, np.float64),
-        on_threads(threads),
+        execution=on_threads(threads),
     )
     return np.asarray(found)
