@@ -295,8 +295,11 @@ from realmodel.core.project.project import Surface
 from realmodel.core.tiles.grid import tile_grid
 from realmodel.core.tiles.tile_model import PLAN, write_certain_heights, write_parts, write_windows
 from realmodel.core.base.work import run
-from realmodel.core.heights import heights
+from realmodel.core.heights import Task, heights
 import numpy as np
+
+def given(work, points, nodes, settings):
+    return heights(settings[0], Task(work, points, nodes, settings[1], 1))
 
 def pieces(count):
     random = np.random.default_rng(1)
@@ -345,7 +348,7 @@ with MappedArrays(folder / "arrays") as arrays:
         done.append([method, len(near), run(lambda work: found.heights(work, near, nodes, 1)).tolist()])
     by_triangles, at, z = certain(points, arrays)
     try:
-        run(lambda work: heights(work, points, nodes, *settings, 1))
+        run(lambda work: given(work, points, nodes, settings))
         fits = True
     except (BuildFailed, MemoryError):  # not enough memory
         fits = False
@@ -353,9 +356,9 @@ with MappedArrays(folder / "arrays") as arrays:
     whole = []
     for method, *_ in done:
         settings = Surface("S", method=method, points=points[:9]).method_options()
-        whole.append(run(lambda work: heights(work, points, nodes, *settings, 1)).z.tolist())
+        whole.append(run(lambda work: given(work, points, nodes, settings)).z.tolist())
     done.append(["natural_neighbour", 1000, z])
-    whole.append(run(lambda work: heights(work, points, at, *by_triangles, 1)).z.tolist())
+    whole.append(run(lambda work: given(work, points, at, by_triangles)).z.tolist())
 print(json.dumps([done, fits, whole]))
 """
 

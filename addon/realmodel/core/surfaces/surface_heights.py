@@ -105,7 +105,8 @@ def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | No
             result = _on_trend(work, entry, number, trend, others, threads)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
+            task = Task(work, surface.points, nodes, settings, threads, triangles, surfaces=others)
+            result = give(method, task)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.points):
             attributes = trend.attributes
@@ -138,7 +139,7 @@ def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, thread
         if entry.draws is not None:  # the trend is drawn, too: nothing is the same in the next realization
             give = replace(entry.draws[number], known={}).heights
         settings = checked_options(trend.method, trend.options)
-        result = give(work, away, nodes, trend.method, settings, threads, triangles, {})
+        result = give(trend.method, Task(work, away, nodes, settings, threads, triangles))
         result = replace(result, z=trend.z + result.z)
     task = Task(work, points, nodes, surface.method_options()[1], threads, triangles, surfaces=others)
     border = result.z

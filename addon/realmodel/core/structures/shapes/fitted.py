@@ -11,7 +11,7 @@ from ...base.algebra import dot, norm, principal_axes
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.work import Work
-from ...heights import heights
+from ...heights import Task, heights
 from ...settings.mesh_sizes import AUTO
 from ...settings.meshers import DEFAULT_MESHER
 from ...settings.methods import checked_options
@@ -159,7 +159,8 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     outline = _outline(local[:, :2], extend, extend_sideways)
     nodes, triangles = mesh_rings(work, [outline], AUTO, DEFAULT_MESHER, points=local[:, :2])
     options = checked_options(_METHOD, {})
-    found = heights(work, np.ascontiguousarray(local), nodes, _METHOD, options, threads, triangles)
+    task = Task(work, np.ascontiguousarray(local), nodes, options, threads, triangles)
+    found = heights(_METHOD, task)
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
     return vertices, triangles
 
