@@ -19,7 +19,7 @@ from ..core import (
     load_project,
 )
 from ..core.base.atomic import Outputs, make_folder
-from ..core.exporters import FORMATS, format_for, output_target, write_model
+from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import model_report, write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
@@ -283,15 +283,10 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
 
 
 def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
+    given = ExportOptions(options.cell_size, options.contour_interval, cells)
     for path in options.export:
         write_model(
-            model,
-            path,
-            outputs,
-            lambda share, path=path: progress(1.0, f"writing {path.name}"),
-            options.cell_size,
-            options.contour_interval,
-            cells,
+            model, path, outputs, given, lambda share, path=path: progress(1.0, f"writing {path.name}")
         )
 
 

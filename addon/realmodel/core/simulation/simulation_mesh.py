@@ -14,7 +14,7 @@ from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..settings.mesh_sizes import check_mesher, local_lengths
 from ..settings.method_options import check_threads
-from ..surfaces.planar_mesh import mesh_rings
+from ..surfaces.planar_mesh import MeshOptions, mesh_rings
 from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
 from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals
@@ -111,9 +111,8 @@ def simulation_mesh(
         inner = lines.inner_lines
         plan_sizes = _of_plan(sizes, inner)
         with work.phase(0.2, 0.5, "meshing the plan"):
-            vertices, triangles = mesh_rings(
-                work, lines.rings, float(edge_length), mesher, size=plan_sizes, constraints=inner
-            )
+            options = MeshOptions(float(edge_length), mesher, size=plan_sizes, constraints=inner)
+            vertices, triangles = mesh_rings(work, lines.rings, options)
         with work.phase(0.5, 1.0, "filling columns"):
             made = call_native(
                 work,

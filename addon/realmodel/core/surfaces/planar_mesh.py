@@ -24,6 +24,36 @@ class MeshEstimate:
     memory: int
 
 
+@dataclass(frozen=True)
+class MeshOptions:
+    """How a region is meshed, as the arguments of mesh_region say."""
+
+    edge_length: float | str | None
+    mesher: str = DEFAULT_MESHER
+    triangles: int | None = None
+    size: Iterable[Mapping] = ()
+    constraints: Iterable = ()
+    constraint_points: np.ndarray | None = None
+    points: np.ndarray | None = None
+
+    def of_native(self, rings: Sequence[np.ndarray]) -> dict:
+        """The arguments of the native mesher. Raises InputRefused and UsageError."""
+        lines = [places_of(line, f"constraint {number}") for number, line in enumerate(self.constraints)]
+        given = self.constraint_points
+        given = None if given is None else places_of(given, "constraint_points")
+        length, wanted, density = size_of_edges(self.edge_length, self.triangles, self.points)
+        return {
+            "rings": list(rings),
+            "edge_length": length,
+            "mesher": self.mesher,
+            "triangles": wanted,
+            "sizes": local_lengths(self.size, lines, given),
+            "constraints": lines,
+            "constraint_points": given,
+            "density": density,
+        }
+
+
 def mesh_region(
     outline,
     holes=(),
@@ -67,9 +97,8 @@ def mesh_region(
     constraint is none, or where the mesh would not fit the memory; UsageError; Cancelled.
     """
     check_mesher(mesher)
-    asked = _checked(
-        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
-    )
+    options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
+    asked = options.of_native(region_rings(outline, holes))
 
     def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
         with work.phase(0.0, 1.0, "meshing"):
@@ -93,28 +122,15 @@ def estimate_mesh(
     """The expected size of the mesh of mesh_region with the same arguments. Raises the same errors, as far as
     they come before meshing."""
     check_mesher(mesher)
-    asked = _checked(
-        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
-    )
+    options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
+    asked = options.of_native(region_rings(outline, holes))
     made, memory = run(lambda work: _native_call(work, native_module().estimate_region_mesh, asked))
     return MeshEstimate(round(made), round(memory))
 
 
-def mesh_rings(
-    work: Work,
-    rings: list[np.ndarray],
-    edge_length: float | str | None,
-    mesher: str,
-    *,
-    triangles: int | None = None,
-    size: Iterable[Mapping] = (),
-    constraints: Iterable = (),
-    constraint_points=None,
-    points=None,
-):
+def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions):
     """mesh_region within a work that is already running, from checked rings."""
-    asked = _asked(rings, edge_length, mesher, triangles, size, constraints, constraint_points, points)
-    return _native_call(work, native_module().mesh_region, asked)
+    return _native_call(work, native_module().mesh_region, options.of_native(rings))
 
 
 def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -145,36 +161,6 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
         return native.triangulate_polygon(rings)
     except native.InputError as error:
         raise refused_region(error) from error
-
-
-def _checked(outline, holes, *others) -> dict:
-    return _asked(region_rings(outline, holes), *others)
-
-
-def _asked(
-    rings: Sequence[np.ndarray],
-    edge_length,
-    mesher: str,
-    triangles,
-    size,
-    constraints,
-    constraint_points,
-    points,
-) -> dict:
-    """The arguments of the native mesher. Raises InputRefused and UsageError."""
-    lines = [places_of(line, f"constraint {number}") for number, line in enumerate(constraints)]
-    given = None if constraint_points is None else places_of(constraint_points, "constraint_points")
-    length, wanted, density = size_of_edges(edge_length, triangles, points)
-    return {
-        "rings": list(rings),
-        "edge_length": length,
-        "mesher": mesher,
-        "triangles": wanted,
-        "sizes": local_lengths(size, lines, given),
-        "constraints": lines,
-        "constraint_points": given,
-        "density": density,
-    }
 
 
 def _native_call(work: Work, function, asked: dict):

@@ -23,7 +23,7 @@ from ..readers import Picks, read_boreholes
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
-from .planar_mesh import mesh_rings, triangulate_rings
+from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from .rock_structure import RockStructure
 from .surface_heights import (
     Triangulation,
@@ -243,17 +243,16 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         return
     try:
         if rock.interpolates:
-            entry.region = mesh_rings(
-                work,
-                rock.rings(),
+            options = MeshOptions(
                 rock.edge_length,
                 rock.mesher,
-                triangles=rock.triangles,
-                size=rock.size,
-                constraints=rock.constraint_lines(),
-                constraint_points=rock.constraint_points(),
-                points=_density_points(rock) if rock.edge_length == AUTO else None,
+                rock.triangles,
+                rock.size,
+                rock.constraint_lines(),
+                rock.constraint_points(),
+                _density_points(rock) if rock.edge_length == AUTO else None,
             )
+            entry.region = mesh_rings(work, rock.rings(), options)
         else:
             entry.region = triangulate_rings(rock.rings())
     except InputRefused as error:

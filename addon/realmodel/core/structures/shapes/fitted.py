@@ -13,9 +13,8 @@ from ...base.errors import InputRefused
 from ...base.work import Work
 from ...heights import Task, heights
 from ...settings.mesh_sizes import AUTO
-from ...settings.meshers import DEFAULT_MESHER
 from ...settings.methods import checked_options
-from ...surfaces.planar_mesh import mesh_rings
+from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 from ...surfaces.wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
@@ -157,7 +156,7 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     along, down, normal = plane_axes(axes[2])
     local = np.column_stack([dot(points - middle, axis) for axis in (along, down, normal)])
     outline = _outline(local[:, :2], extend, extend_sideways)
-    nodes, triangles = mesh_rings(work, [outline], AUTO, DEFAULT_MESHER, points=local[:, :2])
+    nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
     task = Task(work, np.ascontiguousarray(local), nodes, options, threads, triangles)
     found = heights(_METHOD, task)
