@@ -24,9 +24,11 @@ foreach(program IN LISTS fuzzing_programs)
     add_executable(${program} fuzz/programs/${program}.cpp)
     target_link_libraries(${program} PRIVATE realmodel_fuzzing realmodel_warnings)
 endforeach()
-# A debugger that has stopped in it can then call the functions of src/strata/dump.hpp.
+# A debugger that has stopped in one can then call the functions of src/*/dump.hpp.
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
-    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump)
+    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump,--undefined=realmodel_cutting_dump)
+    target_link_options(boolean_fuzzer PRIVATE
+        -Wl,--undefined=realmodel_dump_pieces,--undefined=realmodel_dump_regions)
 endif()
 if(TARGET coverage_fuzzer)
     target_link_options(coverage_fuzzer PRIVATE -fsanitize=fuzzer)

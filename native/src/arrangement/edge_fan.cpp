@@ -73,6 +73,7 @@ void find_fan(const exact::SpacePoints& points, exact::SpacePointId a, exact::Sp
         if (i == fan.order.size() || compare(fan.order[i - 1], fan.order[i]) != 0)
             fan.blade_begins.push_back(i);
     }
+    assert(quarter[fan.order.front()] == 0 && fan.blade_begins.back() == items.size());
 }
 
 }  // namespace realmodel::arrangement

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "arrangement/polygons.hpp"
+#include "base/counting_sort.hpp"
 #include "exact/space_points.hpp"
+#include "realmodel/base/array.hpp"
 
 namespace realmodel::arrangement {
 
@@ -23,15 +28,59 @@ struct EdgeUse {
     std::size_t behind() const { return 1 - ahead(); }
 };
 
+/// Edges in order, and all uses of each.
+struct EdgeUses {
+    Array<EdgeUse> uses;
+    std::vector<std::size_t> begins{0};  ///< of each edge in `uses`, and the end of the last
+
+    std::size_t size() const { return begins.size() - 1; }
+    std::span<const EdgeUse> operator[](std::size_t edge) const {
+        return {uses.data() + begins[edge], begins[edge + 1] - begins[edge]};
+    }
+    const std::array<NodeId, 2>& ends(std::size_t edge) const { return uses[begins[edge]].edge; }
+    /// The uses of the edge between two nodes (lesser, greater).
+    std::span<const EdgeUse> between(const std::array<NodeId, 2>& edge) const {
+        return std::ranges::equal_range(std::span(uses.data(), uses.size()), edge, {},
+                                        &EdgeUse::edge);
+    }
+};
+
 /// Calls visit(use) for all edges of some loops.
 template <class Loops, class Visit>
 void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];
+            assert(a != b);
             visit(EdgeUse{unordered(a, b), item, static_cast<std::int8_t>(a < b ? 1 : -1)});
         }
     }
+}
+
+/// The edges of some polygons, which are numbered from 0 on as items.
+/// @param nodes    how many there are
+/// @param loop_of  loop_of(item): its nodes
+/// @throws InputError kind too_large, Cancelled
+template <class LoopOf>
+EdgeUses edges_of(std::size_t items, std::size_t nodes, const LoopOf& loop_of,
+                  const Execution& execution) {
+    constexpr std::size_t kChunk = 1 << 12;
+    auto sorted = sorted_in_buckets<EdgeUse>(
+        nodes, (items + kChunk - 1) / kChunk,
+        [&](std::size_t chunk, const auto& put) {
+            for (std::size_t i = chunk * kChunk; i < std::min(items, (chunk + 1) * kChunk); ++i) {
+                each_edge(std::span(&loop_of(i), 1), static_cast<std::int32_t>(i),
+                          [&](const EdgeUse& use) { put(index(use.edge[0]), use); });
+            }
+        },
+        execution);
+    EdgeUses edges{std::move(sorted.values)};
+    for (std::size_t i = 1; i <= edges.uses.size(); ++i) {
+        if (i == edges.uses.size() || edges.uses[i].edge != edges.uses[i - 1].edge)
+            edges.begins.push_back(i);
+    }
+    checked_number(edges.size(), "edges");
+    return edges;
 }
 
 /// Half of a plane that begins at an edge.

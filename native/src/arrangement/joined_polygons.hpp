@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <span>
 #include <utility>
 #include <vector>
@@ -85,6 +86,7 @@ public:
             outline_.clear();
             std::size_t e = start;
             do {
+                assert(done_[e] == 0 && (outline_.empty() || outline_.back().to == edges_[e].from));
                 done_[e] = 1;
                 outline_.push_back(edges_[e]);
                 e = index(edges_[e].next);

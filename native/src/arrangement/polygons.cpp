@@ -30,23 +30,6 @@ PlanePosition View::rounding(std::span<const Position> positions) const {
     return largest;
 }
 
-Position polygon_normal(std::span<const Position> corners) {
-    Position sum{0, 0, 0};
-    const Position& o = corners[0];
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-        Position a, b;
-        for (std::size_t k = 0; k < 3; ++k) {
-            a[k] = corners[i][k] - o[k];
-            b[k] = corners[i + 1][k] - o[k];
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-            sum[k] += a[l] * b[m] - a[m] * b[l];
-        }
-    }
-    return sum;
-}
-
 double rounding_of(std::span<const Position> positions) {
     double largest = 0;
     for (const Position& p : positions) {
@@ -54,17 +37,6 @@ double rounding_of(std::span<const Position> positions) {
             largest = std::max(largest, std::abs(x));
     }
     return kComputedUlps * ulp(largest);
-}
-
-double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c) {
-    Position u, v, w;
-    for (std::size_t k = 0; k < 3; ++k) {
-        u[k] = a[k] - o[k];
-        v[k] = b[k] - o[k];
-        w[k] = c[k] - o[k];
-    }
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
 }  // namespace realmodel::arrangement

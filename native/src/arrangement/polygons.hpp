@@ -3,33 +3,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 
 namespace realmodel::arrangement {
 
-using Position = std::array<double, 3>;
-using PlanePosition = std::array<double, 2>;
+using Position = Vec3;
+using PlanePosition = Vec2;
 using NodeId = std::int32_t;
 
-/// An edge as (lesser, greater) node.
-template <class Node>
-std::array<Node, 2> unordered(Node a, Node b) {
-    return {std::min(a, b), std::max(a, b)};
-}
-
-inline Position minus(const Position& a, const Position& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-inline Position cross(const Position& a, const Position& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double dot(const Position& a, const Position& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/// How far a cross product of two steps may be off where each corner is by `rounding`.
+inline double slack(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c,
+                    const PlanePosition& rounding) {
+    return rounding[0] * (std::abs(b[1] - a[1]) + std::abs(c[1] - b[1])) +
+           rounding[1] * (std::abs(b[0] - a[0]) + std::abs(c[0] - b[0]));
 }
 
 /// Many polygons in one array.
@@ -69,14 +61,6 @@ public:
 private:
     std::size_t u_, v_;
 };
-
-/// The sum of the normals of a polygon's triangles, twice its area long (Newell's formula, about
-/// the first corner so that coordinates far from the origin cost no digits).
-Position polygon_normal(std::span<const Position> corners);
-
-/// Six times the volume of a tetrahedron; positive where a, b, c turn counter-clockwise seen from
-/// outside.
-double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c);
 
 /// How far apart rounding may put things that coincide: a few units in the last place of
 /// the largest coordinate.

@@ -3,6 +3,7 @@
 #include "arrangement/triangle_arrangement.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/parallel.hpp"
@@ -112,6 +113,7 @@ bool TriangleArrangement::are_folded_apart(const Triangle& a, const Triangle& b)
 TriangleArrangement::Interval TriangleArrangement::interval_of(const Triangle& own,
                                                                const Sides& sides,
                                                                std::int32_t plane) {
+    assert(sides.above < 3 && sides.below < 3 && sides.above + sides.below > 0);
     Interval interval{};
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3, before = (i + 2) % 3;
@@ -150,6 +152,7 @@ int TriangleArrangement::order(const Triangle& a, const Sides& sides, const End&
 
 std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersection(
     std::int32_t one, std::int32_t other) const {
+    assert(one != other);
     const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
     if (a.facing == 0 || b.facing == 0) return std::nullopt;
     const auto shared = std::count_if(a.corners.begin(), a.corners.end(), [&b](SpacePointId p) {
@@ -204,7 +207,7 @@ void TriangleArrangement::clip_edges(std::int32_t edges_of, std::int32_t into) {
         clip_segment(corners[i], corners[(i + 1) % 3], edges_of, into);
 }
 
-/// Where a interval of one triangle runs over another in its plane.
+/// Where a segment of one triangle runs over another in its plane.
 void TriangleArrangement::clip_segment(SpacePointId p, SpacePointId q, std::int32_t of,
                                        std::int32_t into) {
     const Triangle& t = triangles_[index(into)];

@@ -15,6 +15,27 @@ namespace realmodel::arrangement {
 
 using exact::SpacePointId;
 
+// Notation of what divides triangles; that of cells of space is in space_cells.hpp.
+//
+//   point     a point of space with exact coordinates (exact/space_points.hpp)
+//   facing    which way a triangle turns seen along its axis, along which it is seen best: 1 left,
+//             -1 right, 0 it has no area
+//   segment   what two triangles that cross have in common: on the line of both planes, from where
+//             one of them passes the other's plane from below (up) or back (down) to the next such
+//             End; or where an edge of one runs over the other in their common plane
+//   line      of a triangle: one of its segments, or one of its edges
+//   node      a corner of a triangle, an end of its segments, or where these cross
+//   edge      a part of a line between two nodes that follow one another on it
+//   half-edge an edge in one of its directions (PlaneGraph); its twin is the other one. The next of
+//   a
+//             half-edge is the one with which the region to its left goes on
+//   loop      half-edges that follow one another and close: an outline turns as its triangle does,
+//   a
+//             hole the other way round
+//   region    what an outline and the holes in it bound: nothing crosses it. The regions of a
+//   triangle
+//             tile it: each edge within has one region on either side
+
 /// A part of a triangle that nothing crosses. The outline turns as the triangle does, holes follow
 /// the other way round.
 struct Region {

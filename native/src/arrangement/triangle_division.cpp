@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles divided along what they intersect.
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <numeric>
 
@@ -435,13 +436,47 @@ public:
             regions.triangles.push_back(triangle);
             return;
         }
+        [[maybe_unused]] const std::size_t first = regions.size();
         std::sort(edges.begin(), edges.end());
         edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
         graph_.add_regions({t.axis, t.facing}, edges, regions.loops);
         regions.triangles.resize(regions.loops.size(), triangle);
+        assert(tile(t, regions, first));
     }
 
 private:
+    /// Whether regions tile a triangle: of their edges, those have no twin that lie on its outline.
+    bool tile(const Triangle& t, const Regions& regions, std::size_t first) const {
+        std::vector<std::pair<Edge, int>> edges;
+        for (std::size_t r = first; r < regions.size(); ++r) {
+            for (const auto loop : regions.loops[r]) {
+                for (std::size_t i = 0; i < loop.size(); ++i) {
+                    const SpacePointId a = loop[i], b = loop[(i + 1) % loop.size()];
+                    edges.push_back({unordered(a, b), a < b ? 1 : -1});
+                }
+            }
+        }
+        std::sort(edges.begin(), edges.end());
+        std::size_t corners = 0;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const auto& [edge, direction] = edges[i];
+            if (i + 1 < edges.size() && edges[i + 1].first == edge) {
+                if (direction != -1 || edges[++i].second != 1) return false;
+                continue;
+            }
+            std::size_t k = 0;
+            while (
+                k < 3 &&
+                (arrangement_.orientation(t, t.corners[k], t.corners[(k + 1) % 3], edge[0]) != 0 ||
+                 arrangement_.orientation(t, t.corners[k], t.corners[(k + 1) % 3], edge[1]) != 0))
+                ++k;
+            if (k == 3) return false;
+            for (const SpacePointId p : edge)
+                corners += std::ranges::count(t.corners, p) != 0 ? 1U : 0U;
+        }
+        return corners == 6;  // each is an end of two edges of the outline
+    }
+
     const TriangleArrangement& arrangement_;
     PlaneGraph graph_;
 };
@@ -517,6 +552,8 @@ void TriangleArrangement::divide(const Execution& execution) {
     intersect_segments(execution);
     sort_all(execution);
     auto edges = exchange_points(execution);
+    assert(std::ranges::all_of(triangles_,
+                               [](const Triangle& t) { return std::ranges::is_sorted(t.points); }));
     find_all_regions(edges, execution);
 }
 

@@ -86,6 +86,8 @@ void PlaneGraph::link() {
         for (std::size_t i = 0; i < out.size(); ++i)
             halves_[index(twin(out[i]))].next = out[(i + out.size() - 1) % out.size()];
     }
+    assert(std::ranges::all_of(
+        halves_, [this](const HalfEdge& h) { return h.next >= 0 && half(h.next).from == h.to; }));
 }
 
 void PlaneGraph::trace_loops() {
@@ -100,6 +102,7 @@ void PlaneGraph::trace_loops() {
         }
         loop_begins_.push_back(loop_nodes_.size());
     }
+    assert(loop_nodes_.size() == halves_.size());
 }
 
 /// The connected components, and the loop around each.
@@ -126,8 +129,11 @@ void PlaneGraph::find_components() {
         // at the leftmost node nothing leaves to the left: that sector is outside
         leftmost_.push_back(first);
         outer_.push_back(half(leaving(first).back()).loop);
+        assert(is_outer_[index(outer_.back())] == 0);
         is_outer_[index(outer_.back())] = 1;
     }
+    // Euler: edges that met elsewhere than at nodes would leave too few faces
+    assert(is_outer_.size() + nodes_.size() == halves_.size() / 2 + 2 * outer_.size());
 }
 
 /// Whether one of two half-edges to the right is below the other where both are above one another.
@@ -172,6 +178,7 @@ void PlaneGraph::find_holes() {
             if (is_before(half(h).from, half(h).to)) met.insert(h);
         }
     }
+    assert(met.empty());
     for (const std::int32_t outer : outer_) {
         if (around[index(outer)] >= 0) holes_.push_back({around[index(outer)], outer});
     }

@@ -19,6 +19,7 @@ public:
     explicit DisjointSets(std::size_t count) : parent_(count) {
         std::iota(parent_.begin(), parent_.end(), 0);
     }
+    std::size_t size() const { return parent_.size(); }
     /// The least member of the set of i.
     std::int32_t find(std::int32_t i) {
         for (;;) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <compare>
 #include <concepts>
@@ -64,6 +66,12 @@ constexpr std::size_t index(Number number) {
 template <class Kind>
 constexpr std::size_t index(Id<Kind> id) {
     return index(id.number());
+}
+
+/// Two numbers or ids, such as the ends of an edge, the lesser first.
+template <class Number>
+constexpr std::array<Number, 2> unordered(Number a, Number b) {
+    return {std::min(a, b), std::max(a, b)};
 }
 
 /// The number of the thing that is added to so many others.

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 namespace realmodel {
+
+/// Sorts elements and keeps each once.
+template <class Element>
+void sort_unique(std::vector<Element>& elements) {
+    std::sort(elements.begin(), elements.end());
+    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+}
 
 /// Keeps of sorted elements those that occur once.
 template <class Element>

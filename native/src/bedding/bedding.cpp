@@ -13,6 +13,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
+#include "base/vectors.hpp"
 #include "bedding/sheet_heights.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
@@ -308,8 +309,7 @@ Corners::Facing Corners::facing(const Polygon& polygon) const {
 /// A position in plan that lies in the polygon, or inside of an upright one, near its corner.
 PlanPosition Corners::beside(const PlanPosition& position, const Polygon& polygon) const {
     const auto [normal, middle] = facing(polygon);
-    PlanPosition found{position[0] + kInwards * (middle[0] - position[0]),
-                       position[1] + kInwards * (middle[1] - position[1])};
+    PlanPosition found = moved(position, kInwards, minus({middle[0], middle[1]}, position));
     const double across = elementary::hypot(normal[0], normal[1]);
     if (across > 0 && std::abs(normal[2]) <= 1e-6 * across) {
         const double step = kBeside * largest_plan_ / across;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
@@ -82,7 +83,7 @@ void SheetHeights::add_triangles(const strata::SurfaceView& sheet) {
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const auto &a = triangle.corner[i], &b = triangle.corner[(i + 1) % 3];
-            triangle.slack[i] = near_ * elementary::hypot(b[0] - a[0], b[1] - a[1]);
+            triangle.slack[i] = near_ * distance(a, b);
         }
         triangles_.push_back(triangle);
         numbers.push_back(v);

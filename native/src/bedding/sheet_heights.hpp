@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/counting_sort.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "spatial/plan_tiles.hpp"
 
@@ -45,8 +46,7 @@ private:
         std::array<double, 3> areas(const PlanPosition& p) const {
             std::array<double, 3> found{};
             for (std::size_t i = 0; i < 3; ++i) {
-                const auto &a = corner[i], &b = corner[(i + 1) % 3];
-                found[i] = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                found[i] = twice_area(corner[i], corner[(i + 1) % 3], p);
             }
             return found;
         }

@@ -2,13 +2,14 @@
 #include "booleans/exact_division.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <utility>
 
+#include "arrangement/triangulate.hpp"
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/space_predicates.hpp"
 
 namespace realmodel::booleans {
@@ -28,11 +29,11 @@ std::size_t shared_corners(const Corners& a, const Corners& b) {
 }
 
 /// Turns of exact points, which loop corners number as nodes.
-class PointTurns : public cutting::CornerTurns {
+class PointTurns : public arrangement::CornerTurns {
 public:
     PointTurns(const SpacePoints& points, const View& view) : points_(points), view_(view) {}
-    int operator()(const cutting::LoopCorner& a, const cutting::LoopCorner& b,
-                   const cutting::LoopCorner& c) const override {
+    int operator()(const arrangement::LoopCorner& a, const arrangement::LoopCorner& b,
+                   const arrangement::LoopCorner& c) const override {
         return view_.sign() * exact::orient2d(points_, view_.axis(), SpacePointId(a.node),
                                               SpacePointId(b.node), SpacePointId(c.node));
     }
@@ -202,21 +203,24 @@ bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
 
 /// A region in triangles of its nodes.
 std::vector<Corners> ExactDivision::divided(const Region& region) const {
-    std::vector<cutting::Loop> loops;
+    std::vector<arrangement::Loop> loops;
     std::vector<arrangement::Position> positions;
     const auto [axis, facing] = arrangement_.view_of(region.triangle);
     arrangement::Position normal{0, 0, 0};
     normal[axis] = facing;
     const View view(normal);
     for (const auto nodes : region.loops) {
-        cutting::Loop& loop = loops.emplace_back();
+        arrangement::Loop& loop = loops.emplace_back();
         for (const SpacePointId p : nodes) {
             positions.push_back(pieces_.points.rounded(p));
             loop.push_back({p.number(), view(positions.back())});
         }
     }
-    std::vector<std::array<cutting::LoopCorner, 3>> found;
-    cutting::triangulate(loops, view.rounding(positions), found, PointTurns(pieces_.points, view));
+    std::vector<std::array<arrangement::LoopCorner, 3>> found;
+    arrangement::triangulate(loops, view.rounding(positions), found,
+                             PointTurns(pieces_.points, view));
+    // corners, and two more for each hole, which a bridge joins with the outline
+    assert(found.size() + 2 == positions.size() + 2 * (loops.size() - 1));
     std::vector<Corners> triangles;
     for (const auto& t : found)
         triangles.push_back(
@@ -234,17 +238,16 @@ void ExactDivision::divide(const std::vector<Meeting>& at) {
     divide_regions();
 }
 
-void ExactDivision::divide_regions() {
+/// Of regions that coincide the first is divided, the others as that one; triangles need not be.
+std::vector<ExactDivision::Copy> ExactDivision::coinciding_regions() const {
     const auto& regions = arrangement_.regions();
-    // the first of regions that coincide is divided, the others as that one
-    std::vector<std::int32_t> as(regions.size(), -1);
-    std::vector<std::uint8_t> is_reversed(regions.size(), 0);
     std::vector<std::vector<SpacePointId>> outlines(regions.size());
     parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t r = begin; r < end; ++r) {
             if (!is_triangle(regions[r])) outlines[r] = canonical(regions[r].loops[0]);
         }
     });
+    std::vector<Copy> copies(regions.size());
     KeyTable table;
     std::vector<std::uint64_t> words;
     for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -256,20 +259,29 @@ void ExactDivision::divide_regions() {
         const auto found = table.find_or_add(
             KeyTable::hash(words), static_cast<std::int32_t>(r),
             [&](std::int32_t other) { return outlines[index(other)] == outlines[r]; });
-        as[r] = found.number;
+        copies[r].of = found.number;
         if (found.is_new) continue;
+        const Region first = regions[index(found.number)];
+        assert(first.loops.size() == regions[r].loops.size());
         const auto view = arrangement_.view_of(regions[r].triangle);
-        const auto& corners = arrangement_.corners(regions[index(as[r])].triangle);
-        is_reversed[r] = exact::orient2d(pieces_.points, view.first, corners[0], corners[1],
-                                         corners[2]) != view.second;
+        const auto& corners = arrangement_.corners(first.triangle);
+        copies[r].is_reversed = exact::orient2d(pieces_.points, view.first, corners[0], corners[1],
+                                                corners[2]) != view.second;
     }
+    return copies;
+}
+
+/// The parts of all triangles, one after another: their regions in triangles, whose points that no
+/// doubles are become the nearest doubles.
+std::vector<std::vector<Piece>> ExactDivision::parts_of_triangles() {
+    const auto& regions = arrangement_.regions();
+    const std::vector<Copy> copies = coinciding_regions();
     std::vector<std::vector<Corners>> triangles(regions.size());
     parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t r = begin; r < end; ++r) {
-            if (as[r] == static_cast<std::int32_t>(r)) triangles[r] = divided(regions[r]);
+            if (copies[r].of == static_cast<std::int32_t>(r)) triangles[r] = divided(regions[r]);
         }
     });
-    // new points become the nearest doubles
     SpacePoints& points = pieces_.points;
     std::vector<SpacePointId> vertex(points.size(), kNone);
     const auto make = [&](const Corners& nodes) {
@@ -286,33 +298,40 @@ void ExactDivision::divide_regions() {
         }
         return piece;
     };
-    std::vector<std::pair<PieceId, std::vector<Piece>>> changed;
-    std::size_t r = 0;
-    for (std::size_t t = 0; t < piece_of_.size(); ++t) {
+    std::vector<std::vector<Piece>> made(piece_of_.size());
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        poll(execution_.progress, r);
+        auto& own = made[index(regions.triangles[r])];
+        const Copy& copy = copies[r];
+        if (copy.of < 0) {
+            const auto nodes = regions[r].loops[0];
+            own.push_back(make({nodes[0], nodes[1], nodes[2]}));
+            continue;
+        }
+        for (Corners nodes : triangles[index(copy.of)]) {
+            if (copy.is_reversed) std::swap(nodes[1], nodes[2]);
+            own.push_back(make(nodes));
+        }
+    }
+    return made;
+}
+
+void ExactDivision::divide_regions() {
+    auto made = parts_of_triangles();
+    std::vector<std::pair<PieceId, std::int32_t>> changed;  // and the triangle
+    for (std::size_t t = 0; t < made.size(); ++t) {
         poll(execution_.progress, t);
         const PieceId id = piece(static_cast<std::int32_t>(t));
-        std::vector<Piece> made;
-        for (; r < regions.size() && index(regions.triangles[r]) == t; ++r) {
-            if (as[r] < 0) {
-                const auto own = regions[r].loops[0];
-                made.push_back(make({own[0], own[1], own[2]}));
-                continue;
-            }
-            for (Corners nodes : triangles[index(as[r])]) {
-                if (is_reversed[r] != 0) std::swap(nodes[1], nodes[2]);
-                made.push_back(make(nodes));
-            }
-        }
         const auto& before = pieces_[id];
-        if (made.size() == 1 && in_order(made[0].corners).first == in_order(before.corners).first)
+        if (made[t].size() == 1 &&
+            in_order(made[t][0].corners).first == in_order(before.corners).first)
             continue;
-        std::erase_if(made, [](const Piece& piece) { return has_equal_corners(piece.corners); });
-        for (Piece& piece : made)
+        std::erase_if(made[t], [](const Piece& piece) { return has_equal_corners(piece.corners); });
+        for (Piece& piece : made[t])
             piece.is_fresh = piece.is_fresh || before.is_fresh;
-        changed.push_back({id, std::move(made)});
+        changed.push_back({id, static_cast<std::int32_t>(t)});
     }
-    std::sort(changed.begin(), changed.end(),
-              [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(changed.begin(), changed.end());
     for (std::size_t i = 0; i < changed.size();) {
         poll(execution_.progress, i);
         const std::int32_t input = changed[i].first.input;
@@ -321,8 +340,8 @@ void ExactDivision::divide_regions() {
         for (std::size_t k = 0; k < old.size(); ++k) {
             if (i < changed.size() &&
                 changed[i].first == PieceId{input, static_cast<std::int32_t>(k)}) {
-                all.insert(all.end(), changed[i].second.begin(), changed[i].second.end());
-                ++i;
+                const auto& own = made[index(changed[i++].second)];
+                all.insert(all.end(), own.begin(), own.end());
             } else {
                 all.push_back(old[k]);
             }

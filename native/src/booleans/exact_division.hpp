@@ -45,6 +45,13 @@ private:
     bool is_contact(const Meeting& met) const;
     bool meet_in_plane(std::int32_t one, std::int32_t other) const;
     std::vector<Corners> divided(const arrangement::Region& region) const;
+    /// Which region a region coincides with: itself where it is the first, -1 of a triangle.
+    struct Copy {
+        std::int32_t of = -1;
+        bool is_reversed = false;  ///< whether the two are seen from different sides
+    };
+    std::vector<Copy> coinciding_regions() const;
+    std::vector<std::vector<Piece>> parts_of_triangles();
     void divide_regions();
 
     Pieces& pieces_;

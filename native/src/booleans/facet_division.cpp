@@ -51,6 +51,7 @@ public:
         for (const Edge& edge : facet.wanted)
             insert_edge(edge);
         improve();
+        assert(is_triangulation(facet));
     }
 
     bool has_area() const { return facing_ != 0; }
@@ -73,6 +74,28 @@ private:
         TriangleId triangle = -1;
         std::size_t k = 0;
     };
+
+    /// Whether neighbors know each other, and triangles are as many as points on edges and two for
+    /// each within, and one.
+    bool is_triangulation(const FacetPoints& facet) const {
+        std::size_t outer = 0, points = 0;
+        for (TriangleId t = 0; index(t) < triangles_.size(); ++t) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Side own{t, k}, other = across(own);
+                if (other.triangle < 0) {
+                    ++outer;
+                } else if (across(other).triangle != t || corner(own, 0) != corner(other, 1) ||
+                           corner(own, 1) != corner(other, 0)) {
+                    return false;
+                }
+            }
+        }
+        for (const SpacePointId p : names_)
+            points += p.has_value() ? 1 : 0;
+        return outer <= 3 + facet.on_edges[0].size() + facet.on_edges[1].size() +
+                            facet.on_edges[2].size() &&
+               triangles_.size() == 2 * points - outer - 2;
+    }
 
     /// The view along the axis in which the triangle is largest, among those in which it has an
     /// area.
@@ -364,10 +387,8 @@ private:
     /// The cotangent of the angle at a point, between two others.
     double cotangent(SpacePointId at, SpacePointId from, SpacePointId to) const {
         const auto &p = global_.rounded(at), &q = global_.rounded(from), &r = global_.rounded(to);
-        const auto u = arrangement::minus(q, p), v = arrangement::minus(r, p);
-        const std::array<double, 3> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                           u[0] * v[1] - u[1] * v[0]};
-        return arrangement::dot(u, v) / std::sqrt(arrangement::dot(normal, normal));
+        const Vec3 u = minus(q, p), v = minus(r, p);
+        return dot(u, v) / length(cross(u, v));
     }
     /// Whether of a quadrilateral's diagonals that from a to b is against Delaunay's rule: the sum
     /// of the angles at c and d is more than half a turn. The same for the same four points in

@@ -2,8 +2,8 @@
 #include "booleans/facets.hpp"
 
 #include <algorithm>
+#include <cassert>
 
-#include "arrangement/polygons.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 
@@ -57,47 +57,29 @@ void find_facets(const Parts& parts, FacetMesh& mesh, const Execution& execution
     }
 }
 
-struct EdgeUse {
-    std::array<std::int32_t, 2> edge;
-    FacetUse use;
-    std::int32_t side;  ///< which edge of its facet
-    auto operator<=>(const EdgeUse&) const = default;
-};
-
 }  // namespace
 
 FacetMesh facets_of(const Parts& parts, const Execution& execution) {
     FacetMesh mesh;
     find_facets(parts, mesh, execution);
     const std::size_t count = mesh.facets.size();
-    checked_number(2 * count, "sides of triangles");  // those who ask number them
-    std::vector<EdgeUse> uses(3 * count);
-    parallel_ranges(count, 1 << 12, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto& corners = mesh.facets[f].corners;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t a = corners[k], b = corners[(k + 1) % 3];
-                const FacetUse use{static_cast<std::int32_t>(f),
-                                   static_cast<std::int8_t>(a < b ? 1 : -1)};
-                uses[3 * f + k] = {arrangement::unordered(a, b), use, static_cast<std::int32_t>(k)};
-            }
-        }
-    });
-    parallel_sort(uses, std::less<>(), execution);
-    mesh.uses.reserve(uses.size());
+    checked_number(2 * count + 1, "sides of triangles");  // those who ask number them
+    mesh.edges = arrangement::edges_of(
+        count,
+        parts.vertices.size(), [&](std::size_t f) -> const auto& { return mesh.facets[f].corners; },
+        execution);
+    assert(mesh.edges.uses.size() == 3 * count);
     mesh.edges_of.resize(count);
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-        poll(execution.progress, i);
-        if (i == 0 || uses[i].edge != uses[i - 1].edge) {
-            if (i > 0) mesh.use_begins.push_back(i);
-            checked_number(mesh.edges.size(), "edges");
-            mesh.edges.push_back(uses[i].edge);
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        poll(execution.progress, e);
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
+            const auto& corners = mesh.facets[index(use.item)].corners;
+            std::size_t k = 0;
+            while (unordered(corners[k], corners[(k + 1) % 3]) != use.edge)
+                ++k;
+            mesh.edges_of[index(use.item)][k] = static_cast<std::int32_t>(e);
         }
-        mesh.uses.push_back(uses[i].use);
-        mesh.edges_of[index(uses[i].use.facet)][index(uses[i].side)] =
-            static_cast<std::int32_t>(mesh.edges.size() - 1);
     }
-    mesh.use_begins.push_back(uses.size());
     return mesh;
 }
 

@@ -2,14 +2,15 @@
 #include "realmodel/booleans/intersect.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "booleans/facet_cells.hpp"
 #include "booleans/facets.hpp"
 #include "booleans/loops.hpp"
 #include "booleans/refinement.hpp"
-#include "booleans/space_cells.hpp"
 #include "exact/double_double_interval.hpp"
 
 namespace realmodel::booleans {
@@ -24,8 +25,8 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         poll(progress, e);
         std::array<int, 2> net{0, 0};
-        for (const FacetUse& use : mesh.uses_of(e)) {
-            const Facet& facet = mesh.facets[index(use.facet)];
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
+            const Facet& facet = mesh.facets[index(use.item)];
             for (std::size_t source = 0; source < 2; ++source)
                 net[source] += use.direction * facet.times[source];
         }
@@ -35,8 +36,24 @@ std::array<bool, 2> closed_surfaces(const FacetMesh& mesh, Progress* progress) {
     return is_closed;
 }
 
+/// Whether the winding of each closed surface changes with each facet by how often that is one of
+/// its parts: around each edge all changes add up to zero.
+[[maybe_unused]] bool are_wound(const FacetMesh& mesh, const FacetCells& cells,
+                                const std::array<bool, 2>& is_closed) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const auto& [below, above] = cells.of_facet[f];
+        for (std::size_t source = 0; source < 2; ++source) {
+            if (is_closed[source] &&
+                cells.winding[index(below)][source] - cells.winding[index(above)][source] !=
+                    mesh.facets[f].times[source])
+                return false;
+        }
+    }
+    return true;
+}
+
 /// The parts of each surface that hang together across edges that are in no loop.
-void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCells& cells,
+void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const FacetCells& cells,
                        Refinement& result, Progress* progress) {
     const std::size_t count = mesh.facets.size();
     // a facet of both surfaces is in a part of either
@@ -45,14 +62,14 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
         poll(progress, e);
         if (loops.of_edge[e] >= 0) continue;
         std::array<std::int32_t, 2> first{-1, -1};
-        for (const FacetUse& use : mesh.uses_of(e)) {
+        for (const arrangement::EdgeUse& use : mesh.edges[e]) {
             for (std::int32_t source = 0; source < 2; ++source) {
-                if (!mesh.facets[index(use.facet)].is_of[index(source)]) continue;
+                if (!mesh.facets[index(use.item)].is_of[index(source)]) continue;
                 std::int32_t& other = first[index(source)];
                 if (other < 0) {
-                    other = 2 * use.facet + source;
+                    other = 2 * use.item + source;
                 } else {
-                    joined.join(other, 2 * use.facet + source);
+                    joined.join(other, 2 * use.item + source);
                 }
             }
         }
@@ -67,7 +84,7 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
             own = static_cast<std::int32_t>(result.sub_surfaces.size());
             const auto& [below, above] = cells.of_facet[index(facet)];
             const bool is_between =
-                below != above && below != SpaceCells::kOutside && above != SpaceCells::kOutside;
+                below != above && below != FacetCells::kOutside && above != FacetCells::kOutside;
             result.sub_surfaces.push_back({source, {}, {}, is_between});
         }
         SubSurface& part = result.sub_surfaces[index(own)];
@@ -81,6 +98,21 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
         std::sort(part.loops.begin(), part.loops.end());
         part.loops.erase(std::unique(part.loops.begin(), part.loops.end()), part.loops.end());
     }
+}
+
+/// Whether triangles pass each edge as often one way as the other.
+[[maybe_unused]] bool is_closed(const std::vector<std::array<std::int32_t, 3>>& triangles,
+                                std::size_t vertices) {
+    const auto edges = arrangement::edges_of(
+        triangles.size(), vertices, [&](std::size_t t) -> const auto& { return triangles[t]; },
+        {1});
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        int net = 0;
+        for (const arrangement::EdgeUse& use : edges[e])
+            net += use.direction;
+        if (net != 0) return false;
+    }
+    return true;
 }
 
 /// Six times the volume between a triangle and an origin.
@@ -97,16 +129,16 @@ DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
 }
 
 void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
-                     const SpaceCells& cells, Refinement& result, Progress* progress) {
+                     const FacetCells& cells, Refinement& result, Progress* progress) {
     result.sub_blocks.resize(cells.size() - 1);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         poll(progress, f);
         const auto& [below, above] = cells.of_facet[f];
         if (below == above) continue;
         const auto& [a, b, c] = mesh.facets[f].corners;
-        if (below != SpaceCells::kOutside)
+        if (below != FacetCells::kOutside)
             result.sub_blocks[index(below) - 1].triangles.push_back({a, b, c});
-        if (above != SpaceCells::kOutside)
+        if (above != FacetCells::kOutside)
             result.sub_blocks[index(above) - 1].triangles.push_back({a, c, b});
     }
     for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
@@ -119,6 +151,7 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
                                      vertices[index(block.triangles[0][0])]);
         }
         block.volume = (sum.high + sum.low) / 6;
+        assert(is_closed(block.triangles, vertices.size()));
         for (std::size_t source = 0; source < 2; ++source)
             block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
@@ -146,7 +179,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
     const FacetMesh mesh = facets_of(parts, execution);
     if (execution.progress != nullptr)
         execution.progress->begin(0.9, 0.99, "finding what is inside");
-    const SpaceCells cells = cells_of(parts.vertices, mesh, execution);
+    const FacetCells cells = cells_of(parts.vertices, mesh, execution);
     Loops loops = find_loops(mesh, execution.progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());
@@ -154,6 +187,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
         result.vertices.insert(result.vertices.end(), p.begin(), p.end());
     std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
     result.is_closed = closed_surfaces(mesh, execution.progress);
+    assert(are_wound(mesh, cells, result.is_closed));
     for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
         poll(execution.progress, t);
         const Part& part = parts.triangles[t];

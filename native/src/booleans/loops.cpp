@@ -2,6 +2,7 @@
 #include "booleans/loops.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -12,8 +13,8 @@ namespace {
 
 bool is_intersection(const FacetMesh& mesh, std::size_t edge) {
     bool of_first = false, of_second = false, of_one = false;
-    for (const FacetUse& use : mesh.uses_of(edge)) {
-        const auto& is_of = mesh.facets[index(use.facet)].is_of;
+    for (const arrangement::EdgeUse& use : mesh.edges[edge]) {
+        const auto& is_of = mesh.facets[index(use.item)].is_of;
         of_first = of_first || is_of[0];
         of_second = of_second || is_of[1];
         of_one = of_one || is_of[0] != is_of[1];
@@ -29,7 +30,7 @@ public:
         for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
             poll(progress_, e);
             if (!is_intersection(mesh, e)) continue;
-            for (const std::int32_t v : mesh.edges[e])
+            for (const std::int32_t v : mesh.edges.ends(e))
                 ends_.emplace_back(v, static_cast<std::int32_t>(e));
         }
         std::sort(ends_.begin(), ends_.end());
@@ -62,8 +63,9 @@ private:
         const auto number = static_cast<std::int32_t>(result_.loops.size());
         IntersectionLoop loop{LoopKind::kOpen, {start}};
         for (std::int32_t at = start;;) {
+            assert(result_.of_edge[index(edge)] < 0);  // each edge is in one loop
             result_.of_edge[index(edge)] = number;
-            const auto& ends = mesh_.edges[index(edge)];
+            const auto& ends = mesh_.edges.ends(index(edge));
             at = ends[0] == at ? ends[1] : ends[0];
             if (at == start && degree(at) == 2) {
                 loop.kind = LoopKind::kHardClosed;
@@ -75,6 +77,7 @@ private:
                 break;
             }
             const auto first = first_of(at);
+            assert(first->first == at && std::next(first)->first == at);
             edge = first->second == edge ? std::next(first)->second : first->second;
         }
         result_.loops.push_back(std::move(loop));

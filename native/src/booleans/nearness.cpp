@@ -5,27 +5,18 @@
 #include <cmath>
 
 #include "arrangement/polygons.hpp"
+#include "base/keep_single.hpp"
 #include "base/ulp.hpp"
 #include "booleans/pieces.hpp"
 
 namespace realmodel::booleans {
 
-using arrangement::cross;
-using arrangement::dot;
-using arrangement::minus;
 using Position = exact::SpacePosition;
 
 namespace {
 
 Position along(const Position& a, const Position& b, double t) {
-    Position p;
-    for (std::size_t k = 0; k < 3; ++k)
-        p[k] = a[k] + t * (b[k] - a[k]);
-    return p;
-}
-
-double length(const Position& v) {
-    return std::sqrt(dot(v, v));
+    return moved(a, t, minus(b, a));
 }
 
 bool has(const Corners& corners, SpacePointId p) {

@@ -2,6 +2,7 @@
 #include "booleans/pieces.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -68,6 +69,8 @@ Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, const Execution& exe
 }
 
 void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
+    assert(
+        std::ranges::none_of(pieces, [](const Piece& p) { return has_equal_corners(p.corners); }));
     std::int32_t& list = list_[index(input)];
     if (list < 0) {
         list = static_cast<std::int32_t>(lists_.size());

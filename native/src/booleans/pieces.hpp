@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/keep_single.hpp"
 #include "booleans/facet_division.hpp"
 #include "realmodel/booleans/intersect.hpp"
 #include "spatial/box_tree.hpp"
@@ -116,12 +117,6 @@ inline std::pair<Corners, bool> in_order(Corners corners) {
     exchange(1, 2);
     exchange(0, 1);
     return {corners, odd};
-}
-
-template <class Item>
-void sort_unique(std::vector<Item>& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 inline bool has_equal_corners(const Corners& c) {

@@ -2,10 +2,12 @@
 #include "booleans/refinement.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "booleans/exact_division.hpp"
 #include "booleans/pieces.hpp"
@@ -319,6 +321,7 @@ Parts Refiner::result() const {
         poll(execution_.progress, i);
         const auto input = static_cast<std::int32_t>(i);
         for (const Piece& piece : pieces_.of(input)) {
+            assert(!piece.is_fresh && !has_equal_corners(piece.corners));
             Part part{{}, pieces_.row(input), pieces_.source(input)};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::int32_t& own = number[index(piece.corners[k])];

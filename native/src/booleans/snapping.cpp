@@ -2,12 +2,13 @@
 #include "booleans/snapping.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "base/ulp.hpp"
@@ -30,15 +31,25 @@ bool has(const Corners& corners, SpacePointId p) {
 
 /// Pieces of one triangle that have been folded upon each other go, two and two.
 void cancel_folds(std::vector<Piece>& pieces) {
-    std::map<Corners, std::array<std::vector<std::size_t>, 2>> by_corners;
+    struct Folded {
+        Corners corners;
+        bool is_odd;
+        std::size_t piece;
+        auto operator<=>(const Folded&) const = default;
+    };
+    std::vector<Folded> sorted;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const auto [corners, is_odd] = in_order(pieces[i].corners);
-        by_corners[corners][is_odd ? 1 : 0].push_back(i);
+        sorted.push_back({corners, is_odd, i});
     }
+    std::sort(sorted.begin(), sorted.end());
     std::vector<std::uint8_t> goes(pieces.size(), 0);
-    for (const auto& [corners, found] : by_corners) {
-        for (std::size_t k = 0; k < std::min(found[0].size(), found[1].size()); ++k)
-            goes[found[0][k]] = goes[found[1][k]] = 1;
+    for (auto begin = sorted.begin(), end = begin; begin != sorted.end(); begin = end) {
+        end = std::find_if(begin, sorted.end(),
+                           [&](const Folded& f) { return f.corners != begin->corners; });
+        const auto odd = std::find_if(begin, end, [](const Folded& f) { return f.is_odd; });
+        for (auto even = begin, back = odd; even != odd && back != end; ++even, ++back)
+            goes[even->piece] = goes[back->piece] = 1;
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -189,6 +200,7 @@ void Snapping::merge_vertices(const std::vector<Edge>& same) {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const auto to = index(sets.find(static_cast<std::int32_t>(i)));
         if (to == i) continue;
+        assert(to < i && sets.find(static_cast<std::int32_t>(to)) == static_cast<std::int32_t>(to));
         merged_.push_back({vertices[i], vertices[to]});
         moved_ = std::max(moved_, distance(pieces_.points.rounded(vertices[i]),
                                            pieces_.points.rounded(vertices[to])));

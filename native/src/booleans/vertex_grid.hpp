@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "booleans/number_table.hpp"
 
 namespace realmodel::booleans {
@@ -16,8 +18,7 @@ using exact::SpacePointId;
 using exact::SpacePoints;
 
 inline double distance(const exact::SpacePosition& p, const exact::SpacePosition& q) {
-    return std::sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
-                     (p[2] - q[2]) * (p[2] - q[2]));
+    return length(minus(p, q));
 }
 
 /// Finds vertices by their place, in cells twice as wide as what is near.
@@ -36,6 +37,7 @@ public:
     }
     /// The nearest vertex within a distance, of equally near ones the first; kNone: there is none.
     SpacePointId nearest(const exact::SpacePosition& at, double within) const {
+        assert(2 * within <= cell_);
         std::pair<double, SpacePointId> best{within, kNone};
         for (int corner = 0; corner < 8; ++corner) {
             exact::SpacePosition place = at;

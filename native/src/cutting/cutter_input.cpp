@@ -6,7 +6,6 @@
 #include <map>
 
 #include "cutting/cutter_surface.hpp"
-#include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/box_tree.hpp"
@@ -292,10 +291,8 @@ void SurfaceInput::extend_border() {
         const Position along = minus(surface_.vertices[index(b)], o),
                        inward = minus(surface_.vertices[index(c)], o);
         const double share = dot(inward, along) / dot(along, along);
-        Position away;
-        for (std::size_t k = 0; k < 3; ++k)
-            away[k] = share * along[k] - inward[k];
-        const double size = std::sqrt(dot(away, away));
+        const Position away = minus(times(share, along), inward);
+        const double size = length(away);
         if (!(size > 0)) continue;
         for (const NodeId v : {a, b}) {
             Position& sum = outward.try_emplace(v, Position{0, 0, 0}).first->second;
@@ -305,7 +302,7 @@ void SurfaceInput::extend_border() {
     }
     std::map<NodeId, NodeId> beyond;
     for (const auto& [v, way] : outward) {
-        const double size = std::sqrt(dot(way, way));
+        const double size = length(way);
         if (size < 0.1) continue;  // the border runs back: it is a slit there
         Position p = surface_.vertices[index(v)];
         for (std::size_t k = 0; k < 3; ++k)

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "base/disjoint_sets.hpp"
-#include "cutting/cutter_winding.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/plane_edges.hpp"
+#include "cutting/surface_cells.hpp"
 
 namespace realmodel::cutting {
 
@@ -51,21 +48,6 @@ private:
     std::vector<std::uint8_t> reaches_;
 };
 
-/// Of cells: 1 with a face near the surface, and those that it lies in. Of the others each is on
-/// one side as a whole; of a cell that rounding has flattened away where the surface passes it no
-/// face need meet the surface, though it has faces on both sides.
-std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
-                                             const CutterWinding& winding);
-
-/// Calls join(one, other) for items that are on the same side: those around a cell that does not
-/// reach the surface, and those that meet at an edge that is none of the surface's. An item is a
-/// region of a face, or, counted after all regions, a face that has none. Several threads call join
-/// at once.
-/// @param reaches  of cells (cells_near_surface)
-void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
-                         std::span<const std::uint8_t> reaches, Progress* progress,
-                         const std::function<void(std::int32_t, std::int32_t)>& join);
-
 /// On which side of a surface everything is. Going round its edges, the side changes with every
 /// region of it that is crossed, and with nothing else; faces away from it have the side of those
 /// beside them. Inside of a closed surface is what a ray leaves through it an odd number of times;
@@ -75,35 +57,32 @@ public:
     /// @throws InputError kinds ends_inside, two_sides
     CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress);
 
-    std::int8_t of_region(std::size_t region) const override { return side_[region]; }
-    std::int8_t of_face(std::size_t face) const override { return side_[overlay_.size() + face]; }
+    std::int8_t of_region(std::size_t region) const override { return side(region); }
+    std::int8_t of_face(std::size_t face) const override { return side(overlay_.size() + face); }
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t) const override {
         return static_cast<std::int8_t>(side == 0 ? below(region) : -below(region));
     }
     /// Of what is at side 0 of a region of the surface; at side 1 it is the other.
-    std::int8_t below(std::size_t region) const { return side_[region]; }
+    std::int8_t below(std::size_t region) const { return side(region); }
 
 private:
-    /// Notes that two items are on the same side or on opposite ones; false where they are known to
-    /// be otherwise.
-    bool join(std::int32_t a, std::int32_t b, bool opposite);
     std::ptrdiff_t own_uses(std::span<const EdgeUse> uses) const;
-    template <class Side>
-    std::int8_t settled(std::int32_t item, const Side& if_unknown);
-    void go_round(std::size_t edge);
+    SurfaceCells::Rules rules() const;
     void refuse_borders() const;
-    void settle();
+    void settle(std::size_t part, std::int8_t side);
     std::int8_t side_at(std::size_t item, bool of_cutter);
+    std::int8_t side(std::size_t item) const {
+        const std::int32_t part = parts_.of(item);
+        return part < 0 ? kOn : *sides_[index(part)];
+    }
     [[noreturn]] void refuse(const char* kind, const char* text,
                              const std::array<NodeId, 2>& edge) const;
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
-    /// Of each item i: 2 i its side, 2 i + 1 the other one; those that are the same are joined.
-    DisjointSets sides_;
-    std::vector<std::int8_t> of_set_;  ///< of the least member of each set, kOn not yet known
-    std::vector<std::int8_t> side_;
-    std::optional<NearestSide> nearest_;  ///< once it is asked for
+    SurfaceCells parts_;
+    std::vector<std::optional<std::int8_t>> sides_;  ///< of parts
+    std::optional<NearestSide> nearest_;             ///< once it is asked for
 };
 
 }  // namespace realmodel::cutting

@@ -3,11 +3,21 @@
 
 #include <algorithm>
 
-#include "cutting/plane_edges.hpp"
-#include "cutting/triangulate.hpp"
+#include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::cutting {
+
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    std::vector<Position> positions;
+    for (const NodeId v : polygon)
+        positions.push_back(model.vertex(v));
+    const View view(polygon_normal(positions));
+    Loop loop;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        loop.push_back({polygon[i], view(positions[i])});
+    return {std::move(loop), view.rounding(positions)};
+}
 
 void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons) {
     const auto [loop, rounding] = loop_of(model, model.face(face));

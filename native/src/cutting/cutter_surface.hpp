@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cutting/polygons.hpp"
@@ -29,6 +31,10 @@ CutterSurface oriented_surface(const TriangleView& surface, bool with_seam = tru
 /// The boundary of a block.
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
+
+/// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
+/// its corners.
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon);
 
 /// A face divided into triangles, always the same ones for the same face: numbers of its corners.
 void triangulate_face(const ComplexView& model, std::size_t face,

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "cutting/plane_edges.hpp"
+#include "cutting/edge_intersections.hpp"
 #include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -205,6 +206,7 @@ NearPart::NearPart(const ComplexView& model, std::span<const std::uint8_t> is_ne
         for (std::size_t k = 0; k < 2; ++k) {
             if (model.cell(f, k) >= 0) own[k] = number_[index(model.cell(f, k))];
         }
+        assert(own[0] >= 0 || own[1] >= 0);
         const auto corners = model.face(f);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const NodeId v = corners[own[0] >= 0 ? i : corners.size() - 1 - i];
@@ -229,12 +231,10 @@ ComplexView NearPart::view() const {
     return view;
 }
 
-std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
-                                              std::span<const std::int8_t> sides) const {
-    WholePieces whole;
-    whole.model_ = model_;
-    whole.sides_ = sides;
-    // the parts of near cells and the other cells, in the model's order
+/// Puts the parts of near cells and the other cells in the model's order.
+/// @return the new number of each part
+std::vector<std::int32_t> NearPart::number_parts(std::vector<HalfCell>& half_cells,
+                                                 WholePieces& whole) const {
     const std::vector<HalfCell> parts = std::move(half_cells);
     std::vector<std::int32_t> order(parts.size()), number(parts.size());
     std::iota(order.begin(), order.end(), 0);
@@ -251,11 +251,21 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
         }
         if (number_[index(c)] >= 0) {
             whole.far_part_[index(c)] = WholePieces::kNear;
-        } else if (sides[index(c)] != kOn) {
+        } else if (whole.sides_[index(c)] != kOn) {
             whole.far_part_[index(c)] = checked_number(half_cells.size(), "parts of cells");
-            half_cells.push_back({c, sides[index(c)]});
+            half_cells.push_back({c, whole.sides_[index(c)]});
         }
     }
+    assert(next == order.end());
+    return number;
+}
+
+std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
+                                              std::span<const std::int8_t> sides) const {
+    WholePieces whole;
+    whole.model_ = model_;
+    whole.sides_ = sides;
+    const std::vector<std::int32_t> number = number_parts(half_cells, whole);
     // pieces in the order of the model's faces, then caps
     const Pieces near = std::move(pieces);
     std::vector<std::int32_t> of_faces(near.size());
@@ -287,11 +297,7 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
             if (const std::int32_t beyond = beyond_[face]; beyond >= 0) {
                 piece.cells[1] = beyond;
                 if (whole.far_part_[index(beyond)] >= 0) {
-                    const auto begin = index(face_offsets_[face]);
-                    const auto end = index(face_offsets_[face + 1]);
-                    if (piece.parts[1] >= 0 ||
-                        !std::ranges::equal(polygon,
-                                            std::span(face_vertices_).subspan(begin, end - begin)))
+                    if (piece.parts[1] >= 0 || !std::ranges::equal(polygon, view().face(face)))
                         return std::nullopt;
                     piece.parts[1] = whole.far_part_[index(beyond)];
                     piece.sides[1] = sides[index(beyond)];

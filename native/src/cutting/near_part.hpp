@@ -65,6 +65,9 @@ public:
                                         std::span<const std::int8_t> sides) const;
 
 private:
+    std::vector<std::int32_t> number_parts(std::vector<HalfCell>& half_cells,
+                                           WholePieces& whole) const;
+
     ComplexView model_;
     std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
     std::vector<Position> vertices_;

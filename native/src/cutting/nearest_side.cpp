@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "arrangement/edge_fan.hpp"
+#include "arrangement/ray_boxes.hpp"
 #include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
 
@@ -18,10 +19,6 @@ namespace {
 /// section 5.1.5).
 Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
                              const Position& c) {
-    const auto along = [](const Position& from, const Position& line, double share) {
-        return Position{from[0] + share * line[0], from[1] + share * line[1],
-                        from[2] + share * line[2]};
-    };
     const Position ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return a;
@@ -29,17 +26,17 @@ Position nearest_in_triangle(const Position& p, const Position& a, const Positio
     const double d3 = dot(ab, bp), d4 = dot(ac, bp);
     if (d3 >= 0 && d4 <= d3) return b;
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return along(a, ab, d1 / (d1 - d3));
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return moved(a, d1 / (d1 - d3), ab);
     const Position cp = minus(p, c);
     const double d5 = dot(ab, cp), d6 = dot(ac, cp);
     if (d6 >= 0 && d5 <= d6) return c;
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return moved(a, d2 / (d2 - d6), ac);
     const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+        return moved(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c, b));
     const double share = 1 / (va + vb + vc);
-    return along(along(a, ab, vb * share), ac, vc * share);
+    return moved(moved(a, vb * share, ab), vc * share, ac);
 }
 
 /// 1 where a triangle turns counter-clockwise seen from p, or p is in its plane; -1 else.
@@ -82,18 +79,18 @@ std::vector<Box> boxes_of(const CutterSurface& surface) {
 
 NearestSide::NearestSide(const CutterSurface& surface)
     : surface_(surface), tree_(boxes_of(surface)), border_(surface.triangles.size(), 0) {
-    std::map<std::array<NodeId, 2>, std::pair<std::size_t, int>> last;  // user of each edge, count
-    for (std::size_t t = 0; t < border_.size(); ++t) {
-        const auto& own = surface.triangles[t];
+    const auto edges = arrangement::edges_of(
+        border_.size(),
+        surface.vertices.size(), [&](std::size_t t) -> const auto& { return surface.triangles[t]; },
+        {1, nullptr});
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() != 1) continue;
+        const auto t = index(edges[e][0].item);
         for (std::size_t i = 0; i < 3; ++i) {
-            auto& [user, count] = last[unordered(own[i], own[(i + 1) % 3])];
-            user = 3 * t + i;
-            ++count;
+            const auto& own = surface.triangles[t];
+            if (unordered(own[i], own[(i + 1) % 3]) == edges.ends(e))
+                border_[t] |= static_cast<std::uint8_t>(1U << i);
         }
-    }
-    for (const auto& [edge, use] : last) {
-        if (use.second == 1)
-            border_[use.first / 3] |= static_cast<std::uint8_t>(1U << (use.first % 3));
     }
 }
 
@@ -159,16 +156,17 @@ bool NearestSide::is_near(const Box& box, double margin) const {
 }
 
 std::int8_t NearestSide::within(const Position& p) const {
-    Box ray;
-    ray.include(p);
-    ray.high[2] = HUGE_VAL;
     exact::SpacePoints points;
-    const exact::SpacePointId from = points.add(p);
+    return within(points, points.add(p), 2, false);
+}
+
+std::int8_t NearestSide::within(exact::SpacePoints& points, exact::SpacePointId p, std::size_t axis,
+                                bool from_below) const {
     bool inside = false;
-    tree_.find(ray, [&](std::int32_t t) {
+    tree_.find(arrangement::ray_box(points, p, axis), [&](std::int32_t t) {
         const auto own = corners(t);
         const std::array of{points.add(own[0]), points.add(own[1]), points.add(own[2])};
-        if (exact::ray_crosses(points, 2, from, of, false) != 0) inside = !inside;
+        if (exact::ray_crosses(points, axis, p, of, from_below) != 0) inside = !inside;
     });
     return inside ? kBelow : kAbove;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cutting/cutter_surface.hpp"
+#include "exact/space_points.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -17,6 +18,10 @@ public:
     std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
     /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
+    /// The same of one of some points, which get the surface's: by a ray along an axis.
+    /// @param from_below  a triangle that the point is on is crossed, too
+    std::int8_t within(exact::SpacePoints& points, exact::SpacePointId p, std::size_t axis,
+                       bool from_below) const;
     /// One of the two: `within` of a closed surface.
     std::int8_t side(const Position& p) const {
         return surface_.is_closed ? within(p) : (*this)(p);

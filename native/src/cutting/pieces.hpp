@@ -1,6 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+// The words of this folder:
+//
+// cutter   a plane, or a surface of triangles (CutterSurface), open or closed
+// side     of a cutter: kAbove, where its triangles turn counter-clockwise seen from, or outside of
+//          a closed one; kBelow; kOn. Of a region of the cutter: 0 below it, 1 above it
+// half     what of a model is on one side (Cut::below, Cut::above)
+// node     a vertex of the model, or a new point; new ones have the numbers after the vertices
+// region   of a triangle of the model or of the cutter: what is connected and no other triangle
+//          passes through (SurfaceOverlay). A face's region is level where it lies on the cutter
+// winding  of cells at a point: how often the boundary of each goes round it, once within it
+//          (CutterWinding). Of a loop: which way it goes from its least node, 1 or -1 (winding_of)
+// fan      the regions around an edge, in order; a blade of it: those in one half-plane; a sector:
+//          what is between a blade and the next
+// patch    regions of one face that no edge of the cutter lies between; cap: a region of the
+//          cutter as one of the cells around it sees it; slot: either of them, as one cell sees it
+// part     what is connected of a cell on one side (HalfCell): a cell of a half
+// piece    a polygon between two parts, or around one (Piece): of a patch, a whole face or a cap
+// shell    what is connected of the boundary of a part; around a hollow its volume is negative
+// slit     an edge that a cell has the same cap on both sides of (CellCutter)
+// near     of cells: they may meet the cutter; the others are far, and are copied (NearPart)
+
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -2,18 +2,19 @@
 // A model cut by a plane: sides of vertices, cut edges, parts of faces, caps and parts of
 // cells, halves.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "cutting/cell_cut.hpp"
+#include "cutting/cell_cutter.hpp"
 #include "cutting/cutter_surface.hpp"
-#include "cutting/face_splitting.hpp"
+#include "cutting/face_splitter.hpp"
 #include "cutting/halves.hpp"
 #include "cutting/model_check.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
@@ -76,7 +77,8 @@ public:
         report(0.7, "putting the halves together");
         std::vector<HalfCell> half_cells;
         number_cells(half_cells);
-        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}, execution_).run();
+        round_parts({model_, new_positions_, pieces_, half_cells, false, execution_},
+                    {false, false});
         return assemble_halves(model_, new_positions_, pieces_, half_cells, execution_);
     }
 
@@ -414,6 +416,7 @@ void PlaneCutter::number_cells(std::vector<HalfCell>& half_cells) {
             half_cells.push_back({cell, side});
         ++next_cut;
     }
+    assert(next_cut == cell_cuts_.size());
     for (std::size_t p = 0; p < first_cap_; ++p) {
         for (std::size_t k = 0; k < 2; ++k) {
             const std::int32_t cell = pieces_[p].cells[k];
@@ -431,6 +434,7 @@ void PlaneCutter::number_cells(std::vector<HalfCell>& half_cells) {
                 pieces_[cap].parts[k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
         }
     }
+    assert(cap == pieces_.size());
 }
 
 }  // namespace

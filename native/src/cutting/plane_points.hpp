@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cutting/plane_edges.hpp"
-#include "cutting/triangulate.hpp"
+#include "cutting/edge_intersections.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "arrangement/polygons.hpp"
+#include "arrangement/triangulate.hpp"
 
 namespace realmodel::cutting {
 
-using arrangement::cross;
-using arrangement::dot;
-using arrangement::minus;
+using arrangement::CornerTurns;
+using arrangement::divide_convex;
+using arrangement::Loop;
+using arrangement::LoopCorner;
 using arrangement::NodeId;
 using arrangement::PlanePosition;
-using arrangement::polygon_normal;
 using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
-using arrangement::sixfold_volume;
-using arrangement::unordered;
+using arrangement::triangulate;
+using arrangement::triangulate_beside;
 using arrangement::View;
 
 /// Sides of a cutter: above it or outside of it, on it, below it or inside.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
+
+#include "base/disjoint_sets.hpp"
 #include "cutting/polygons.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -21,9 +24,17 @@ struct Shell {
             box.include(at(polygon[i]));
             if (i < 2) continue;
             sixfold_volume +=
-                sign * cutting::sixfold_volume(origin, first, at(polygon[i - 1]), at(polygon[i]));
+                sign * realmodel::sixfold_volume(origin, first, at(polygon[i - 1]), at(polygon[i]));
         }
     }
 };
+
+/// Those of a cell on one side of the cutter, by a set of what bounds it.
+using Shells = std::map<std::int32_t, Shell>;
+
+/// The wall of a hollow bounds the part around it, and what rounding turned inside out goes with
+/// the part beside it: joins the sets of shells without a positive volume with one that is larger,
+/// the smallest whose box contains theirs, or else the smallest.
+void join_hollows(const Shells& shells, DisjointSets& sets);
 
 }  // namespace realmodel::cutting

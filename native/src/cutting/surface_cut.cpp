@@ -7,7 +7,7 @@
 #include "base/parallel.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -31,9 +31,8 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
     SurfaceParts made(overlay, winding, sides, execution.progress);
     if (execution.progress != nullptr)
         execution.progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                 execution)
-        .run();
+    round_parts({near, overlay.new_positions(), made.pieces, made.half_cells, false, execution},
+                made.touches);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
     if (execution.progress != nullptr)

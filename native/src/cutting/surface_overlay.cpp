@@ -55,9 +55,9 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 }  // namespace
 
 /// Where on an edge of the surface a vertex may be but for its rounding.
-std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_on_edge(const Position& p,
-                                                                   const Position& a,
-                                                                   const Position& b) {
+std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_on_edge(const Position& p,
+                                                                          const Position& a,
+                                                                          const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
     const Position tolerance = tolerance_of(p);
@@ -78,11 +78,11 @@ std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_on_edge(const Positio
     }
     const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
     if (from > to || !(share > 0 && share < 1)) return std::nullopt;
-    return Place{2, axis, {a, b}};
+    return SurfacePlace{2, axis, {a, b}};
 }
 
 /// The same within a triangle of the surface.
-std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_in_triangle(
+std::optional<SurfaceOverlay::SurfacePlace> SurfaceOverlay::place_in_triangle(
     const Position& p, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
     const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
@@ -100,12 +100,13 @@ std::optional<SurfaceOverlay::Place> SurfaceOverlay::place_in_triangle(
         if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
             return std::nullopt;
     }
-    return Place{3, axis, corners};
+    return SurfacePlace{3, axis, corners};
 }
 
 /// Where on the surface a vertex may be but for its rounding: at a corner, or on edges, then in
 /// triangles.
-std::vector<SurfaceOverlay::Place> SurfaceOverlay::places_on_surface(const Position& p) const {
+std::vector<SurfaceOverlay::SurfacePlace> SurfaceOverlay::places_on_surface(
+    const Position& p) const {
     Box box;
     box.include(p);
     std::vector<std::int32_t> near;
@@ -116,7 +117,7 @@ std::vector<SurfaceOverlay::Place> SurfaceOverlay::places_on_surface(const Posit
             if (is_within(p, corner(t, i), tolerance_of(p), 1)) return {{1, 0, {corner(t, i)}}};
         }
     }
-    std::vector<Place> places;
+    std::vector<SurfacePlace> places;
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
             if (const auto found = place_on_edge(p, corner(t, i), corner(t, i + 1)))
@@ -132,8 +133,8 @@ std::vector<SurfaceOverlay::Place> SurfaceOverlay::places_on_surface(const Posit
 
 /// The first of the places of a vertex that is indeed as near; none where it is elsewhere.
 std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p,
-                                                             std::span<const Place> places) {
-    for (const Place& place : places) {
+                                                             std::span<const SurfacePlace> places) {
+    for (const SurfacePlace& place : places) {
         const auto& [count, axis, corners] = place;
         if (count == 1) return points_.add(corners[0]);
         std::array<SpacePointId, 4> of{points_.add(p)};
@@ -163,7 +164,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     };
     for (const NodeId v : vertices)
         is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
-    std::vector<std::vector<Place>> places(vertices.size());
+    std::vector<std::vector<SurfacePlace>> places(vertices.size());
     parallel_ranges(
         vertices.size(), 1 << 10, execution_,
         [&](std::size_t begin, std::size_t end) {

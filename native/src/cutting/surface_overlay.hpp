@@ -9,7 +9,6 @@
 #include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 #include "cutting/cutter_surface.hpp"
-#include "cutting/triangulate.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -88,7 +87,7 @@ public:
     const spatial::Box& model_box() const { return model_box_; }
 
 private:
-    using Corners = std::array<LoopCorner, 3>;
+    using LoopTriangle = std::array<LoopCorner, 3>;
     /// What faces near the surface are divided into: triangles, which may pass it, and polygons
     /// beside it, which do not.
     struct FaceParts {
@@ -97,14 +96,14 @@ private:
         Polygons beside;
         std::vector<std::int32_t> face_of_beside;
 
-        void add(std::int32_t face, std::span<const Corners> more);
+        void add(std::int32_t face, std::span<const LoopTriangle> more);
         void add_beside(std::int32_t face, std::span<const NodeId> polygon);
         void add(const FaceParts& other);
     };
 
     /// A corner of the surface, the line of an edge or the plane of a triangle, by as many corners.
     /// A vertex near it is moved along `axis` into the plane; on the line it keeps that coordinate.
-    struct Place {
+    struct SurfacePlace {
         std::size_t count, axis;
         std::array<Position, 3> corners;
     };
@@ -130,12 +129,13 @@ private:
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
-    static std::optional<Place> place_on_edge(const Position& p, const Position& a,
-                                              const Position& b);
-    static std::optional<Place> place_in_triangle(const Position& p,
-                                                  const std::array<Position, 3>& corners);
-    std::vector<Place> places_on_surface(const Position& p) const;
-    std::optional<SpacePointId> point_on_surface(const Position& p, std::span<const Place> places);
+    static std::optional<SurfacePlace> place_on_edge(const Position& p, const Position& a,
+                                                     const Position& b);
+    static std::optional<SurfacePlace> place_in_triangle(const Position& p,
+                                                         const std::array<Position, 3>& corners);
+    std::vector<SurfacePlace> places_on_surface(const Position& p) const;
+    std::optional<SpacePointId> point_on_surface(const Position& p,
+                                                 std::span<const SurfacePlace> places);
     void add_triangles();
     void overlay_all();
     void name_nodes();

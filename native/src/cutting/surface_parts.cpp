@@ -173,6 +173,7 @@ void SurfaceParts::make_patches(Progress* progress) {
             add_patch({face, sides_.of_region(region), &*chunk, next});
         }
     }
+    assert(of_active == active.end() && (chunk == divided_.end() || next == chunk->face.size()));
 }
 
 /// Calls visit(use) for all edges of the slots of cells that reach the surface.
@@ -367,10 +368,10 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
         joined_->join(begun.back(), step.slot);
         begun.pop_back();
     }
+    assert(begun.empty());
 }
 
-/// The wall of a hollow that the surface cuts out of a cell bounds the part around it; what
-/// rounding turned inside out goes with the part beside it.
+/// Joins the walls of hollows that the surface cuts out of cells with the parts around them.
 void SurfaceParts::attach_hollows(Progress* progress) {
     // the slots of each cell that reaches the surface, and what has them
     struct Item {
@@ -393,50 +394,44 @@ void SurfaceParts::attach_hollows(Progress* progress) {
         }
     });
     const auto at = [this](NodeId node) { return overlay_.position(node); };
-    const auto shells_of = [&](std::span<const Item> of_cell) {
-        Shells shells;
-        std::optional<Position> origin;
-        for (const auto& [slot, patch, region] : of_cell) {
-            const Slot& own = slots_[index(slot)];
-            Shell& shell = shells[{own.half, joined_->find(slot)}];
-            const auto add = [&](const auto& loops) {
-                if (!origin) origin = at(loops[0][0]);
-                for (const auto& loop : loops)
-                    shell.add(loop, own.sign, *origin, at);
-            };
-            if (patch < 0) {
-                add(overlay_.loops(index(region)));
-            } else if (patches_[index(patch)].divided == nullptr) {
-                add(std::array{overlay_.model().face(index(patches_[index(patch)].face))});
-            } else {
-                add(patches_[index(patch)].loops());
-            }
+    const auto visit_loops = [&](const Item& item, const auto& visit) {
+        if (item.patch < 0) {
+            visit(overlay_.loops(index(item.region)));
+        } else if (const Patch& patch = patches_[index(item.patch)]; patch.divided == nullptr) {
+            visit(std::array{overlay_.model().face(index(patch.face))});
+        } else {
+            visit(patch.loops());
         }
-        return shells;
+    };
+    const auto attach = [&](std::span<const Item> of_cell, std::int8_t half) {
+        const auto is_of_half = [&](const Item& item) {
+            return slots_[index(item.slot)].half == half;
+        };
+        Shells shells;
+        for (const Item& item : of_cell) {
+            if (is_of_half(item)) shells[joined_->find(item.slot)];
+        }
+        if (shells.size() < 2) return;
+        Position origin;
+        visit_loops(of_cell[0], [&](const auto& loops) { origin = at(loops[0][0]); });
+        for (const Item& item : of_cell) {
+            if (!is_of_half(item)) continue;
+            Shell& shell = shells.at(joined_->find(item.slot));
+            visit_loops(item, [&](const auto& loops) {
+                for (const auto& loop : loops)
+                    shell.add(loop, slots_[index(item.slot)].sign, origin, at);
+            });
+        }
+        join_hollows(shells, *joined_);
     };
     constexpr std::size_t kCells = 1 << 8;
     parallel_ranges(items.size(), kCells, {overlay_.threads(), progress},
                     [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t cell = begin; cell < end; ++cell)
-                            attach_hollows(shells_of(items[cell]));
+                        for (std::size_t cell = begin; cell < end; ++cell) {
+                            for (const std::int8_t half : {kBelow, kAbove})
+                                attach(items[cell], half);
+                        }
                     });
-}
-
-void SurfaceParts::attach_hollows(const Shells& of_cell) {
-    for (const auto& [key, hollow] : of_cell) {
-        if (hollow.sixfold_volume > 0) continue;
-        const auto rank = [&inner = hollow](const Shell& shell) {  // a box around it, the smallest
-            return std::pair(!shell.box.contains(inner.box), shell.sixfold_volume);
-        };
-        const Shells::value_type* around = nullptr;
-        for (const auto& other : of_cell) {
-            if (other.first.first != key.first || other.first.second == key.second ||
-                other.second.sixfold_volume <= -hollow.sixfold_volume)
-                continue;
-            if (around == nullptr || rank(other.second) < rank(around->second)) around = &other;
-        }
-        if (around != nullptr) joined_->join(around->first.second, key.second);
-    }
 }
 
 }  // namespace realmodel::cutting

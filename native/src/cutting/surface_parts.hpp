@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -67,7 +66,8 @@ private:
         std::int32_t region;
         std::array<std::vector<std::int32_t>, 2> slots;
         /// Slots with the region between them, -1 nothing wanted: of cells that lie one below and
-        /// one above it, and of those that overlap on one side and make up for each other.
+        /// one above it, and pairs of cells that overlap on one side, of which one
+        /// is there as often too much as the other too little.
         std::vector<std::array<std::int32_t, 2>> across, beside;
     };
     /// A slot at one of its edges.
@@ -99,10 +99,7 @@ private:
     void join_parts(Progress* progress);
     void join_across();
     void join_round_edge(std::span<const SlotUse> uses);
-    /// By half and first slot.
-    using Shells = std::map<std::pair<std::int8_t, std::int32_t>, Shell>;
     void attach_hollows(Progress* progress);
-    void attach_hollows(const Shells& of_cell);
     void number_parts();
     void write_patches(Progress* progress);
     void write_caps(Progress* progress);

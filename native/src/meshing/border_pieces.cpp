@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -17,8 +18,7 @@ constexpr double kLongestPiece = 1.4;  // lengths wanted: above it two pieces fi
 constexpr double kSharpAngle = std::numbers::pi / 3;
 
 double length_of(const RegionGraph& graph, const Segment& edge) {
-    const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
-    return elementary::hypot(b[0] - a[0], b[1] - a[1]);
+    return distance(graph.points[edge[0]], graph.points[edge[1]]);
 }
 
 /// For each point the distance at which its edges are cut because two of them meet at a sharp angle
@@ -81,7 +81,7 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
                          SizeField& size) {
     std::vector<double> shares;
     if (begin > 0) shares.push_back(begin);
-    const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = distance(a, b);
     if (size.is_uniform()) {
         const std::size_t count = piece_count((end - begin) * length / size.largest());
         for (std::size_t i = 1; i < count; ++i) {
@@ -91,9 +91,7 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
     } else {
         // How many lengths wanted lie between the beginning and each of some places.
         std::vector<std::array<double, 2>> sums{{begin, 0.0}};
-        const auto wanted = [&](double t) {
-            return size.at({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
-        };
+        const auto wanted = [&](double t) { return size.at(moved(a, t, minus(b, a))); };
         double here = wanted(begin);
         while (sums.back()[0] < end) {
             const double t = std::min(end, sums.back()[0] + 0.3 * here / length);
@@ -150,7 +148,7 @@ private:
         const auto first = static_cast<std::int32_t>(pieces_.points.size());
         double nearest = 1;
         for (const double t : shares) {
-            pieces_.points.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+            pieces_.points.push_back(moved(a, t, minus(b, a)));
             nearest = std::min({nearest, t, 1 - t});
         }
         if (static_cast<double>(pieces_.points.size()) > kMostFlatTriangles) {

@@ -1,12 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "meshing/flat_mesh.hpp"
 
-#
 #include <cassert>
+#include <utility>
 
+#include "base/counting_sort.hpp"
 #include "meshing/plan_predicates.hpp"
 
 namespace realmodel::meshing {
+
+FlatMesh::FlatMesh(PlanarMesh mesh)
+    : points(std::move(mesh.vertices)), corners(std::move(mesh.triangles)) {
+    assert(static_cast<double>(corners.size()) < kMostFlatTriangles);
+    link();
+}
+
+void FlatMesh::link() {
+    const auto leaving = bucketize<HalfEdge>(points.size(), [&](const auto& put) {
+        for_each_edge([&](HalfEdge edge) { put(static_cast<std::size_t>(from(edge)), edge); });
+    });
+    twins.assign(corners.size(), {});
+    marks.assign(corners.size(), 0);
+    for_each_edge([&](HalfEdge edge) {
+        if (!twin(edge).is_none()) return;
+        for (const HalfEdge other : leaving[static_cast<std::size_t>(to(edge))]) {
+            if (to(other) == from(edge)) join(edge, other);
+        }
+    });
+}
 
 std::int32_t FlatMesh::add_triangle(const std::array<std::int32_t, 3>& corner) {
     assert(static_cast<double>(corners.size()) < kMostFlatTriangles);
@@ -94,9 +115,17 @@ HalfEdge FlatMesh::legalize_around(std::int32_t vertex, std::int32_t triangle) {
     return {triangle, index};
 }
 
-HalfEdge FlatMesh::insert_inside(std::int32_t triangle, const PlanPoint& p) {
-    const auto vertex = static_cast<std::int32_t>(points.size());
-    points.push_back(p);
+void FlatMesh::rotate(std::int32_t triangle, int first) {
+    const auto old = corners[triangle];
+    const std::array<Outer, 3> beyond{outer({triangle, 0}), outer({triangle, 1}),
+                                      outer({triangle, 2})};
+    for (int i = 0; i < 3; ++i) {
+        corners[triangle][i] = old[(first + i) % 3];
+        attach({triangle, i}, beyond[(first + i) % 3]);
+    }
+}
+
+void FlatMesh::divide(std::int32_t triangle, std::int32_t vertex) {
     const auto [a, b, c] = corners[triangle];
     const Outer ab = outer({triangle, 0}), bc = outer({triangle, 1}), ca = outer({triangle, 2});
     const std::int32_t second = add_triangle({b, c, vertex});
@@ -110,6 +139,12 @@ HalfEdge FlatMesh::insert_inside(std::int32_t triangle, const PlanPoint& p) {
     join({second, 1}, {third, 2});
     join({third, 1}, {triangle, 2});
     open_.assign({HalfEdge(triangle, 0), HalfEdge(second, 0), HalfEdge(third, 0)});
+}
+
+HalfEdge FlatMesh::insert_inside(std::int32_t triangle, const PlanPoint& p) {
+    const auto vertex = static_cast<std::int32_t>(points.size());
+    points.push_back(p);
+    divide(triangle, vertex);
     return legalize_around(vertex, triangle);
 }
 
@@ -119,6 +154,11 @@ HalfEdge FlatMesh::insert_on(HalfEdge edge, const PlanPoint& p) {
 }
 
 HalfEdge FlatMesh::insert_on(HalfEdge edge, std::int32_t vertex) {
+    divide(edge, vertex);
+    return legalize_around(vertex, edge.triangle());
+}
+
+void FlatMesh::divide(HalfEdge edge, std::int32_t vertex) {
     const HalfEdge other = twin(edge);
     const auto split = [&](HalfEdge e) {  // its triangle keeps the first part, a new one the rest
         const std::int32_t a = from(e), b = to(e), c = apex(e), t = e.triangle();
@@ -146,7 +186,6 @@ HalfEdge FlatMesh::insert_on(HalfEdge edge, std::int32_t vertex) {
         join({triangle, 0}, {other_rest, 0});
         join({rest, 0}, {other.triangle(), 0});
     }
-    return legalize_around(vertex, triangle);
 }
 
 std::array<HalfEdge, 2> FlatMesh::collapse(HalfEdge edge) {

@@ -37,6 +37,9 @@ inline constexpr double kMostFlatTriangles = 536'870'911;
 /// Some triangles may be dead (removed, not yet reused).
 class FlatMesh {
 public:
+    FlatMesh() = default;
+    explicit FlatMesh(PlanarMesh mesh);
+
     std::vector<PlanPoint> points;
     std::vector<std::array<std::int32_t, 3>> corners;  ///< of each triangle; -1 first: it is dead
     std::vector<std::array<HalfEdge, 3>> twins;        ///< none: on the border
@@ -67,6 +70,8 @@ public:
     }
 
     std::int32_t add_triangle(const std::array<std::int32_t, 3>& corner);
+    /// Makes half-edges that run between the same vertices twins; all others are on the border.
+    void link();
     /// Makes two half-edges twins; the second may be none.
     void join(HalfEdge a, HalfEdge b);
     /// Sets or takes away the marks of a half-edge; those of its twin are its own.
@@ -100,10 +105,19 @@ public:
     /// Whether an edge is no longer Delaunay, so that flipping it helps.
     bool should_flip(HalfEdge edge) const;
 
+    /// Makes another corner of a triangle its first.
+    void rotate(std::int32_t triangle, int first);
+
+    /// Divides a triangle at a vertex inside, which no triangle has yet; two are added.
+    void divide(std::int32_t triangle, std::int32_t vertex);
+    /// Divides the triangles beside an edge at a vertex on it, which no triangle has yet: one is
+    /// added for each. The edge keeps its marks in both parts.
+    void divide(HalfEdge edge, std::int32_t vertex);
+
     /// Adds a vertex inside a triangle; returns a half-edge that leaves it. The triangles around it
     /// are made Delaunay by flips (Lawson 1977) as far as fixed edges allow.
     HalfEdge insert_inside(std::int32_t triangle, const PlanPoint& p);
-    /// Adds a vertex on an edge, which keeps its marks in both parts; else as insert_inside.
+    /// Adds a vertex on an edge; else as insert_inside.
     HalfEdge insert_on(HalfEdge edge, const PlanPoint& p);
     /// The same with a point that is there already and no triangle has yet.
     HalfEdge insert_on(HalfEdge edge, std::int32_t vertex);

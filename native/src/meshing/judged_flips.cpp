@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/keep_single.hpp"
+
 namespace realmodel::meshing {
 
 namespace {
@@ -132,8 +134,7 @@ bool JudgedFlips::is_worth_it(double most_worse, double most_worse_beside_lines)
     for (const Flip& flip : way_)
         for (const Ends& ends : {flip.before, flip.after})
             touched_.insert(touched_.end(), ends.begin(), ends.end());
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    sort_unique(touched_);
     for (auto flip = way_.rbegin(); flip != way_.rend(); ++flip)
         valences_.flip(edge_between(flip->after));
     const double before = badness();
@@ -161,8 +162,7 @@ double JudgedFlips::badness() {
     star_.clear();
     for (const std::int32_t v : touched_)
         valences_.around(v, [&](HalfEdge edge) { star_.push_back(edge.triangle()); });
-    std::sort(star_.begin(), star_.end());
-    star_.erase(std::unique(star_.begin(), star_.end()), star_.end());
+    sort_unique(star_);
     double sum = 0;
     for (const std::int32_t t : star_) {
         const auto [a, b, c] = mesh.corners[t];

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::meshing {
@@ -45,7 +46,7 @@ void near_segment(double& low, double& high, const PlanPoint& a, const PlanPoint
         low = std::min(low, end[0] - std::sqrt(rest));
         high = std::max(high, end[0] + std::sqrt(rest));
     }
-    const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = realmodel::distance(a, b);
     if (length == 0) return;
     const double nx = -(b[1] - a[1]) / length * distance, ny = (b[0] - a[0]) / length * distance;
     const PlanPoint corners[] = {{a[0] + nx, a[1] + ny},
@@ -319,7 +320,7 @@ std::vector<LongEdge> long_edges(const RegionGraph& graph, double edge_length) {
     for (const auto* list : {&graph.border, &graph.inner}) {
         for (const auto& [from, to] : *list) {
             const PlanPoint &a = graph.points[from], &b = graph.points[to];
-            const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
+            const double length = distance(a, b);
             if (length < 4 * edge_length) continue;
             const double turn =
                 elementary::atan2(b[1] - a[1], b[0] - a[0]) / (std::numbers::pi / 3);

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "base/vectors.hpp"
+
 namespace realmodel::meshing {
 
 namespace {
@@ -36,12 +38,10 @@ bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
 
 PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                          const PlanPoint& d) {
-    const double ux = b[0] - a[0], uy = b[1] - a[1];
-    const double vx = d[0] - c[0], vy = d[1] - c[1];
-    const double across = ux * vy - uy * vx;
+    const PlanPoint u = minus(b, a), v = minus(d, c);
+    const double across = cross(u, v);
     if (across == 0) return c;  // parallel up to rounding: any of the ends tells where
-    const double t = ((c[0] - a[0]) * vy - (c[1] - a[1]) * vx) / across;
-    return {a[0] + t * ux, a[1] + t * uy};
+    return moved(a, cross(minus(c, a), v) / across, u);
 }
 
 std::string text_of(const PlanPoint& place) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vectors.hpp"
 #include "meshing/plan_predicates.hpp"
 
 namespace realmodel::meshing {
@@ -79,8 +80,9 @@ std::optional<PlanPoint> circumcenter(const FlatMesh& mesh, std::int32_t triangl
 HalfEdge Encroachment::find(const FlatMesh& mesh, const Arrival& at, const PlanPoint& p) {
     const auto sees_widely = [&](HalfEdge edge) {
         const PlanPoint &a = mesh.origin_point(edge), &b = mesh.target_point(edge);
-        const double dot = (a[0] - p[0]) * (b[0] - p[0]) + (a[1] - p[1]) * (b[1] - p[1]);
-        return dot < 0 && dot * dot > 0.25 * squared_distance(a, p) * squared_distance(b, p);
+        const double product = dot(minus(a, p), minus(b, p));
+        return product < 0 &&
+               product * product > 0.25 * squared_distance(a, p) * squared_distance(b, p);
     };
     cavity_.assign({at.edge.triangle()});
     if (at.kind == Arrival::kOnEdge) cavity_.push_back(mesh.twin(at.edge).triangle());

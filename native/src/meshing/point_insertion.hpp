@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "meshing/flat_mesh.hpp"
 
 namespace realmodel::meshing {
@@ -36,17 +37,8 @@ private:
 /// Whether an edge can be cut at a point near it without turning a triangle over. Exact.
 bool can_cut(const FlatMesh& mesh, HalfEdge edge, const PlanPoint& p);
 
-inline double squared_distance(const PlanPoint& a, const PlanPoint& b) {
-    const double dx = b[0] - a[0], dy = b[1] - a[1];
-    return dx * dx + dy * dy;
-}
-
 inline PlanPoint middle(const PlanPoint& a, const PlanPoint& b) {
-    return {a[0] + 0.5 * (b[0] - a[0]), a[1] + 0.5 * (b[1] - a[1])};
-}
-
-inline double twice_area(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    return moved(a, 0.5, minus(b, a));
 }
 
 }  // namespace realmodel::meshing

@@ -60,7 +60,7 @@ private:
     std::int32_t same_ = kNone;
 };
 
-/// How rings lie in each other, told by walking over the triangles from the outside: of each ring
+/// How rings lie in each other, found by walking over the triangles from the outside: of each ring
 /// the innermost other one around it, or kNone.
 class Nesting {
 public:

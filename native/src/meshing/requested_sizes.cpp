@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/keep_single.hpp"
 #include "meshing/point_insertion.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/nearest_points.hpp"
@@ -70,8 +71,7 @@ std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRe
         throw InputError("density", "point " + std::to_string(i) + " is not a finite number", -1,
                          {static_cast<std::int64_t>(i)});
     }
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sort_unique(points);
     if (points.size() < 2) {
         throw InputError("density", "an edge length by density needs two points at least");
     }

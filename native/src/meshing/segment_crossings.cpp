@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/vectors.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -57,9 +58,7 @@ std::vector<std::vector<PlanPoint>> crossings(std::span<const PlanPoint> points,
     }
     for (std::size_t s = 0; s < segments.size(); ++s) {
         const PlanPoint &a = points[segments[s][0]], &b = points[segments[s][1]];
-        const auto along = [&](const PlanPoint& p) {
-            return (p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1]);
-        };
+        const auto along = [&](const PlanPoint& p) { return dot(minus(p, a), minus(b, a)); };
         std::sort(cuts[s].begin(), cuts[s].end(), [&](const PlanPoint& p, const PlanPoint& q) {
             return along(p) != along(q) ? along(p) < along(q) : p < q;
         });

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::meshing {
@@ -17,12 +18,9 @@ constexpr std::int32_t kDeepest = 40;   // a cell then is 1e-12 of the region
 constexpr double kLeafPerLength = 1.5;  // width of a leaf in lengths wanted there
 
 double distance(const SizeSource& source, double x, double y) {
-    const double ux = source.b[0] - source.a[0], uy = source.b[1] - source.a[1];
-    const double vx = x - source.a[0], vy = y - source.a[1];
-    const double squared = ux * ux + uy * uy;
-    const double t = squared > 0 ? std::clamp((ux * vx + uy * vy) / squared, 0.0, 1.0) : 0;
-    const double dx = vx - t * ux, dy = vy - t * uy;
-    return std::sqrt(dx * dx + dy * dy);  // std::hypot took a third of the time of all meshing
+    const PlanPoint way = minus(source.b, source.a), off = minus({x, y}, source.a);
+    const double share = nearest_share(source.a, source.b, {x, y});
+    return length(moved(off, -share, way));  // hypot took a third of the time of all meshing
 }
 
 }  // namespace

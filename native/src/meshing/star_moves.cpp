@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vectors.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
 
@@ -103,7 +104,7 @@ void StarMoves::slide(std::int32_t v) {
     const double from = (p[0] - a[0]) * ux + (p[1] - a[1]) * uy;
     step(v, now, std::abs(along), [&](double share) {
         const double where = (from + share * along) / length;  // from the corners, rounded once
-        return PlanPoint{a[0] + where * (b[0] - a[0]), a[1] + where * (b[1] - a[1])};
+        return moved(a, where, minus(b, a));
     });
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -158,8 +159,7 @@ void separate(const ComplexView& complex, std::size_t begin, double shrink, cons
     const std::span<std::int32_t> corners(
         shell.corners.begin() + static_cast<std::ptrdiff_t>(begin), shell.corners.end());
     used.assign(corners.begin(), corners.end());
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    sort_unique(used);
     Position mean{};
     for (const std::int32_t v : used) {
         for (std::size_t axis = 0; axis < 3; ++axis)

@@ -9,6 +9,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
 
@@ -16,7 +17,7 @@ namespace realmodel::simulation {
 
 namespace {
 
-using Point = std::array<double, 3>;
+using Point = Vec3;
 using Edge = std::array<std::int32_t, 2>;
 
 constexpr double kSharp = 0.64;       ///< cosine of the angle between normals: 50 degrees
@@ -24,22 +25,6 @@ constexpr double kStraight = -0.7;    ///< cosine at a vertex of a line that goe
 constexpr double kNearest = 0.7;      ///< of the edge length, between points on sharp edges
 constexpr double kPartOfALine = 0.9;  ///< of the edge length, between points of one line
 
-Point minus(const Point& a, const Point& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Point& a, const Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point cross(const Point& a, const Point& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Point& a) {
-    return std::sqrt(dot(a, a));
-}
-
-Point moved(const Point& p, const Point& way, double share) {
-    return {p[0] + share * way[0], p[1] + share * way[1], p[2] + share * way[2]};
-}
 double length_at(meshing::SizeField& lengths, const Point& p) {
     return lengths.at({p[0], p[1]});
 }
@@ -87,23 +72,6 @@ private:
     std::map<int, Grid> grids_;
 };
 
-/// The normal of a polygon, of length 1, or 0 where it has no area.
-Point unit_normal(const ComplexView& model, std::span<const std::int32_t> loop) {
-    Point sum{};
-    const Point origin = model.vertex(loop[0]);
-    for (std::size_t i = 2; i < loop.size(); ++i) {
-        const Point part =
-            cross(minus(model.vertex(loop[i - 1]), origin), minus(model.vertex(loop[i]), origin));
-        for (int axis = 0; axis < 3; ++axis)
-            sum[static_cast<std::size_t>(axis)] += part[static_cast<std::size_t>(axis)];
-    }
-    const double size = length(sum);
-    if (size > 0)
-        for (double& x : sum)
-            x /= size;
-    return sum;
-}
-
 struct KeptFace {
     std::size_t face;
     std::int32_t behind, in_front, surface;
@@ -128,11 +96,9 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
                             static_cast<std::int32_t>(&kept - faces.data())});
         }
         // turned the same way all over a patch
-        Point normal = unit_normal(model, loop);
-        if (kept.behind > kept.in_front)
-            for (double& x : normal)
-                x = -x;
-        normals.push_back(normal);
+        const auto at = [&](std::size_t i) { return model.vertex(loop[i]); };
+        normals.push_back(
+            times(kept.behind > kept.in_front ? -1 : 1, unit(polygon_normal(loop.size(), at))));
     }
     std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
         return std::tie(a.edge, a.face) < std::tie(b.edge, b.face);
@@ -174,9 +140,8 @@ BoundaryFaces boundary_faces(const ComplexView& model, std::span<const std::int3
         faces.push_back({f, behind, in_front, surface});
         for (auto t = triangles.offsets[f]; t < triangles.offsets[f + 1]; ++t) {
             const auto& corners = triangles.triangles[static_cast<std::size_t>(t)];
-            const Point a = model.vertex(corners[0]);
-            const Point normal =
-                cross(minus(model.vertex(corners[1]), a), minus(model.vertex(corners[2]), a));
+            const Point normal = triangle_normal(model.vertex(corners[0]), model.vertex(corners[1]),
+                                                 model.vertex(corners[2]));
             if (dot(normal, normal) > 0)
                 found.triangles.push_back({corners, behind, in_front, surface});
         }
@@ -275,10 +240,10 @@ std::vector<Piece> pieces_of(const ComplexView& model, const std::vector<std::in
         const Point way = minus(model.vertex(line[i]), from);
         const double step = length(way);
         for (double at = 0; at < step;) {
-            const Point here = moved(from, way, at / step);
+            const Point here = moved(from, at / step, way);
             const double own = length_at(lengths, here);
             const double next = lengths.is_uniform() ? step : std::min(step, at + own / 2);
-            pieces.push_back({here, moved({}, way, (next - at) / step),
+            pieces.push_back({here, moved(Point{}, (next - at) / step, way),
                               (next - at) * (lengths.largest() / own)});
             at = next;
         }
@@ -298,8 +263,8 @@ std::vector<Point> parts_of(const ComplexView& model, const std::vector<std::int
     double at = 0, number = line.front() == line.back() ? 0 : 1;
     for (const Piece& piece : pieces) {
         for (; number < parts && at + piece.size >= number * size / parts; ++number)
-            found.push_back(moved(piece.from, piece.way,
-                                  std::max(0.0, number * size / parts - at) / piece.size));
+            found.push_back(moved(
+                piece.from, std::max(0.0, number * size / parts - at) / piece.size, piece.way));
         at += piece.size;
     }
     return found;

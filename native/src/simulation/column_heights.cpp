@@ -2,11 +2,14 @@
 #include "simulation/column_heights.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/point_bins.hpp"
@@ -74,16 +77,101 @@ double height(const ComplexView& model, std::span<const std::int32_t> loop, cons
         high = std::max(high, b[2]);
         if (i + 1 == loop.size()) break;
         const auto c = model.vertex(loop[i + 1]);
-        const double bx = b[0] - o[0], by = b[1] - o[1], cx = c[0] - o[0], cy = c[1] - o[1];
-        const double area = bx * cy - by * cx;
+        const Vec2 u{b[0] - o[0], b[1] - o[1]}, v{c[0] - o[0], c[1] - o[1]};
+        const double area = cross(u, v);
         if (std::abs(area) <= largest) continue;
         largest = std::abs(area);
-        const double px = p[0] - o[0], py = p[1] - o[1];
-        at = o[2] + (px * cy - py * cx) / area * (b[2] - o[2]) +
-             (bx * py - by * px) / area * (c[2] - o[2]);
+        const Vec2 w{p[0] - o[0], p[1] - o[1]};
+        at = o[2] + cross(w, v) / area * (b[2] - o[2]) + cross(u, w) / area * (c[2] - o[2]);
     }
     return std::clamp(at, low, high);
 }
+
+/// What vertical lines through points meet, by points.
+Buckets<Hit> hits_of(const ComplexView& model, std::span<const PlanPoint> points,
+                     const Execution& execution) {
+    const spatial::PointBins bins(std::vector<PlanPoint>(points.begin(), points.end()));
+    const std::size_t chunks = (model.face_count() + kFacesOfChunk - 1) / kFacesOfChunk;
+    std::vector<std::vector<Hit>> found(chunks);
+    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
+        const std::size_t end = std::min(model.face_count(), (chunk + 1) * kFacesOfChunk);
+        for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
+            if (model.face_surface[f] == kWall) continue;
+            std::int32_t below = model.block(model.cell(f, 0)),
+                         above = model.block(model.cell(f, 1));
+            if (below == above) continue;
+            const auto loop = model.face(f);
+            const PlanShape shape(model, loop);
+            if (shape.is_vertical()) continue;
+            if (shape.area < 0) std::swap(below, above);
+            bins.within(shape.box, [&](std::size_t i, const PlanPoint& p) {
+                if (contains(model, loop, p))
+                    found[chunk].push_back({static_cast<std::int32_t>(i), below, above,
+                                            model.face_surface[f], height(model, loop, p)});
+            });
+        }
+    });
+    return bucketize<Hit>(points.size(), [&](const auto& put) {
+        for (const auto& part : found) {
+            for (const Hit& hit : part)
+                put(index(hit.point), hit);
+        }
+    });
+}
+
+/// The blocks of one rock mass on one vertical line: the faces at their tops and bottoms.
+class Stack {
+public:
+    /// False where a block has several tops or bottoms, or is of another rock mass.
+    bool take(std::span<const Hit> hits, const RockBlocks& blocks, std::int32_t rock) {
+        const std::int32_t first = blocks.first[index(rock)];
+        const auto count = index(blocks.blocks_of(rock));
+        top_.assign(count, nullptr);
+        bottom_.assign(count, nullptr);
+        for (const Hit& hit : hits) {
+            for (const bool is_top : {true, false}) {
+                const std::int32_t block = is_top ? hit.below : hit.above;
+                if (block < 0) continue;
+                const auto at = static_cast<std::size_t>(block - first);
+                if (block < first || at >= count) return false;
+                const Hit*& kept = (is_top ? top_ : bottom_)[at];
+                if (kept != nullptr) return false;
+                kept = &hit;
+            }
+        }
+        return true;
+    }
+
+    /// False where a block has a top alone or a bottom alone, or does not lie on the next.
+    bool write(std::span<double> z, std::span<std::int32_t> surface) const {
+        const Hit* under = nullptr;  // the face between the last block present and what follows
+        std::size_t level = 0;
+        for (std::size_t b = 0; b < top_.size(); ++b) {
+            if (top_[b] == nullptr && bottom_[b] == nullptr) continue;
+            if (top_[b] == nullptr || bottom_[b] == nullptr ||
+                (under != nullptr && bottom_[b] != under))
+                return false;
+            for (; level <= b; ++level) {
+                z[level] = bottom_[b]->height;
+                surface[level] = bottom_[b]->surface;
+            }
+            under = top_[b];
+            z[level] = std::max(under->height, z[level - 1]);
+            surface[level] = under->surface;
+            ++level;
+        }
+        if (under == nullptr) return false;
+        for (; level < z.size(); ++level) {
+            z[level] = z[level - 1];
+            surface[level] = surface[level - 1];
+        }
+        assert(std::is_sorted(z.begin(), z.end()));
+        return true;
+    }
+
+private:
+    std::vector<const Hit*> top_, bottom_;  ///< of each block; null: it has none
+};
 
 }  // namespace
 
@@ -126,86 +214,17 @@ ColumnHeights::ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
       rock_(points.size(), kOutside),
       height_(points.size() * stride_),
       surface_(points.size() * stride_) {
-    const std::vector<PlanPoint> places(points.begin(), points.end());
-    if (places.empty()) return;
-    const spatial::PointBins bins(places);
-    const std::size_t chunks = (model.face_count() + kFacesOfChunk - 1) / kFacesOfChunk;
-    std::vector<std::vector<Hit>> found(chunks);
-    parallel_chunks(chunks, execution, [&](std::size_t chunk) {
-        const std::size_t end = std::min(model.face_count(), (chunk + 1) * kFacesOfChunk);
-        for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
-            if (model.face_surface[f] == kWall) continue;
-            std::int32_t below = model.block(model.cell(f, 0)),
-                         above = model.block(model.cell(f, 1));
-            if (below == above) continue;
-            const auto loop = model.face(f);
-            const PlanShape shape(model, loop);
-            if (shape.is_vertical()) continue;
-            if (shape.area < 0) std::swap(below, above);
-            bins.within(shape.box, [&](std::size_t i, const PlanPoint& p) {
-                if (contains(model, loop, p))
-                    found[chunk].push_back({static_cast<std::int32_t>(i), below, above,
-                                            model.face_surface[f], height(model, loop, p)});
-            });
-        }
-    });
-    const Buckets<Hit> hits = bucketize<Hit>(places.size(), [&](const auto& put) {
-        for (const auto& part : found) {
-            for (const Hit& hit : part)
-                put(index(hit.point), hit);
-        }
-    });
-    found.clear();
-    parallel_ranges(places.size(), 4096, execution, [&](std::size_t begin, std::size_t end) {
-        std::vector<const Hit*> top, bottom;
+    if (points.empty()) return;
+    const Buckets<Hit> hits = hits_of(model, points, execution);
+    parallel_ranges(points.size(), 4096, execution, [&](std::size_t begin, std::size_t end) {
+        Stack stack;
         for (std::size_t i = begin; i < end; ++i) {
             if (hits[i].empty()) continue;
             const std::int32_t any = std::max(hits[i][0].below, hits[i][0].above);
-            const std::int32_t rock = blocks.rock[index(any)];
-            const auto count = index(blocks.blocks_of(rock));
-            const std::int32_t first = blocks.first[index(rock)];
-            top.assign(count, nullptr);
-            bottom.assign(count, nullptr);
-            bool whole = true;
-            for (const Hit& hit : hits[i]) {
-                for (const bool is_top : {true, false}) {
-                    const std::int32_t block = is_top ? hit.below : hit.above;
-                    if (block < 0) continue;
-                    const auto at = static_cast<std::size_t>(block - first);
-                    if (block < first || at >= count) {
-                        whole = false;
-                        continue;
-                    }
-                    const Hit*& kept = (is_top ? top : bottom)[at];
-                    whole = whole && kept == nullptr;
-                    kept = &hit;
-                }
-            }
-            double* const z = &height_[i * stride_];
-            std::int32_t* const surface = &surface_[i * stride_];
-            const Hit* under = nullptr;  // the face between the last block present and what follows
-            std::size_t level = 0;
-            for (std::size_t b = 0; b < count && whole; ++b) {
-                if (top[b] == nullptr && bottom[b] == nullptr) continue;
-                whole = top[b] != nullptr && bottom[b] != nullptr &&
-                        (under == nullptr || bottom[b] == under);
-                if (!whole) break;
-                const Hit* const below = under == nullptr ? bottom[b] : under;
-                for (; level <= b; ++level) {
-                    z[level] = below->height;
-                    surface[level] = below->surface;
-                }
-                under = top[b];
-                z[level] = std::max(under->height, z[level - 1]);
-                surface[level] = under->surface;
-                ++level;
-            }
-            whole = whole && under != nullptr;
-            rock_[i] = whole ? rock : kIncomplete;
-            for (; whole && level < stride_; ++level) {
-                z[level] = z[level - 1];
-                surface[level] = surface[level - 1];
-            }
+            rock_[i] = blocks.rock[index(any)];
+            if (!stack.take(hits[i], blocks, rock_[i]) ||
+                !stack.write({&height_[i * stride_], stride_}, {&surface_[i * stride_], stride_}))
+                rock_[i] = kIncomplete;
         }
     });
 }

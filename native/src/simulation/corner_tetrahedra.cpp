@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace realmodel::simulation {
 
@@ -53,41 +54,16 @@ void keep(Rows& rows, std::vector<std::int32_t>& labels, const IsKept& is_kept) 
     labels.resize(kept);
 }
 
-/// Which tetrahedra and triangles meet in each vertex.
-struct Incidence {
-    std::vector<std::vector<std::int32_t>> tetrahedra, triangles;
-
-    explicit Incidence(const FilledMesh& mesh)
-        : tetrahedra(mesh.points.size()), triangles(mesh.points.size()) {
-        add(mesh.tetrahedra, tetrahedra);
-        add(mesh.triangles, triangles);
-    }
-    template <class Rows>
-    static void add(const Rows& rows, std::vector<std::vector<std::int32_t>>& of_vertex) {
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            for (const std::int32_t v : rows[i])
-                of_vertex[index(v)].push_back(static_cast<std::int32_t>(i));
-    }
-};
-
-std::array<double, 3> normal(const FilledMesh& mesh, const Tetrahedron& corners,
-                             std::size_t corner) {
-    std::array<std::array<double, 3>, 3> at{};
+/// The unit normal, outward, of the face across from a corner.
+Vec3 normal(const FilledMesh& mesh, const Tetrahedron& corners, std::size_t corner) {
+    std::array<Vec3, 3> at{};
     for (std::size_t i = 0, k = 0; i < 4; ++i)
         if (i != corner) at[k++] = mesh.points[index(corners[i])];
-    std::array<std::array<double, 3>, 3> edge{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        edge[0][axis] = at[1][axis] - at[0][axis];
-        edge[1][axis] = at[2][axis] - at[0][axis];
-        edge[2][axis] = mesh.points[index(corners[corner])][axis] - at[0][axis];
-    }
-    const auto& [u, v, inward] = edge;
-    std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                            u[0] * v[1] - u[1] * v[0]};
-    const double size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    const bool turns = n[0] * inward[0] + n[1] * inward[1] + n[2] * inward[2] > 0;
+    Vec3 n = triangle_normal(at[0], at[1], at[2]);
+    const double size = length(n);
+    const bool is_inward = dot(n, minus(mesh.points[index(corners[corner])], at[0])) > 0;
     for (double& x : n)
-        x /= turns ? -size : size;
+        x /= is_inward ? -size : size;
     return n;
 }
 
@@ -96,7 +72,8 @@ class Round {
 public:
     explicit Round(FilledMesh& mesh)
         : mesh_(mesh),
-          incidence_(mesh),
+          tetrahedra_at_(rows_at(mesh, mesh.tetrahedra)),
+          triangles_at_(rows_at(mesh, mesh.triangles)),
           tetrahedra_(mesh.tetrahedra),
           triangles_(mesh.triangles),
           is_taken_(mesh.tetrahedra.size(), 0),
@@ -134,7 +111,7 @@ private:
     /// Whether no other tetrahedron has the face.
     bool is_outside(const Tetrahedron& corners, std::size_t corner, std::size_t own) const {
         const Triangle face = opposite(corners, corner);
-        for (const std::int32_t other : incidence_.tetrahedra[index(face[0])]) {
+        for (const std::int32_t other : tetrahedra_at_[index(face[0])]) {
             const Tetrahedron& its = tetrahedra_[index(other)];
             if (index(other) != own && is_gone_[index(other)] == 0 && has(its, face[0]) &&
                 has(its, face[1]) && has(its, face[2]))
@@ -147,7 +124,7 @@ private:
     /// and the others, inside until now, take their place.
     bool give_up(std::size_t t, const std::vector<std::int32_t>& inside) {
         const Tetrahedron corners = mesh_.tetrahedra[t];
-        std::vector<std::array<double, 3>> normals;
+        std::vector<Vec3> normals;
         std::vector<Triangle> old_faces, new_faces;
         for (std::size_t i = 0; i < 4; ++i) {
             const bool is_outer =
@@ -157,12 +134,9 @@ private:
         }
         for (std::size_t i = 0; i < normals.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                if (!(normals[i][0] * normals[j][0] + normals[i][1] * normals[j][1] +
-                          normals[i][2] * normals[j][2] >
-                      kFlat))
-                    return false;
+                if (!(dot(normals[i], normals[j]) > kFlat)) return false;
         std::vector<std::size_t> rows;
-        for (const std::int32_t f : incidence_.triangles[index(inside[0])]) {
+        for (const std::int32_t f : triangles_at_[index(inside[0])]) {
             const Triangle& face = triangles_[index(f)];
             // what is inside must not be on the outside, or a boundary, elsewhere
             const bool is_own =
@@ -177,7 +151,7 @@ private:
             rows.push_back(*row);
         }
         for (const std::int32_t v : corners)
-            for (const std::int32_t other : incidence_.tetrahedra[index(v)])
+            for (const std::int32_t other : tetrahedra_at_[index(v)])
                 is_taken_[index(other)] = 1;
         is_gone_[t] = 1;
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -199,7 +173,7 @@ private:
 
     /// The row of a face with sorted corners among the triangles.
     std::optional<std::size_t> row_of(const Triangle& sorted) const {
-        for (const std::int32_t f : incidence_.triangles[index(sorted[0])]) {
+        for (const std::int32_t f : triangles_at_[index(sorted[0])]) {
             const Triangle& face = mesh_.triangles[index(f)];
             if (mesh_.surface[index(f)] != kGone && has(face, sorted[0]) && has(face, sorted[1]) &&
                 has(face, sorted[2]))
@@ -222,12 +196,12 @@ private:
                                [&](std::int32_t v) { return has(corners, v); });
         };
         std::vector<std::int32_t> around;
-        for (const std::int32_t t : incidence_.tetrahedra[index(middle_of[0])]) {
+        for (const std::int32_t t : tetrahedra_at_[index(middle_of[0])]) {
             if (!has_all(tetrahedra_[index(t)])) continue;
             if (is_taken_[index(t)] != 0) return false;
             around.push_back(t);
         }
-        std::array<double, 3> middle{};
+        Vec3 middle{};
         for (const std::int32_t v : middle_of)
             for (std::size_t axis = 0; axis < 3; ++axis)
                 middle[axis] +=
@@ -246,7 +220,7 @@ private:
             is_taken_[index(t)] = 1;
             split(mesh_.tetrahedra, mesh_.region, index(t), middle_of, added);
         }
-        for (const std::int32_t f : incidence_.triangles[index(middle_of[0])])
+        for (const std::int32_t f : triangles_at_[index(middle_of[0])])
             if (has_all(mesh_.triangles[index(f)]))
                 split(mesh_.triangles, mesh_.surface, index(f), middle_of, added);
         return true;
@@ -264,8 +238,8 @@ private:
     }
 
     FilledMesh& mesh_;
-    Incidence incidence_;
-    // as they were before the round, which incidence_ is of
+    // as they were before the round
+    const Buckets<std::int32_t> tetrahedra_at_, triangles_at_;
     const std::vector<Tetrahedron> tetrahedra_;
     const std::vector<Triangle> triangles_;
     std::vector<std::uint8_t> is_taken_, is_gone_;
@@ -317,14 +291,8 @@ void drop_unused_points(FilledMesh& mesh) {
 }  // namespace
 
 double six_volumes(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
-    const auto& o = mesh.points[index(corners[0])];
-    std::array<std::array<double, 3>, 3> edge{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            edge[i][axis] = mesh.points[index(corners[i + 1])][axis] - o[axis];
-    const auto& [a, b, c] = edge;
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-           a[2] * (b[0] * c[1] - b[1] * c[0]);
+    const auto at = [&](std::size_t i) { return mesh.points[index(corners[i])]; };
+    return sixfold_volume(at(0), at(1), at(2), at(3));
 }
 
 void divide_corner_tetrahedra(FilledMesh& mesh, Progress* progress) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
 
 namespace realmodel::simulation {
@@ -13,5 +15,16 @@ void divide_corner_tetrahedra(FilledMesh& mesh, Progress* progress);
 
 /// Six times the volume, positive where the corners are in order.
 double six_volumes(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners);
+
+/// The tetrahedra or the triangles of a mesh that meet in each point.
+template <class Rows>
+Buckets<std::int32_t> rows_at(const FilledMesh& mesh, const Rows& rows) {
+    return bucketize<std::int32_t>(mesh.points.size(), [&](const auto& put) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            for (const std::int32_t v : rows[i])
+                put(index(v), static_cast<std::int32_t>(i));
+        }
+    });
+}
 
 }  // namespace realmodel::simulation

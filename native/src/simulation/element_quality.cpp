@@ -6,19 +6,12 @@
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::simulation {
 
 namespace {
-
-// checkMesh's limits, or a little within them
-constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
-constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
-constexpr double kSkewnessLimit = 4;         ///< without any option
-constexpr double kMostSkewness = 3.8;        ///< what is mended
-constexpr double kLeastWeight = 0.052;       ///< its limit is 0.05
-constexpr double kLeastShare = 0.0105;       ///< of a neighbor's volume; its limit is 0.01
 
 constexpr double kSteepFace = 0.5;       ///< cosine: of 60 degrees
 constexpr double kNoDeterminant = 1e-8;  ///< inner faces in two directions only
@@ -26,78 +19,7 @@ constexpr double kThickEnd = 3;          ///< minimum thicknesses: no block give
 constexpr double kEasedFace = 0.8;       ///< cosine: flatter faces are not what makes lines lean
 constexpr double kEasedShare = 0.1;
 
-using Point = std::array<double, 3>;
 using Face = ElementFace;
-
-double dot(const Point& a, const Point& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point difference(const Point& a, const Point& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-/// How far from its center a face is crossed, as checkMesh measures it: 1 is the edge of the face.
-/// @param way  from the center of an element to that of the face
-/// @param line  from there to the other element; at the outside to the plane of the face, upright
-/// @param share  of the length of the line that counts as the size of a smaller face
-double skewness(const Face& face, const Point& way, const Point& line, double share) {
-    const double ratio = dot(way, face.area) / dot(line, face.area);
-    Point off;  // from where the line crosses the face to its center
-    for (std::size_t k = 0; k < 3; ++k)
-        off[k] = way[k] - ratio * line[k];
-    const double far = std::sqrt(dot(off, off));
-    if (far == 0) return 0;
-    double reach = share * std::sqrt(dot(line, line));
-    for (const Point& corner : face.corners)
-        reach = std::max(reach, std::abs(dot(off, difference(corner, face.center))) / far);
-    return far / reach;
-}
-
-double inner_skewness(const Face& face, const Point& own, const Point& other) {
-    return skewness(face, difference(face.center, own), difference(other, own), 0.2);
-}
-
-double outer_skewness(const Face& face, const Point& own) {
-    const Point way = difference(face.center, own);
-    const double share = dot(way, face.area) / dot(face.area, face.area);
-    return skewness(face, way, {share * face.area[0], share * face.area[1], share * face.area[2]},
-                    0.4);
-}
-
-/// Whether checkMesh fails a face between two elements.
-bool is_bad(const Face& face, const Point& own, double own_volume, const Point& other,
-            double other_volume) {
-    const Point line = difference(other, own), way = difference(face.center, own);
-    const double along = dot(line, face.area), size = std::sqrt(dot(face.area, face.area)),
-                 length = std::sqrt(dot(line, line));
-    if (along < kMostLean * size * length) return true;
-    const double before = std::abs(dot(way, face.area)),
-                 behind = std::abs(dot(difference(other, face.center), face.area));
-    if (std::min(before, behind) < kLeastWeight * (before + behind)) return true;
-    if (std::min(own_volume, other_volume) < kLeastShare * std::max(own_volume, other_volume))
-        return true;
-    return inner_skewness(face, own, other) > kMostSkewness;
-}
-
-/// The side of a column between heights `low` and `high` at points a and b of the plan.
-Face side_face(const PlanPoint& a, const PlanPoint& b, const std::array<double, 2>& low,
-               const std::array<double, 2>& high) {
-    const double at_a = high[0] - low[0], at_b = high[1] - low[1], sum = at_a + at_b;
-    Face face{{{{a[0], a[1], low[0]},
-                {b[0], b[1], low[1]},
-                {b[0], b[1], high[1]},
-                {a[0], a[1], high[0]}}},
-              {(b[1] - a[1]) * sum / 2, -(b[0] - a[0]) * sum / 2, 0},
-              {}};
-    // of the two triangles at the diagonal from the first corner, the first is as large as at_b
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto& c = face.corners;
-        face.center[k] =
-            (at_b * (c[0][k] + c[1][k] + c[2][k]) + at_a * (c[0][k] + c[2][k] + c[3][k])) /
-            (3 * sum);
-    }
-    return face;
-}
 
 }  // namespace
 
@@ -115,7 +37,7 @@ ElementQuality::ElementQuality(const PlanTopology& plan, const PostLevels& level
         for (std::size_t i = 0; i < 3; ++i) {
             // elsewhere neighbors share all their sides
             const std::int32_t n = plan.neighbor(t, i);
-            if (n >= 0 && !plan.is_step(t, i) && columns.elements(index(n)) > 0) continue;
+            if (n >= 0 && !plan.is_inner_step(t, i) && columns.elements(index(n)) > 0) continue;
             for_sides(t, i, [&](std::size_t element, bool is_shared, std::size_t) {
                 if (!is_shared)
                     open_sides_[element] =
@@ -131,16 +53,13 @@ template <class Visit>
 void ElementQuality::for_sides(std::size_t t, std::size_t edge, const Visit& visit) const {
     using Side = std::array<std::int32_t, 4>;
     const std::size_t i = edge, j = (edge + 1) % 3;
-    const std::int32_t n = plan_.neighbor(t, i);
+    const meshing::HalfEdge twin = plan_.twin(t, i);
     std::size_t at = 0, end = 0, u = 0, v = 0;
-    if (n >= 0) {
-        at = columns_.offset[index(n)];
-        end = at + columns_.elements(index(n));
-        const auto &own = plan_.mesh().triangles[t], &beyond = plan_.mesh().triangles[index(n)];
-        while (beyond[u] != own[i])
-            ++u;
-        while (beyond[v] != own[j])
-            ++v;
+    if (!twin.is_none()) {
+        at = columns_.offset[index(twin.triangle())];
+        end = at + columns_.elements(index(twin.triangle()));
+        u = index(twin.next().index());
+        v = index(twin.index());
     }
     const auto side = [&](std::size_t e, std::size_t from, std::size_t to) {
         const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
@@ -192,9 +111,9 @@ ElementQuality::Removals ElementQuality::weak(std::span<const std::uint8_t> is_n
                 if ((independence > kNoDeterminant || (is_first && is_last)) &&
                     divides_blocks(t, i, gone) && rise >= kThickEnd * minimum_thickness_)
                     continue;
-                const PostLevels::Removal removal{plan_.mesh().triangles[t][i], gone,
+                const PostLevels::Removal removal{plan_.corners(t)[i], gone,
                                                   upper ? low[i] : high[i]};
-                const auto levels = levels_.levels(index(plan_.posts()[3 * t + i]));
+                const auto levels = levels_.levels(plan_.post(t, i));
                 if (is_first && is_last) {
                     if (is_narrow[t] != 0) found.push_back(removal);
                 } else if (!is_weak && levels.back() - levels.front() == 2) {
@@ -221,13 +140,12 @@ void ElementQuality::give_up(std::size_t t, std::size_t element, bool upper,
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
     for (std::size_t i = 0; i < 3; ++i) {
         if (low[i] == high[i]) continue;
-        found.push_back(
-            {plan_.mesh().triangles[t][i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
+        found.push_back({plan_.corners(t)[i], upper ? high[i] : low[i], upper ? low[i] : high[i]});
     }
 }
 
-std::vector<ElementQuality::Body> ElementQuality::bodies() const {
-    std::vector<Body> made(columns_.fronts.size());
+std::vector<ElementBody> ElementQuality::bodies() const {
+    std::vector<ElementBody> made(columns_.fronts.size());
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
         for (std::size_t e = columns_.offset[t]; e < columns_.offset[t] + columns_.elements(t); ++e)
@@ -244,7 +162,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
         poll(progress_, t);
         if (columns_.elements(t) == 0) continue;
         const std::size_t first = columns_.offset[t], end = first + columns_.elements(t);
-        const auto& nodes = plan_.mesh().triangles[t];
+        const auto& nodes = plan_.corners(t);
         for (std::size_t e = first; e <= end; ++e) {
             const Front& front = columns_.fronts[e];
             Face face{{}, flat_area(t, front), {}};
@@ -265,9 +183,9 @@ void ElementQuality::for_faces(const Visit& visit) const {
             for_sides(t, i, [&](std::size_t e, bool is_shared, std::size_t beyond) {
                 if (is_shared && index(n) < t) return;
                 const Front &low = columns_.fronts[e], &high = columns_.fronts[e + 1];
-                const Face face = side_face(
-                    plan_.mesh().vertices[index(nodes[i])], plan_.mesh().vertices[index(nodes[j])],
-                    {a[index(low[i])], b[index(low[j])]}, {a[index(high[i])], b[index(high[j])]});
+                const Face face = side_face(plan_.point(nodes[i]), plan_.point(nodes[j]),
+                                            {a[index(low[i])], b[index(low[j])]},
+                                            {a[index(high[i])], b[index(high[j])]});
                 visit(face, Place{t, e}, is_shared ? Place{index(n), beyond} : Place{t, kNone});
             });
         }
@@ -275,7 +193,7 @@ void ElementQuality::for_faces(const Visit& visit) const {
 }
 
 ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> is_narrow) const {
-    const std::vector<Body> bodies = this->bodies();
+    const std::vector<ElementBody> bodies = this->bodies();
     Removals found;
     const auto give_up = [&](const Place& place, bool upper) {
         const auto [t, e] = place;
@@ -299,8 +217,8 @@ ElementQuality::Removals ElementQuality::failing(std::span<const std::uint8_t> i
     }
     for_faces([&](const Face& face, const Place& own, const Place& other) {
         if (other.element == kNone) return;
-        const Body &a = bodies[own.element], &b = bodies[other.element];
-        if (!is_bad(face, a.center, a.volume, b.center, b.volume)) return;
+        const ElementBody &a = bodies[own.element], &b = bodies[other.element];
+        if (!is_bad(face, a, b)) return;
         // the face goes, and the smaller element with it
         const bool is_own = a.volume < b.volume;
         const auto [t, e] = is_own ? own : other;
@@ -320,8 +238,7 @@ ElementQuality::Skewed ElementQuality::skewed(bool divided) const {
         const ColumnFronts parts = tetrahedra(whole);
         find_skewed({plan_, levels_, parts, minimum_thickness_, progress_}, whole, found);
     }
-    std::sort(found.tall.begin(), found.tall.end());
-    found.tall.erase(std::unique(found.tall.begin(), found.tall.end()), found.tall.end());
+    sort_unique(found.tall);
     return found;
 }
 
@@ -332,7 +249,7 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
     ColumnFronts made;
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
-        const auto& nodes = plan_.mesh().triangles[t];
+        const auto& nodes = plan_.corners(t);
         std::array<std::size_t, 3> order{0, 1, 2};
         std::sort(order.begin(), order.end(),
                   [&](std::size_t a, std::size_t b) { return nodes[a] > nodes[b]; });
@@ -361,12 +278,12 @@ ColumnFronts ElementQuality::tetrahedra(std::vector<std::size_t>& whole) const {
 /// is not one itself
 void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const std::size_t> whole,
                                  Skewed& found) const {
-    const std::vector<Body> bodies = this->bodies(),
-                            of_parts = whole.empty() ? bodies : parts.bodies();
+    const std::vector<ElementBody> bodies = this->bodies(),
+                                   of_parts = whole.empty() ? bodies : parts.bodies();
     const auto whole_of = [&](std::size_t part) { return whole.empty() ? part : whole[part]; };
     parts.for_faces([&](const Face& face, const Place& own, const Place& other) {
         const bool is_outer = other.element == kNone, is_side = face.area[2] == 0;
-        const Point& center = of_parts[own.element].center;
+        const Vec3& center = of_parts[own.element].center;
         const double skewness = is_outer
                                     ? outer_skewness(face, center)
                                     : inner_skewness(face, center, of_parts[other.element].center);
@@ -393,7 +310,7 @@ void ElementQuality::find_skewed(const ElementQuality& parts, std::span<const st
 /// Whether an element that has to get thicker joins the next above it, not that below: one of its
 /// own block rather than of another, the smaller one rather than the larger one.
 bool ElementQuality::joins_upward(std::size_t t, std::size_t e,
-                                  const std::vector<Body>& bodies) const {
+                                  const std::vector<ElementBody>& bodies) const {
     if (e == columns_.offset[t]) return true;
     if (e + 1 == columns_.offset[t] + columns_.elements(t)) return false;
     const bool below = columns_.blocks[e - 1] == columns_.blocks[e],
@@ -405,7 +322,7 @@ std::vector<PostLevels::Move> ElementQuality::steep(std::span<const std::uint8_t
     std::vector<PostLevels::Move> moves;
     for (std::size_t t = 0; t < plan_.triangles(); ++t) {
         poll(progress_, t);
-        const auto& nodes = plan_.mesh().triangles[t];
+        const auto& nodes = plan_.corners(t);
         if (std::none_of(nodes.begin(), nodes.end(),
                          [&](std::int32_t n) { return is_asked[index(n)] != 0; }))
             continue;
@@ -433,7 +350,7 @@ void ElementQuality::add_spare(Removals& last, Removals& found) const {
         elements[t] = columns_.elements(t);
     const auto around = bucketize<std::int32_t>(plan_.nodes(), [&](const auto& put) {
         for (std::size_t t = 0; t < plan_.triangles(); ++t) {
-            for (const std::int32_t n : plan_.mesh().triangles[t])
+            for (const std::int32_t n : plan_.corners(t))
                 put(index(n), static_cast<std::int32_t>(t));
         }
     });
@@ -456,7 +373,7 @@ void ElementQuality::add_spare(Removals& last, Removals& found) const {
 /// Whether an element is higher than its triangle is wide: it would only get worse if it became one
 /// with the next.
 bool ElementQuality::is_tall(std::size_t t, std::size_t element) const {
-    const Body own = body(t, element);
+    const ElementBody own = body(t, element);
     const double area = flat_area(t, columns_.fronts[element])[2];
     return own.volume > area * std::sqrt(2 * area);
 }
@@ -464,7 +381,7 @@ bool ElementQuality::is_tall(std::size_t t, std::size_t element) const {
 /// Whether a height is not just one between layers of one block: without it a block would lose
 /// volume.
 bool ElementQuality::divides_blocks(std::size_t t, std::size_t corner, std::int32_t height) const {
-    const auto own = levels_.levels(index(plan_.posts()[3 * t + corner]));
+    const auto own = levels_.levels(plan_.post(t, corner));
     const auto blocks = levels_.layer_blocks(plan_.rock(t));
     std::int32_t below = -1, above = -1;
     for (std::size_t l = 0; l + 1 < own.size(); ++l) {
@@ -486,17 +403,17 @@ std::size_t ElementQuality::moved_corners(std::size_t element) const {
 /// from the direction across the face between them. Asked of faces that are steeper, or flatter,
 /// than an angle of this cosine.
 bool ElementQuality::leans_at(std::size_t t, std::size_t below, double cosine, bool steeper) const {
-    const Point area = flat_area(t, columns_.fronts[below + 1]);
+    const Vec3 area = flat_area(t, columns_.fronts[below + 1]);
     const double across = dot(area, area);
     if ((area[2] < cosine * std::sqrt(across)) != steeper) return false;
-    const Point line = difference(body(t, below + 1).center, body(t, below).center);
+    const Vec3 line = minus(body(t, below + 1).center, body(t, below).center);
     return dot(line, area) < kMostLean * std::sqrt(dot(line, line) * across);
 }
 
 /// The center of an element's volume: its upright edges weigh as they are long.
-ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) const {
+ElementBody ElementQuality::body(std::size_t t, std::size_t element) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
-    std::array<Point, 3> from;
+    std::array<Vec3, 3> from;
     std::array<double, 3> rise;
     double total = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -506,7 +423,7 @@ ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) co
     }
     // integrals over a triangle of two linear functions: 1/12 of their products at different
     // corners, 1/6 at the same
-    Body made{};
+    ElementBody made{};
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
             const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
@@ -515,58 +432,38 @@ ElementQuality::Body ElementQuality::body(std::size_t t, std::size_t element) co
             made.center[2] += weight * (from[i][2] + rise[i] / 2);
         }
     }
-    const Point u = difference(from[1], from[0]), v = difference(from[2], from[0]);
-    made.volume = (u[0] * v[1] - u[1] * v[0]) * total / 6;
+    const Vec3 u = minus(from[1], from[0]), v = minus(from[2], from[0]);
+    made.volume = cross(u, v)[2] * total / 6;
     return made;
 }
 
-ElementQuality::Point ElementQuality::flat_area(std::size_t t, const Front& front) const {
-    const Point a = position(t, 0, front[0]), u = difference(position(t, 1, front[1]), a),
-                v = difference(position(t, 2, front[2]), a);
-    return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
-            (u[0] * v[1] - u[1] * v[0]) / 2};
+Vec3 ElementQuality::flat_area(std::size_t t, const Front& front) const {
+    return times(0.5, triangle_normal(position(t, 0, front[0]), position(t, 1, front[1]),
+                                      position(t, 2, front[2])));
 }
 
-ElementQuality::Point ElementQuality::position(std::size_t t, std::size_t corner,
-                                               std::int32_t at) const {
-    const std::int32_t node = plan_.mesh().triangles[t][corner];
-    const PlanPoint& p = plan_.mesh().vertices[index(node)];
+Vec3 ElementQuality::position(std::size_t t, std::size_t corner, std::int32_t at) const {
+    const std::int32_t node = plan_.corners(t)[corner];
+    const PlanPoint& p = plan_.point(node);
     return {p[0], p[1], levels_.heights(node)[index(at)]};
 }
 
 double ElementQuality::determinant(std::size_t t, std::size_t element, bool is_first, bool is_last,
                                    unsigned open_sides) const {
     const Front &low = columns_.fronts[element], &high = columns_.fronts[element + 1];
-    std::array<Point, 5> areas;
+    std::array<Vec3, 5> areas;
     std::size_t count = 0;
     if (!is_first) areas[count++] = flat_area(t, low);
     if (!is_last) areas[count++] = flat_area(t, high);
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         if ((open_sides >> i & 1U) != 0 || (low[i] == high[i] && low[j] == high[j])) continue;
-        const Point a = position(t, i, low[i]), b = position(t, j, low[j]);
+        const Vec3 a = position(t, i, low[i]), b = position(t, j, low[j]);
         const double rise =
             (position(t, i, high[i])[2] - a[2] + position(t, j, high[j])[2] - b[2]) / 2;
         areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
     }
-    double mean = 0;
-    for (std::size_t f = 0; f < count; ++f)
-        mean += std::sqrt(dot(areas[f], areas[f]));
-    if (!(mean > 0)) return 0;
-    mean /= static_cast<double>(count);
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-    for (std::size_t f = 0; f < count; ++f) {
-        const double x = areas[f][0] / mean, y = areas[f][1] / mean, z = areas[f][2] / mean;
-        xx += x * x;
-        xy += x * y;
-        xz += x * z;
-        yy += y * y;
-        yz += y * z;
-        zz += z * z;
-    }
-    return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
-                    xz * (xy * yz - yy * xz)) /
-           8;
+    return determinant_of(std::span(areas).first(count));
 }
 
 }  // namespace realmodel::simulation

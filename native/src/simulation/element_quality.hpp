@@ -10,16 +10,11 @@
 
 #include "realmodel/base/progress.hpp"
 #include "simulation/column_fronts.hpp"
+#include "simulation/face_quality.hpp"
 #include "simulation/plan_topology.hpp"
 #include "simulation/post_levels.hpp"
 
 namespace realmodel::simulation {
-
-/// A face of an element, of three or four corners (of three one is twice there).
-struct ElementFace {
-    std::array<std::array<double, 3>, 4> corners;
-    std::array<double, 3> area, center;
-};
 
 /// Finds the elements that solvers do badly with, as OpenFOAM's checkMesh measures it, and what
 /// mends them. Heights are read anew each time; fronts must stay.
@@ -51,7 +46,7 @@ public:
     struct Skewed {
         std::size_t faces = 0;
         double most = 0;
-        std::array<double, 3> place{};
+        Vec3 place{};
         std::vector<std::int32_t> tall;
         Removals removals;
     };
@@ -64,13 +59,6 @@ public:
     std::vector<PostLevels::Move> steep(std::span<const std::uint8_t> is_asked) const;
 
 private:
-    using Point = std::array<double, 3>;
-    struct Body {
-        Point center;
-        double volume;
-    };
-
-    using Face = ElementFace;
     static constexpr std::size_t kNone = SIZE_MAX;
     /// An element, or what is outside beside a triangle.
     struct Place {
@@ -78,12 +66,12 @@ private:
     };
 
     std::size_t moved_corners(std::size_t element) const;
-    Point position(std::size_t t, std::size_t corner, std::int32_t at) const;
-    Point flat_area(std::size_t t, const Front& front) const;
-    Body body(std::size_t t, std::size_t element) const;
-    std::vector<Body> bodies() const;
+    Vec3 position(std::size_t t, std::size_t corner, std::int32_t at) const;
+    Vec3 flat_area(std::size_t t, const Front& front) const;
+    ElementBody body(std::size_t t, std::size_t element) const;
+    std::vector<ElementBody> bodies() const;
     bool gives_upward(std::size_t t, std::size_t element) const;
-    bool joins_upward(std::size_t t, std::size_t e, const std::vector<Body>& bodies) const;
+    bool joins_upward(std::size_t t, std::size_t e, const std::vector<ElementBody>& bodies) const;
     void give_up(std::size_t t, std::size_t element, bool upper, Removals& found) const;
     /// Calls visit(face, own, other) for each face; the other may be outside, own may not.
     template <class Visit>

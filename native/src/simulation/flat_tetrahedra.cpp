@@ -6,16 +6,14 @@
 #include <cmath>
 #include <vector>
 
-#include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "simulation/corner_tetrahedra.hpp"
 
 namespace realmodel::simulation {
 
 namespace {
-
-using Vector = std::array<double, 3>;
 
 constexpr double kFlat = 0.002;  ///< twice the limit of checkMesh
 constexpr double kMoved = 0.5;   ///< of the tolerance: how far corners on surfaces move
@@ -23,33 +21,13 @@ constexpr double kBetter = 1.02;
 constexpr int kRounds = 20;
 constexpr std::array kSteps{0.4, 0.2, 0.1, 0.05, 0.025};  ///< of an edge
 
-Vector minus(const Vector& a, const Vector& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double size(const Vector& a) {
-    return std::sqrt(dot(a, a));
-}
-
 class Thickening {
 public:
     Thickening(FilledMesh& mesh, double most)
         : mesh_(mesh),
           most_(most),
           start_(mesh.points),
-          around_(bucketize<std::int32_t>(mesh.points.size(),
-                                          [&](const auto& put) {
-                                              for (std::size_t t = 0; t < mesh.tetrahedra.size();
-                                                   ++t) {
-                                                  for (const std::int32_t v : mesh.tetrahedra[t])
-                                                      put(index(v), static_cast<std::int32_t>(t));
-                                              }
-                                          })),
+          around_(rows_at(mesh, mesh.tetrahedra)),
           freedom_(mesh.points.size(), kInside) {
         std::vector<std::int32_t> surface(mesh.points.size(), INT32_MIN);
         for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -99,25 +77,23 @@ private:
     /// Moves a corner across the plane of the others and across those of the faces it is of, to
     /// where the flattest element around is the roundest.
     bool move(std::int32_t v, std::size_t t) {
-        std::array<Vector, 3> others{};
+        std::array<Vec3, 3> others{};
         std::size_t count = 0;
         for (const std::int32_t n : mesh_.tetrahedra[t]) {
             if (n != v) others[count++] = mesh_.points[index(n)];
         }
-        Vector& at = mesh_.points[index(v)];
-        const Vector from = at;
+        Vec3& at = mesh_.points[index(v)];
+        const Vec3 from = at;
         double edge = 0;
-        for (const Vector& other : others)
-            edge += size(minus(other, from)) / 3;
-        Vector best = from;
+        for (const Vec3& other : others)
+            edge += length(minus(other, from)) / 3;
+        Vec3 best = from;
         double largest = kBetter * least_around(v);
-        const auto try_at = [&](Vector place) {
-            const Vector& start = start_[index(v)];
-            const double far = size(minus(place, start));
-            if (freedom_[index(v)] == kOnSurface && far > most_) {
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                    place[axis] = start[axis] + 0.999 * most_ / far * (place[axis] - start[axis]);
-            }
+        const auto try_at = [&](Vec3 place) {
+            const Vec3& start = start_[index(v)];
+            const double far = length(minus(place, start));
+            if (freedom_[index(v)] == kOnSurface && far > most_)
+                place = moved(start, 0.999 * most_ / far, minus(place, start));
             at = place;
             const double own = least_around(v);
             if (own <= largest) return;
@@ -125,18 +101,16 @@ private:
             best = place;
         };
         for (std::size_t k = 0; k < 4; ++k) {
-            const Vector& a = k == 1 ? from : others[0];
-            const Vector& b = k == 2 ? from : others[1];
-            const Vector& c = k == 3 ? from : others[2];
-            Vector across = cross(minus(b, a), minus(c, a));
-            const double length = size(across);
-            if (!(length > 0)) continue;
-            for (double& x : across)
-                x *= edge / length;
+            const Vec3& a = k == 1 ? from : others[0];
+            const Vec3& b = k == 2 ? from : others[1];
+            const Vec3& c = k == 3 ? from : others[2];
+            const Vec3 normal = triangle_normal(a, b, c);
+            const double area = length(normal);
+            if (!(area > 0)) continue;
+            const Vec3 across = times(edge / area, normal);
             for (const double step : kSteps) {
                 for (const double way : {-step, step})
-                    try_at({from[0] + way * across[0], from[1] + way * across[1],
-                            from[2] + way * across[2]});
+                    try_at(moved(from, way, across));
             }
         }
         at = best;
@@ -145,7 +119,7 @@ private:
 
     FilledMesh& mesh_;
     const double most_;
-    const std::vector<Vector> start_;
+    const std::vector<Vec3> start_;
     const Buckets<std::int32_t> around_;
     std::vector<Freedom> freedom_;
 };
@@ -153,17 +127,17 @@ private:
 }  // namespace
 
 double roundness(const FilledMesh& mesh, const std::array<std::int32_t, 4>& corners) {
-    std::array<Vector, 4> area{};
+    std::array<Vec3, 4> area{};
     double mean = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        const Vector& a = mesh.points[index(corners[(i + 1) % 4])];
-        area[i] = cross(minus(mesh.points[index(corners[(i + 2) % 4])], a),
-                        minus(mesh.points[index(corners[(i + 3) % 4])], a));
-        mean += size(area[i]) / 4;
+        const Vec3& a = mesh.points[index(corners[(i + 1) % 4])];
+        area[i] = triangle_normal(a, mesh.points[index(corners[(i + 2) % 4])],
+                                  mesh.points[index(corners[(i + 3) % 4])]);
+        mean += length(area[i]) / 4;
     }
     if (!(mean > 0)) return 0;
-    std::array<Vector, 3> sum{};
-    for (const Vector& n : area) {
+    std::array<Vec3, 3> sum{};
+    for (const Vec3& n : area) {
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j)
                 sum[i][j] += n[i] * n[j] / (mean * mean);

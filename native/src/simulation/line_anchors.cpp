@@ -9,6 +9,7 @@
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::simulation {
@@ -17,10 +18,6 @@ namespace {
 
 constexpr double kNearerOnSteps = 0.7;
 constexpr double kCornerTurn = 0.35;  ///< radians: a wall that turns by more has a corner
-
-double distance(const PlanPoint& a, const PlanPoint& b) {
-    return elementary::hypot(a[0] - b[0], a[1] - b[1]);
-}
 
 /// Points in a grid of squares, at least `spacing` apart; those of one chain, `share` of it.
 class SparsePoints {
@@ -108,9 +105,8 @@ double turn_of_steps(const Traces& traces, const Graph& graph, std::int32_t poin
         double least = std::numbers::pi;
         for (std::size_t j = 0; j < directions.size(); ++j) {
             if (i == j) continue;
-            const double dot =
-                -(directions[i][0] * directions[j][0] + directions[i][1] * directions[j][1]);
-            least = std::min(least, elementary::acos(std::clamp(dot, -1.0, 1.0)));
+            const double cosine = -dot(directions[i], directions[j]);
+            least = std::min(least, elementary::acos(std::clamp(cosine, -1.0, 1.0)));
         }
         sharpest = std::max(sharpest, least);
     }
@@ -212,8 +208,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                     const double own = distance(p, q);
                     for (; next < before + own; next += step) {
                         const double part = (next - before) / own;
-                        add({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])}, number,
-                            share);
+                        add(moved(p, part, minus(q, p)), number, share);
                     }
                     before += own;
                 }

@@ -4,13 +4,16 @@
 // after they were moved, whatever they were; and anchors are apart, so no angle between two is
 // sharp.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "base/disjoint_sets.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
@@ -25,21 +28,12 @@ namespace {
 constexpr double kAnchorSpacing = 0.8;  ///< of an edge length
 constexpr double kGradation = 0.25;     ///< as in realmodel/meshing
 
-double squared_distance(const PlanPoint& a, const PlanPoint& b) {
-    const double x = a[0] - b[0], y = a[1] - b[1];
-    return x * x + y * y;
-}
-
 double distance_to_line(const PlanPoint& p, std::span<const PlanPoint> line) {
     double nearest = HUGE_VAL;
     for (std::size_t i = 0; i < line.size(); ++i) {
         const PlanPoint &a = line[i], &b = line[std::min(i + 1, line.size() - 1)];
-        const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
-        const double along =
-            square > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square, 0.0, 1.0)
-                       : 0;
-        nearest = std::min(nearest,
-                           std::sqrt(squared_distance(p, {a[0] + along * dx, a[1] + along * dy})));
+        const PlanPoint at = moved(a, nearest_share(a, b, p), minus(b, a));
+        nearest = std::min(nearest, std::sqrt(squared_distance(p, at)));
     }
     return nearest;
 }
@@ -72,8 +66,7 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
         }
     }
     for (auto& own : neighbors) {
-        std::sort(own.begin(), own.end());
-        own.erase(std::unique(own.begin(), own.end()), own.end());
+        sort_unique(own);
     }
     const auto nearest = [&](std::int32_t from, const PlanPoint& p) {
         double best = squared_distance(anchors[index(from)], p);
@@ -167,9 +160,8 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const auto face = index(faces.find(static_cast<std::int32_t>(t)));
         area[face].resize(blocks.count() + 1);
-        const auto &a = anchors[index(triangles[t][0])], &b = anchors[index(triangles[t][1])],
-                   &c = anchors[index(triangles[t][2])];
-        const double own = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        const auto [a, b, c] = triangles[t];
+        const double own = twice_area(anchors[index(a)], anchors[index(b)], anchors[index(c)]);
         for (std::size_t s = 0; s < kShares.size(); ++s) {
             const std::int32_t rock = columns.rock(t * kShares.size() + s);
             area[face][rock < 0 ? blocks.count() : index(rock)] += own;
@@ -234,6 +226,7 @@ std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
             choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(best));
             if (choices.empty()) next.erase(before);
         } while (here != start && next.contains(here));
+        assert(here == start);
         rings.push_back(std::move(ring));
     }
     return rings;

@@ -3,68 +3,68 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "meshing/flat_mesh.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
+#include "simulation/posts.hpp"
 
 namespace realmodel::simulation {
 
-/// The planar mesh with what lies beside each triangle, and the segments that its edges lie on.
-/// Edge i of a triangle goes from its corner i to its corner (i + 1) % 3.
+/// The planar mesh that columns stand on, with the segments that its edges lie on, the rock mass of
+/// each triangle and the posts of its nodes. Edge i of a triangle goes from its corner i to its
+/// corner (i + 1) % 3.
 class PlanTopology {
 public:
-    /// Border triangles with two edges outside are turned where that leaves no sharp angle, else
-    /// divided: an element there would have neighbors in one direction only. Triangles that steps
-    /// bound are divided until each has at most one edge on a step, and the corner across from it
-    /// has one post. Sharp angles that are left from this are made better by turning edges and
-    /// moving nodes.
+    /// @param mesh  adapted first: adapt_plan()
     PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh);
 
-    const meshing::PlanarMesh& mesh() const { return mesh_; }
-    meshing::PlanarMesh&& take_mesh() { return std::move(mesh_); }
-    std::size_t triangles() const { return mesh_.triangles.size(); }
-    std::size_t nodes() const { return mesh_.vertices.size(); }
-    std::int32_t node(std::size_t corner) const { return mesh_.triangles[corner / 3][corner % 3]; }
-    std::int32_t neighbor(std::size_t t, std::size_t edge) const { return neighbor_[t][edge]; }
+    const meshing::FlatMesh& mesh() const { return mesh_; }
+    meshing::PlanarMesh take_mesh() { return {std::move(mesh_.points), std::move(mesh_.corners)}; }
+    std::size_t triangles() const { return mesh_.corners.size(); }
+    std::size_t nodes() const { return mesh_.points.size(); }
+    const std::array<std::int32_t, 3>& corners(std::size_t t) const { return mesh_.corners[t]; }
+    const PlanPoint& point(std::int32_t node) const { return mesh_.points[index(node)]; }
+    /// The same edge in the triangle beyond; none at the border.
+    meshing::HalfEdge twin(std::size_t t, std::size_t edge) const { return mesh_.twins[t][edge]; }
+    /// -1 at the border.
+    std::int32_t neighbor(std::size_t t, std::size_t edge) const {
+        return twin(t, edge).triangle();
+    }
     /// The segment that an edge lies on, or -1.
     std::int32_t segment(std::size_t t, std::size_t edge) const { return segment_[t][edge]; }
     /// Whether an edge lies between triangles whose heights may differ there.
-    bool is_step(std::size_t t, std::size_t edge) const;
+    bool is_inner_step(std::size_t t, std::size_t edge) const {
+        return is_step_[t][edge] && !twin(t, edge).is_none();
+    }
     std::int32_t rock(std::size_t t) const { return rock_[t]; }
 
-    /// The part of the surroundings of its node that each corner (3 a triangle) lies in, numbered
-    /// from 0: parts are divided by steps.
-    const std::vector<std::int32_t>& posts() const { return post_; }
-    std::size_t post_count() const { return post_node_.size(); }
-    std::int32_t post_node(std::size_t post) const { return post_node_[post]; }
-    /// Whether a node may have heights that are not of all its triangles: it is an end of an edge
-    /// on a step with triangles on both sides, or the region touches itself there.
-    bool is_divided(std::int32_t node) const {
-        return is_divided_[static_cast<std::size_t>(node)] != 0;
+    std::size_t post(std::size_t t, std::size_t corner) const {
+        return index(posts_.of_corner[3 * t + corner]);
     }
+    /// The posts at both ends of an edge, as the triangle beyond has them.
+    std::array<std::size_t, 2> posts_beyond(std::size_t t, std::size_t edge) const {
+        const meshing::HalfEdge other = twin(t, edge);
+        const auto own = [&](meshing::HalfEdge from) {
+            return post(index(from.triangle()), index(from.index()));
+        };
+        return {own(other.next()), own(other)};
+    }
+    std::size_t post_count() const { return posts_.node.size(); }
+    std::int32_t post_node(std::size_t post) const { return posts_.node[post]; }
+    /// Posts::is_divided
+    bool is_divided(std::int32_t node) const { return posts_.is_divided[index(node)] != 0; }
 
 private:
-    void link();
-    void mark_segments();
-    void spread_rocks();
-    void find_posts();
-    bool turn_border_triangles();
-    bool divide_between_steps();
-    void refresh();
-    void improve();
-    void turn_and_move();
-    bool divide_lines();
-    bool turn_edges();
-    std::int32_t corner_across(std::size_t t, std::int32_t a, std::int32_t b) const;
-    bool has_border_corner(std::size_t t, std::size_t n, std::size_t i) const;
-    bool move_nodes();
-    std::vector<std::uint8_t> free_nodes() const;
+    void spread_rocks(const PlanLines& lines);
+    bool is_valid() const;
 
-    const PlanLines& lines_;
-    meshing::PlanarMesh mesh_;
-    std::vector<std::array<std::int32_t, 3>> neighbor_, segment_;
-    std::vector<std::int32_t> rock_, post_, post_node_;
-    std::vector<std::uint8_t> is_divided_;
+    meshing::FlatMesh mesh_;
+    std::vector<std::array<std::int32_t, 3>> segment_;
+    std::vector<std::array<bool, 3>> is_step_;
+    std::vector<std::int32_t> rock_;
+    Posts posts_;
 };
 
 }  // namespace realmodel::simulation

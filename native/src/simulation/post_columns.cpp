@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/plan_tiles.hpp"
@@ -39,9 +41,7 @@ public:
                 if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) > 0) continue;
                 const int from = exact::orient2d(p, q, a), to = exact::orient2d(p, q, b);
                 if (from * to > 0 || (from == 0 && to == 0)) continue;
-                const auto off = [&](const PlanPoint& c) {
-                    return std::abs((q[0] - p[0]) * (c[1] - p[1]) - (q[1] - p[1]) * (c[0] - p[0]));
-                };
+                const auto off = [&](const PlanPoint& c) { return std::abs(twice_area(p, q, c)); };
                 const double whole = off(a) + off(b);
                 if (whole > 0) free = std::min(free, off(a) / whole);
             }
@@ -63,7 +63,95 @@ private:
 
 PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
     if (share == 1) return b;
-    return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+    return moved(a, share, minus(b, a));
+}
+
+/// Where the model is asked for the heights of each post.
+class PostPositions {
+public:
+    PostPositions(const PlanLines& lines, const PlanTopology& plan)
+        : plan_(plan),
+          is_beside_(plan.post_count(), 0),
+          center_(plan.post_count()),
+          free_(plan.post_count(), -1) {
+        const Steps steps(lines.steps);
+        find_beside();
+        for (std::size_t p = 0; p < center_.size(); ++p)
+            center_[p] = node(p);
+        // of the triangles around a post the one that is best seen from its node
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            const auto [a, b, c] = plan.corners(t);
+            const PlanPoint middle = middle_of(plan.point(a), plan.point(b), plan.point(c));
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t p = plan.post(t, i);
+                if (free_[p] >= 1) continue;
+                const double own = is_beside_[p] != 0 ? steps.free_way(middle, node(p)) : 1;
+                if (own <= free_[p]) continue;
+                free_[p] = own;
+                center_[p] = middle;
+            }
+        }
+    }
+
+    /// At the node, or beside a step or the border as near to it as the way is free.
+    PlanPoint nearest(std::size_t post) const {
+        constexpr double kBesideStep = 1 - 1e-9;
+        return is_beside_[post] == 0
+                   ? node(post)
+                   : between(center_[post], node(post), free_[post] * kBesideStep);
+    }
+    /// Part of the way to there, from the middle of a triangle.
+    PlanPoint farther(std::size_t post, double share) const {
+        return between(center_[post], node(post), std::max(free_[post], 0.0) * share);
+    }
+
+private:
+    const PlanPoint& node(std::size_t post) const { return plan_.point(plan_.post_node(post)); }
+
+    void find_beside() {
+        std::vector<std::uint8_t> is_beside(plan_.nodes(), 0);
+        for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (plan_.neighbor(t, i) < 0 || plan_.is_inner_step(t, i))
+                    is_beside[index(plan_.corners(t)[i])] =
+                        is_beside[index(plan_.corners(t)[(i + 1) % 3])] = 1;
+            }
+        }
+        for (std::size_t p = 0; p < is_beside_.size(); ++p)
+            is_beside_[p] = is_beside[index(plan_.post_node(p))];
+    }
+
+    const PlanTopology& plan_;
+    std::vector<std::uint8_t> is_beside_;  ///< a step or the border
+    std::vector<PlanPoint> center_;        ///< the middle of a triangle at the post
+    std::vector<double> free_;             ///< how much of the way from there to the node is
+};
+
+/// What a simplified border added to the region is as beside it.
+template <class IsSettled>
+void copy_from_neighbors(const PlanTopology& plan, const IsSettled& is_settled,
+                         ColumnHeights& columns) {
+    for (bool any = true; any;) {
+        any = false;
+        std::vector<std::pair<std::size_t, std::size_t>> copies;
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t post = plan.post(t, i);
+                if (is_settled(post)) continue;
+                for (std::size_t k = 1; k < 3; ++k) {
+                    const std::size_t other = plan.post(t, (i + k) % 3);
+                    if (!is_settled(other)) continue;
+                    copies.emplace_back(post, other);
+                    break;
+                }
+            }
+        }
+        for (const auto& [to, from] : copies) {
+            if (is_settled(to)) continue;
+            columns.copy(to, columns, from);
+            any = true;
+        }
+    }
 }
 
 }  // namespace
@@ -71,81 +159,36 @@ PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
 ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
                            const PlanLines& lines, const PlanTopology& plan,
                            const Execution& execution) {
-    constexpr double kBesideStep = 1 - 1e-9;
-    const Steps steps(lines.steps);
     const std::size_t count = plan.post_count();
-    std::vector<std::uint8_t> beside(plan.nodes(), 0);
+    const PostPositions positions(lines, plan);
     std::vector<std::int32_t> rock(count, -1);
-    for (std::size_t c = 0; c < 3 * plan.triangles(); ++c) {
-        rock[index(plan.posts()[c])] = plan.rock(c / 3);
-        if (plan.neighbor(c / 3, c % 3) >= 0 && !plan.is_step(c / 3, c % 3)) continue;
-        beside[index(plan.node(c))] = 1;
-        beside[index(plan.mesh().triangles[c / 3][(c % 3 + 1) % 3])] = 1;
-    }
-    std::vector<PlanPoint> center(count), place(count);
-    std::vector<double> free(count, -1);
-    for (std::size_t p = 0; p < count; ++p)
-        place[p] = center[p] = plan.mesh().vertices[index(plan.post_node(p))];
-    for (std::size_t c = 0; c < 3 * plan.triangles(); ++c) {
-        const auto post = index(plan.posts()[c]);
-        const auto node = index(plan.node(c));
-        if (free[post] >= 1) continue;
-        PlanPoint middle{};
-        for (const std::int32_t n : plan.mesh().triangles[c / 3]) {
-            for (std::size_t axis = 0; axis < 2; ++axis)
-                middle[axis] += plan.mesh().vertices[index(n)][axis] / 3;
-        }
-        const double own =
-            beside[node] != 0 ? steps.free_way(middle, plan.mesh().vertices[node]) : 1;
-        if (own <= free[post]) continue;
-        free[post] = own;
-        center[post] = middle;
+    for (std::size_t t = 0; t < plan.triangles(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i)
+            rock[plan.post(t, i)] = plan.rock(t);
     }
     std::vector<std::size_t> open(count);
+    std::vector<PlanPoint> asked(count);
     for (std::size_t p = 0; p < count; ++p) {
         open[p] = p;
-        if (beside[index(plan.post_node(p))] != 0)
-            place[p] = between(center[p], place[p], free[p] * kBesideStep);
+        asked[p] = positions.nearest(p);
     }
-    ColumnHeights columns(model, blocks, place, execution);
-    const auto settled = [&](std::size_t p) { return columns.rock(p) == rock[p] && rock[p] >= 0; };
-    // where rounding, or a border that was simplified, leaves nothing: further from the node
+    ColumnHeights columns(model, blocks, asked, execution);
+    const auto is_settled = [&](std::size_t p) {
+        return columns.rock(p) == rock[p] && rock[p] >= 0;
+    };
+    // where rounding, or a border that was simplified, leaves nothing: farther from the node
     for (const double share : {1 - 1e-6, 0.99, 0.9, 0.7, 0.4, 0.0}) {
-        std::erase_if(open, settled);
+        std::erase_if(open, is_settled);
         if (open.empty()) return columns;
-        std::vector<PlanPoint> tried;
-        for (const std::size_t p : open) {
-            tried.push_back(between(center[p], plan.mesh().vertices[index(plan.post_node(p))],
-                                    std::max(free[p], 0.0) * share));
-        }
-        const ColumnHeights found(model, blocks, tried, execution);
+        asked.clear();
+        for (const std::size_t p : open)
+            asked.push_back(positions.farther(p, share));
+        const ColumnHeights found(model, blocks, asked, execution);
         for (std::size_t i = 0; i < open.size(); ++i) {
             if (found.rock(i) == rock[open[i]]) columns.copy(open[i], found, i);
         }
     }
-    // what a simplified border added to the region is as beside it
-    for (bool any = true; any;) {
-        any = false;
-        std::vector<std::pair<std::size_t, std::size_t>> copies;
-        for (std::size_t t = 0; t < plan.triangles(); ++t) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                const auto post = index(plan.posts()[3 * t + i]);
-                if (settled(post)) continue;
-                for (std::size_t k = 1; k < 3; ++k) {
-                    const auto other = index(plan.posts()[3 * t + (i + k) % 3]);
-                    if (settled(other)) {
-                        copies.emplace_back(post, other);
-                        break;
-                    }
-                }
-            }
-        }
-        for (const auto& [to, from] : copies) {
-            if (settled(to)) continue;
-            columns.copy(to, columns, from);
-            any = true;
-        }
-    }
+    copy_from_neighbors(plan, is_settled, columns);
     return columns;
 }
 

@@ -2,8 +2,9 @@
 #include "simulation/post_levels.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
-#include <tuple>
 
 #include "base/index.hpp"
 #include "realmodel/base/errors.hpp"
@@ -80,325 +81,302 @@ std::vector<std::vector<std::int32_t>> ending_blocks(const PlanTopology& plan,
             for (std::int32_t e = lines.ending_offsets[index(s)];
                  e < lines.ending_offsets[index(s) + 1]; ++e) {
                 for (const std::size_t k : {i, (i + 1) % 3})
-                    ending[index(plan.mesh().triangles[t][k])].push_back(
-                        lines.ending_blocks[index(e)]);
+                    ending[index(plan.corners(t)[k])].push_back(lines.ending_blocks[index(e)]);
             }
         }
     }
     return ending;
 }
 
-}  // namespace
-
-PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const RockBlocks& blocks,
-                       const ColumnHeights& columns, const Layering& layering) {
-    const double thickness = layering.minimum_thickness;
-    const std::size_t posts = plan.post_count(), stride = columns.stride();
+/// The levels of all posts, `stride` for each, without what is thinner than asked: levels that are
+/// nearer are joined, and so are those of thin ends of layers.
+std::vector<double> thick_levels(const ColumnInput& input, double thickness) {
+    const auto& [lines, blocks, plan, columns] = input;
     const auto ending = ending_blocks(plan, lines);
-    std::vector<double> heights(posts * stride);
-    std::vector<double> thickest(blocks.rock.size(), 0);
-    for (std::size_t p = 0; p < posts; ++p) {
+    std::vector<double> heights(plan.post_count() * columns.stride());
+    for (std::size_t p = 0; p < plan.post_count(); ++p) {
         const std::int32_t rock = columns.rock(p);
         if (rock < 0) continue;
-        const auto own = columns.levels(p);
-        Column column(own.first(index(blocks.blocks_of(rock)) + 1));
+        const auto own = columns.levels(p).first(index(blocks.blocks_of(rock)) + 1);
+        Column column(own);
         for (const std::int32_t block : ending[index(plan.post_node(p))]) {
             const auto at = static_cast<std::size_t>(block - blocks.first[index(rock)]);
             if (blocks.rock[index(block)] == rock && own[at + 1] - own[at] < 2 * thickness)
                 column.join_at(at);
         }
         column.join_thin(thickness);
-        const std::span<double> joined(&heights[p * stride], index(blocks.blocks_of(rock)) + 1);
-        column.write(joined);
-        for (std::size_t b = 0; b + 1 < joined.size(); ++b) {
-            double& most = thickest[index(blocks.first[index(rock)]) + b];
-            most = std::max(most, joined[b + 1] - joined[b]);
-        }
+        column.write({&heights[p * columns.stride()], own.size()});
     }
-    // layers of each block
-    std::vector<std::int32_t> layers(blocks.rock.size());
-    layer_block_.resize(blocks.count());
-    for (std::size_t b = 0; b < layers.size(); ++b) {
-        const double wanted = layering.layer_thickness > 0
-                                  ? std::ceil(thickest[b] / layering.layer_thickness)
-                                  : layering.layers[b];
-        if (wanted > kMostLayers)
-            throw InputError("too_large", "a layer would be divided into more than 100000", -1,
-                             {static_cast<std::int64_t>(b)});
-        layers[b] = std::max(1, static_cast<std::int32_t>(wanted));
-        if (layering.layer_thickness > 0 && layering.layers[b] > 0)
-            layers[b] = std::min(layers[b], layering.layers[b]);
-        auto& own = layer_block_[index(blocks.rock[b])];
-        own.insert(own.end(), index(layers[b]), static_cast<std::int32_t>(b));
-    }
-    // levels of each post among its own heights
-    offset_.assign(posts + 1, 0);
-    for (std::size_t p = 0; p < posts; ++p) {
-        const std::int32_t rock = columns.rock(p);
-        offset_[p + 1] = offset_[p] + (rock < 0 ? 0 : layer_block_[index(rock)].size() + 1);
-    }
-    level_.resize(offset_.back());
-    std::vector<std::int32_t> divided_of(plan.nodes(), -1);
-    std::vector<Divided> divided;
-    std::vector<std::size_t> first_height(posts + 1, 0);
-    std::vector<double> own_heights;
-    for (std::size_t p = 0; p < posts; ++p) {
-        first_height[p] = own_heights.size();
+    return heights;
+}
+
+/// How thick each block is at most.
+std::vector<double> thickest_of(const ColumnInput& input, std::span<const double> joined) {
+    const auto& [lines, blocks, plan, columns] = input;
+    std::vector<double> thickest(blocks.rock.size(), 0);
+    for (std::size_t p = 0; p < columns.size(); ++p) {
         const std::int32_t rock = columns.rock(p);
         if (rock < 0) continue;
-        const double* const z = &heights[p * stride];
-        std::int32_t* level = &level_[offset_[p]];
-        own_heights.push_back(z[0]);
-        std::int32_t at = 0;
-        *level++ = at;
-        const auto first = index(blocks.first[index(rock)]);
+        const double* const z = &joined[p * columns.stride()];
         for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
-            const std::int32_t most = layers[first + b];
-            const double own = z[b + 1] - z[b];
-            std::int32_t parts = 0;
-            if (own > 0) {
-                const double wanted = std::min<double>(most, std::floor(own / thickness));
-                parts = std::max(1, static_cast<std::int32_t>(wanted));
-            }
-            for (std::int32_t k = 1; k <= parts; ++k)
-                own_heights.push_back(k == parts ? z[b + 1] : z[b] + own * k / parts);
-            // where there are fewer layers the uppermost end
-            for (std::int32_t k = 1; k <= most; ++k)
-                *level++ = at + std::min(k, parts);
-            at += parts;
-        }
-        if (plan.is_divided(plan.post_node(p))) {
-            std::int32_t& number = divided_of[index(plan.post_node(p))];
-            if (number < 0) {
-                number = static_cast<std::int32_t>(divided.size());
-                divided.emplace_back();
-            }
-            divided[index(number)].posts.push_back(static_cast<std::int32_t>(p));
+            double& most = thickest[index(blocks.first[index(rock)]) + b];
+            most = std::max(most, z[b + 1] - z[b]);
         }
     }
-    first_height[posts] = own_heights.size();
-    // posts of one node: heights nearer than the thickness become one
-    for (Divided& node : divided) {
-        struct Entry {
-            double height;
-            std::int32_t post, at, joined;
-        };
-        std::vector<Entry> all;
-        for (const std::int32_t p : node.posts) {
-            for (std::size_t h = first_height[index(p)]; h < first_height[index(p) + 1]; ++h)
-                all.push_back(
-                    {own_heights[h], p, static_cast<std::int32_t>(h - first_height[index(p)]), 0});
-        }
-        std::sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) {
-            return std::tie(a.height, a.post) < std::tie(b.height, b.post);
-        });
-        for (Entry& entry : all) {
-            if (node.heights.empty() || entry.height - node.heights.back() >= 0.999 * thickness)
-                node.heights.push_back(entry.height);
-            entry.joined = static_cast<std::int32_t>(node.heights.size()) - 1;
-        }
-        for (const std::int32_t p : node.posts) {
-            std::vector<std::int32_t> joined(first_height[index(p) + 1] - first_height[index(p)]);
-            for (const Entry& entry : all) {
-                if (entry.post == p) joined[index(entry.at)] = entry.joined;
-            }
-            for (std::size_t l = offset_[index(p)]; l < offset_[index(p) + 1]; ++l)
-                level_[l] = joined[index(level_[l])];
-        }
-    }
-    if (!divided.empty()) join_crossing(plan, divided, divided_of);
-    // heights by node
-    std::vector<std::int32_t> post_of(plan.nodes(), -1);
-    for (std::size_t p = 0; p < posts; ++p) {
-        if (columns.rock(p) >= 0) post_of[index(plan.post_node(p))] = static_cast<std::int32_t>(p);
-    }
-    node_offset_.assign(1, 0);
-    height_.reserve(own_heights.size());
-    for (std::size_t n = 0; n < plan.nodes(); ++n) {
-        if (divided_of[n] >= 0) {
-            const auto& own = divided[index(divided_of[n])].heights;
-            height_.insert(height_.end(), own.begin(), own.end());
-        } else if (post_of[n] >= 0) {
-            const auto p = index(post_of[n]);
-            height_.insert(height_.end(),
-                           own_heights.begin() + static_cast<std::ptrdiff_t>(first_height[p]),
-                           own_heights.begin() + static_cast<std::ptrdiff_t>(first_height[p + 1]));
-        }
-        node_offset_.push_back(height_.size());
-    }
-    first_height_ = height_;
+    return thickest;
 }
 
-std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals,
-                               bool several) {
-    std::sort(removals.begin(), removals.end());
-    constexpr std::int32_t kKept = -1;
-    std::vector<std::int32_t> into(height_.size(), kKept);
-    std::vector<std::uint8_t> is_used(height_.size(), 0);
-    std::size_t count = 0;
-    std::int32_t last = -1;
-    for (const Removal& removal : removals) {
-        if (!several && removal.node == last) continue;
-        const std::size_t first = node_offset_[index(removal.node)],
-                          gone = first + index(removal.height), kept = first + index(removal.into);
-        if (is_used[gone] != 0 || is_used[kept] != 0) continue;
-        is_used[gone] = is_used[kept] = 1;
-        into[gone] = removal.into;
-        last = removal.node;
-        ++count;
-    }
-    // the new numbers of heights among those of their node
-    std::vector<std::int32_t> number(height_.size());
-    std::size_t to = 0;
-    std::vector<std::size_t> offset{0};
-    offset.reserve(node_offset_.size());
-    for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
-        const std::size_t begin = node_offset_[n], end = node_offset_[n + 1];
-        for (std::size_t h = begin; h < end; ++h) {
-            if (into[h] != kKept) continue;
-            number[h] = static_cast<std::int32_t>(to - offset[n]);
-            first_height_[to] = first_height_[h];
-            height_[to++] = height_[h];
-        }
-        for (std::size_t h = begin; h < end; ++h) {
-            if (into[h] != kKept) number[h] = number[begin + index(into[h])];
-        }
-        offset.push_back(to);
-    }
-    for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
-        const std::size_t begin = node_offset_[index(plan.post_node(p))];
-        for (std::size_t l = offset_[p]; l < offset_[p + 1]; ++l)
-            level_[l] = number[begin + index(level_[l])];
-    }
-    node_offset_ = std::move(offset);
-    height_.resize(to);
-    first_height_.resize(to);
-    return count;
-}
+}  // namespace
 
-bool PostLevels::ease(const std::vector<Move>& moves, double most, double gap, bool alone,
-                      std::span<const std::uint8_t> has_flat_base,
-                      std::span<std::uint8_t> is_moved) {
-    constexpr double kLeast = 1e-3;  // of `most`: what is worth another round
-    struct Asked {
-        double by = 0;
-        std::int32_t count = 0, lowest = INT32_MAX;
+/// Makes the levels of all posts, step by step: run().
+class LevelBuilder {
+public:
+    LevelBuilder(PostLevels& made, const ColumnInput& input, double thickness)
+        : made_(made), input_(input), thickness_(thickness), divided_of_(input.plan.nodes(), -1) {}
+
+    void run(const Layering& layering) {
+        const auto joined = thick_levels(input_, thickness_);
+        const auto layers = number_layers(layering, thickest_of(input_, joined));
+        const OwnHeights own = divide_blocks(joined, layers);
+        find_divided();
+        for (DividedNode& node : divided_)
+            share_heights(node, own);
+        if (!divided_.empty()) join_crossing();
+        gather_heights(own);
+    }
+
+private:
+    /// The heights of each post alone, one post after another.
+    struct OwnHeights {
+        std::vector<double> heights;
+        std::vector<std::size_t> begin{0};
+        std::span<const double> of(std::size_t post) const {
+            return std::span(heights).subspan(begin[post], begin[post + 1] - begin[post]);
+        }
     };
-    std::vector<Asked> asked(alone ? height_.size() : node_offset_.size() - 1);
-    for (const Move& move : moves) {
-        const auto n = index(move.node);
-        Asked& own = asked[alone ? node_offset_[n] + index(move.height) : n];
-        own.by += move.by;
-        ++own.count;
-        own.lowest = std::min(own.lowest, move.height);
-    }
-    bool any = false;
-    for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
-        const std::size_t first = node_offset_[n], end = node_offset_[n + 1];
-        const auto move = [&](std::size_t at, double by) {
-            const double own = height_[at];
-            if (has_flat_base[n] != 0 && at == first) return;
-            double to = std::clamp(own + by, first_height_[at] - most, first_height_[at] + most);
-            if (at > first) to = std::max(to, std::min(own, height_[at - 1] + gap));
-            if (at + 1 < end) to = std::min(to, std::max(own, height_[at + 1] - gap));
-            if (std::abs(to - own) < kLeast * gap) return;
-            height_[at] = to;
-            is_moved[n] = 1;
-            any = true;
-        };
-        if (alone) {
-            for (std::size_t at = first; at < end; ++at) {
-                if (asked[at].count > 0) move(at, asked[at].by / asked[at].count);
-            }
-            continue;
-        }
-        if (asked[n].count == 0) continue;
-        const double by = asked[n].by / asked[n].count, bottom = height_[first],
-                     span = height_[first + index(asked[n].lowest)] - bottom;
-        const auto share = [&](std::size_t at) {
-            return has_flat_base[n] == 0 ? 1 : std::min(1.0, (height_[at] - bottom) / span);
-        };
-        // what moves first makes room for the next
-        if (by < 0) {
-            for (std::size_t at = first; at < end; ++at)
-                move(at, share(at) * by);
-        } else {
-            for (std::size_t at = end; at-- > first;)
-                move(at, share(at) * by);
-        }
-    }
-    return any;
-}
-
-void PostLevels::join(Divided& node, std::int32_t from, std::int32_t to) {
-    node.heights[index(from)] = (node.heights[index(from)] + node.heights[index(to)]) / 2;
-    node.heights.erase(node.heights.begin() + from + 1, node.heights.begin() + to + 1);
-    for (const std::int32_t p : node.posts) {
-        for (std::size_t l = offset_[index(p)]; l < offset_[index(p) + 1]; ++l) {
-            if (level_[l] > to) {
-                level_[l] -= to - from;
-            } else if (level_[l] > from) {
-                level_[l] = from;
-            }
-        }
-    }
-}
-
-/// Where a level of one side of a step crosses one of the other between two nodes, the two are
-/// joined at the node where they are nearer. Each time a node has fewer heights, so this ends.
-void PostLevels::join_crossing(const PlanTopology& plan, std::vector<Divided>& nodes,
-                               std::span<const std::int32_t> divided_of) {
+    /// A node with several posts, which share heights.
+    struct DividedNode {
+        std::vector<std::int32_t> posts;
+        std::vector<double> heights;
+    };
+    /// An edge on a step: its ends, and the posts of its left and its right side there.
     struct StepEdge {
         std::array<std::int32_t, 2> nodes;
-        std::array<std::array<std::size_t, 2>, 2> posts;  // left and right at both nodes
+        std::array<std::array<std::size_t, 2>, 2> posts;
     };
-    std::vector<StepEdge> edges;
-    for (std::size_t t = 0; t < plan.triangles(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t n = plan.neighbor(t, i);
-            if (n < static_cast<std::int32_t>(t) || !plan.is_step(t, i)) continue;
-            const auto &own = plan.mesh().triangles[t], &beyond = plan.mesh().triangles[index(n)];
-            StepEdge edge{{own[i], own[(i + 1) % 3]}, {}};
-            for (std::size_t k = 0; k < 2; ++k) {
-                edge.posts[0][k] = index(plan.posts()[3 * t + (i + k) % 3]);
-                for (std::size_t j = 0; j < 3; ++j) {
-                    if (beyond[j] == edge.nodes[k])
-                        edge.posts[1][k] = index(plan.posts()[3 * index(n) + j]);
-                }
+
+    std::span<std::int32_t> levels_of(std::size_t post) {
+        return std::span(made_.level_)
+            .subspan(made_.offset_[post], made_.offset_[post + 1] - made_.offset_[post]);
+    }
+
+    void find_divided() {
+        const PlanTopology& plan = input_.plan;
+        for (std::size_t p = 0; p < plan.post_count(); ++p) {
+            if (input_.heights.rock(p) < 0 || !plan.is_divided(plan.post_node(p))) continue;
+            std::int32_t& number = divided_of_[index(plan.post_node(p))];
+            if (number < 0) {
+                number = static_cast<std::int32_t>(divided_.size());
+                divided_.emplace_back();
             }
-            edges.push_back(edge);
+            divided_[index(number)].posts.push_back(static_cast<std::int32_t>(p));
         }
     }
-    const auto gap = [&](std::int32_t node, std::int32_t a, std::int32_t b) {
-        const auto& own = nodes[index(divided_of[index(node)])].heights;
-        return std::abs(own[index(a)] - own[index(b)]);
-    };
-    for (bool any = true; any;) {
-        any = false;
-        for (const StepEdge& edge : edges) {
-            for (bool crossing = true; crossing;) {
-                crossing = false;
-                const auto left0 = levels(edge.posts[0][0]), left1 = levels(edge.posts[0][1]),
-                           right0 = levels(edge.posts[1][0]), right1 = levels(edge.posts[1][1]);
-                if (left0.empty() || left1.empty() || right0.empty() || right1.empty()) break;
-                for (std::size_t i = 0; i < left0.size() && !crossing; ++i) {
-                    for (std::size_t j = 0; j < right0.size() && !crossing; ++j) {
-                        const std::int32_t at0 = left0[i] - right0[j], at1 = left1[i] - right1[j];
-                        if ((at0 > 0) == (at1 > 0) || at0 == 0 || at1 == 0) continue;
-                        const std::size_t k = gap(edge.nodes[0], left0[i], right0[j]) <=
-                                                      gap(edge.nodes[1], left1[i], right1[j])
-                                                  ? 0
-                                                  : 1;
-                        const auto a = k == 0 ? left0[i] : left1[i],
-                                   b = k == 0 ? right0[j] : right1[j];
-                        join(nodes[index(divided_of[index(edge.nodes[k])])], std::min(a, b),
-                             std::max(a, b));
-                        any = crossing = true;
+
+    /// The layers of each block, and the block of each layer.
+    std::vector<std::int32_t> number_layers(const Layering& layering,
+                                            std::span<const double> thickest) {
+        const RockBlocks& blocks = input_.blocks;
+        std::vector<std::int32_t> layers(blocks.rock.size());
+        made_.layer_block_.resize(blocks.count());
+        for (std::size_t b = 0; b < layers.size(); ++b) {
+            const double wanted = layering.layer_thickness > 0
+                                      ? std::ceil(thickest[b] / layering.layer_thickness)
+                                      : layering.layers[b];
+            if (wanted > kMostLayers)
+                throw InputError("too_large", "a layer would be divided into more than 100000", -1,
+                                 {static_cast<std::int64_t>(b)});
+            layers[b] = std::max(1, static_cast<std::int32_t>(wanted));
+            if (layering.layer_thickness > 0 && layering.layers[b] > 0)
+                layers[b] = std::min(layers[b], layering.layers[b]);
+            auto& own = made_.layer_block_[index(blocks.rock[b])];
+            own.insert(own.end(), index(layers[b]), static_cast<std::int32_t>(b));
+        }
+        return layers;
+    }
+
+    /// Blocks become layers, but no more than their thickness allows; where there are fewer than
+    /// elsewhere the uppermost end. Levels are numbers of the post's own heights at first.
+    OwnHeights divide_blocks(std::span<const double> joined, std::span<const std::int32_t> layers) {
+        const auto& [lines, blocks, plan, columns] = input_;
+        made_.offset_.assign(1, 0);
+        OwnHeights own;
+        for (std::size_t p = 0; p < columns.size(); ++p) {
+            const std::int32_t rock = columns.rock(p);
+            if (rock >= 0) {
+                const double* const z = &joined[p * columns.stride()];
+                const auto first = index(blocks.first[index(rock)]);
+                std::int32_t at = 0;
+                own.heights.push_back(z[0]);
+                made_.level_.push_back(at);
+                for (std::size_t b = 0; b < index(blocks.blocks_of(rock)); ++b) {
+                    const double thick = z[b + 1] - z[b];
+                    std::int32_t parts = 0;
+                    if (thick > 0) {
+                        const double wanted =
+                            std::min<double>(layers[first + b], std::floor(thick / thickness_));
+                        parts = std::max(1, static_cast<std::int32_t>(wanted));
                     }
+                    for (std::int32_t k = 1; k <= parts; ++k)
+                        own.heights.push_back(k == parts ? z[b + 1] : z[b] + thick * k / parts);
+                    for (std::int32_t k = 1; k <= layers[first + b]; ++k)
+                        made_.level_.push_back(at + std::min(k, parts));
+                    at += parts;
+                }
+            }
+            made_.offset_.push_back(made_.level_.size());
+            own.begin.push_back(own.heights.size());
+        }
+        return own;
+    }
+
+    /// Heights of the posts of one node that are nearer than the thickness become one.
+    void share_heights(DividedNode& node, const OwnHeights& own) {
+        struct Entry {
+            double height;
+            std::size_t post;  ///< of the node's
+            auto operator<=>(const Entry&) const = default;
+        };
+        std::vector<Entry> all;
+        for (std::size_t k = 0; k < node.posts.size(); ++k) {
+            for (const double height : own.of(index(node.posts[k])))
+                all.push_back({height, k});
+        }
+        std::sort(all.begin(), all.end());
+        std::vector<std::vector<std::int32_t>> joined(node.posts.size());
+        for (const Entry& entry : all) {
+            if (node.heights.empty() || entry.height - node.heights.back() >= 0.999 * thickness_)
+                node.heights.push_back(entry.height);
+            joined[entry.post].push_back(static_cast<std::int32_t>(node.heights.size()) - 1);
+        }
+        for (std::size_t k = 0; k < node.posts.size(); ++k) {
+            for (std::int32_t& level : levels_of(index(node.posts[k])))
+                level = joined[k][index(level)];
+        }
+    }
+
+    /// Where a level of one side of a step crosses one of the other between two nodes, the two are
+    /// joined at the node where they are nearer. Each time a node has fewer heights, so this ends.
+    void join_crossing() {
+        const PlanTopology& plan = input_.plan;
+        std::vector<StepEdge> edges;
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (!plan.is_inner_step(t, i) || index(plan.neighbor(t, i)) < t) continue;
+                const std::size_t j = (i + 1) % 3;
+                edges.push_back({{plan.corners(t)[i], plan.corners(t)[j]},
+                                 {{{plan.post(t, i), plan.post(t, j)}, plan.posts_beyond(t, i)}}});
+            }
+        }
+        for (bool any = true; any;) {
+            any = false;
+            for (const StepEdge& edge : edges) {
+                while (join_first_crossing(edge))
+                    any = true;
+            }
+        }
+    }
+
+    bool join_first_crossing(const StepEdge& edge) {
+        const auto side = [&](std::size_t of, std::size_t end) {
+            return made_.levels(edge.posts[of][end]);
+        };
+        const std::array left{side(0, 0), side(0, 1)}, right{side(1, 0), side(1, 1)};
+        if (left[0].empty() || left[1].empty() || right[0].empty() || right[1].empty())
+            return false;
+        const auto node = [&](std::size_t end) -> DividedNode& {
+            return divided_[index(divided_of_[index(edge.nodes[end])])];
+        };
+        for (std::size_t i = 0; i < left[0].size(); ++i) {
+            for (std::size_t j = 0; j < right[0].size(); ++j) {
+                const std::int32_t at0 = left[0][i] - right[0][j], at1 = left[1][i] - right[1][j];
+                if ((at0 > 0) == (at1 > 0) || at0 == 0 || at1 == 0) continue;
+                const auto gap = [&](std::size_t end) {
+                    const auto& own = node(end).heights;
+                    return std::abs(own[index(left[end][i])] - own[index(right[end][j])]);
+                };
+                const std::size_t end = gap(0) <= gap(1) ? 0 : 1;
+                const auto [from, to] = unordered(left[end][i], right[end][j]);
+                join(node(end), from, to);
+                return true;
+            }
+        }
+        return false;
+    }
+
+    void join(DividedNode& node, std::int32_t from, std::int32_t to) {
+        node.heights[index(from)] = (node.heights[index(from)] + node.heights[index(to)]) / 2;
+        node.heights.erase(node.heights.begin() + from + 1, node.heights.begin() + to + 1);
+        for (const std::int32_t p : node.posts) {
+            for (std::int32_t& level : levels_of(index(p))) {
+                if (level > to) {
+                    level -= to - from;
+                } else if (level > from) {
+                    level = from;
                 }
             }
         }
     }
+
+    /// The heights of all nodes.
+    void gather_heights(const OwnHeights& own) {
+        const auto& [lines, blocks, plan, columns] = input_;
+        std::vector<std::int32_t> post_of(plan.nodes(), -1);
+        for (std::size_t p = 0; p < plan.post_count(); ++p) {
+            if (columns.rock(p) >= 0)
+                post_of[index(plan.post_node(p))] = static_cast<std::int32_t>(p);
+        }
+        made_.node_offset_.assign(1, 0);
+        for (std::size_t n = 0; n < plan.nodes(); ++n) {
+            std::span<const double> heights;
+            if (divided_of_[n] >= 0) {
+                heights = divided_[index(divided_of_[n])].heights;
+            } else if (post_of[n] >= 0) {
+                heights = own.of(index(post_of[n]));
+            }
+            made_.height_.insert(made_.height_.end(), heights.begin(), heights.end());
+            made_.node_offset_.push_back(made_.height_.size());
+        }
+        made_.first_height_ = made_.height_;
+    }
+
+    PostLevels& made_;
+    const ColumnInput& input_;
+    const double thickness_;
+    std::vector<DividedNode> divided_;
+    std::vector<std::int32_t> divided_of_;  ///< of each node, -1: it has one post
+};
+
+PostLevels::PostLevels(const ColumnInput& input, const Layering& layering) {
+    LevelBuilder(*this, input, layering.minimum_thickness).run(layering);
+    assert(is_valid(input.plan));
+}
+
+/// What columns rely on: the heights of a node ascend, and so do the levels of each of its posts,
+/// which are numbers of these.
+[[maybe_unused]] bool PostLevels::is_valid(const PlanTopology& plan) const {
+    for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
+        const auto own = heights(static_cast<std::int32_t>(n));
+        if (!std::is_sorted(own.begin(), own.end())) return false;
+    }
+    for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
+        const auto own = levels(p);
+        if (own.empty()) continue;
+        if (own.front() < 0 || !std::is_sorted(own.begin(), own.end()) ||
+            index(own.back()) >= heights(plan.post_node(p)).size())
+            return false;
+    }
+    return true;
 }
 
 }  // namespace realmodel::simulation

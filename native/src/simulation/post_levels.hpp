@@ -10,14 +10,21 @@
 
 namespace realmodel::simulation {
 
+/// What columns are made from.
+struct ColumnInput {
+    const PlanLines& lines;
+    const RockBlocks& blocks;
+    const PlanTopology& plan;
+    const ColumnHeights& heights;  ///< of each post
+};
+
 /// The heights of all posts once layers are divided and nothing thin is left. The posts of a node
 /// share its heights, which ascend by the minimum thickness at least. Level l of a post is the
 /// bottom of layer l of its rock mass, counted upward through its blocks.
 class PostLevels {
 public:
     /// @throws InputError kind too_large
-    PostLevels(const PlanTopology& plan, const PlanLines& lines, const RockBlocks& blocks,
-               const ColumnHeights& columns, const Layering& layering);
+    PostLevels(const ColumnInput& input, const Layering& layering);
 
     /// How many layers a rock mass has, and the block of each.
     std::span<const std::int32_t> layer_blocks(std::int32_t rock) const {
@@ -61,13 +68,8 @@ public:
               std::span<const std::uint8_t> has_flat_base, std::span<std::uint8_t> is_moved);
 
 private:
-    struct Divided {
-        std::vector<std::int32_t> posts;
-        std::vector<double> heights;
-    };
-    void join(Divided& node, std::int32_t from, std::int32_t to);
-    void join_crossing(const PlanTopology& plan, std::vector<Divided>& nodes,
-                       std::span<const std::int32_t> divided_of);
+    friend class LevelBuilder;
+    bool is_valid(const PlanTopology& plan) const;
 
     std::vector<std::vector<std::int32_t>> layer_block_;  ///< of each rock mass
     std::vector<std::size_t> offset_, node_offset_;

@@ -2,10 +2,13 @@
 #include "simulation/traces.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
+#include <utility>
 
 #include "base/counting_sort.hpp"
 #include "base/index.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "simulation/column_heights.hpp"
 
@@ -18,37 +21,43 @@ struct BorderEdge {
     std::int32_t to, key, direction;
 };
 
-}  // namespace
-
-Traces traces_of(const ComplexView& model, Progress* progress) {
-    const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
-    const auto edges = bucketize<BorderEdge>(model.vertex_count(), [&](const auto& put) {
+/// The edges of tops and bottoms of blocks, and of the top of the model (as of a block more).
+Buckets<BorderEdge> border_edges(const ComplexView& model, Progress* progress) {
+    return bucketize<BorderEdge>(model.vertex_count(), [&](const auto& put) {
         for (std::size_t f = 0; f < model.face_count(); ++f) {
             poll(progress, f);
-            const std::int32_t first = model.block(model.cell(f, 0)),
-                               second = model.block(model.cell(f, 1));
-            if (first == second || is_vertical(model, f)) continue;
-            const bool first_below = faces_up(model, f);
+            std::int32_t below = model.block(model.cell(f, 0)),
+                         above = model.block(model.cell(f, 1));
+            if (below == above || is_vertical(model, f)) continue;
+            const bool is_upward = faces_up(model, f);
+            if (!is_upward) std::swap(below, above);
             const auto loop = model.face(f);
             std::int32_t from = loop.back();
             for (const std::int32_t to : loop) {
-                for (const bool is_top : {true, false}) {
-                    const std::int32_t block = is_top == first_below ? first : second;
-                    if (block >= 0)
-                        put(index(std::min(from, to)),
-                            BorderEdge{std::max(from, to), 2 * block + (is_top ? 0 : 1),
-                                       (from < to) == first_below ? 1 : -1});
-                }
-                const std::int32_t below = first_below ? first : second,
-                                   above = first_below ? second : first;
-                if (below >= 0 && above < 0)
-                    put(index(std::min(from, to)), BorderEdge{std::max(from, to), top_of_all,
-                                                              (from < to) == first_below ? 1 : -1});
+                const auto add = [&, a = from](std::int32_t key) {
+                    const auto [low, high] = unordered(a, to);
+                    put(index(low), BorderEdge{high, key, (a < to) == is_upward ? 1 : -1});
+                };
+                if (below >= 0) add(2 * below);
+                if (above >= 0) add(2 * above + 1);
+                if (below >= 0 && above < 0) add(static_cast<std::int32_t>(2 * model.blocks));
                 from = to;
             }
         }
     });
-    std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t>> found;  // ends, block
+}
+
+/// Of a trace between two vertices: what ends there (Traces::Segment::block).
+struct VertexTrace {
+    std::int32_t from, to, block;
+};
+
+/// Edges that no other face of the same top or bottom continues. One that is open in the top and
+/// the bottom of a block is where the block ends without thickness.
+std::vector<VertexTrace> open_edges(const ComplexView& model, Progress* progress) {
+    const auto edges = border_edges(model, progress);
+    const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
+    std::vector<VertexTrace> found;
     std::vector<BorderEdge> own;
     for (std::size_t v = 0; v < edges.size(); ++v) {
         poll(progress, v);
@@ -56,51 +65,51 @@ Traces traces_of(const ComplexView& model, Progress* progress) {
         std::sort(own.begin(), own.end(), [](const BorderEdge& a, const BorderEdge& b) {
             return std::tie(a.to, a.key) < std::tie(b.to, b.key);
         });
-        std::int32_t open = -1;  // the key of the last open edge
-        std::int32_t open_to = -1;
-        for (std::size_t i = 0; i < own.size();) {
+        BorderEdge open{-1, -1, 0};  // the last
+        for (std::size_t i = 0, end = 0; i < own.size(); i = end) {
             std::int32_t sum = 0;
-            std::size_t j = i;
-            for (; j < own.size() && own[j].to == own[i].to && own[j].key == own[i].key; ++j)
-                sum += own[j].direction;
-            if (sum != 0) {
-                const std::int32_t key = own[i].key;
-                if (key == top_of_all) {
-                    found.emplace_back(static_cast<std::int32_t>(v), own[i].to, Traces::kOfTop);
-                } else if (key % 2 == 1 && open == key - 1 && open_to == own[i].to) {
-                    found.back() = {static_cast<std::int32_t>(v), own[i].to, key / 2};
-                } else {
-                    found.emplace_back(static_cast<std::int32_t>(v), own[i].to, -1);
-                }
-                open = key;
-                open_to = own[i].to;
+            for (; end < own.size() && own[end].to == own[i].to && own[end].key == own[i].key;
+                 ++end)
+                sum += own[end].direction;
+            if (sum == 0) continue;
+            const auto [to, key, direction] = own[i];
+            VertexTrace trace{static_cast<std::int32_t>(v), to, -1};
+            if (key == top_of_all) trace.block = Traces::kOfTop;
+            if (key % 2 == 1 && open.key == key - 1 && open.to == to) {
+                trace.block = key / 2;
+                found.pop_back();  // the step that the top alone would be
             }
-            i = j;
+            found.push_back(trace);
+            open = own[i];
         }
     }
+    return found;
+}
+
+}  // namespace
+
+Traces traces_of(const ComplexView& model, Progress* progress) {
+    const std::vector<VertexTrace> found = open_edges(model, progress);
     Traces traces;
     const auto plan = [&](std::int32_t v) {
         const auto p = model.vertex(v);
         return PlanPoint{p[0], p[1]};
     };
-    for (const auto& [from, to, block] : found) {
-        traces.points.push_back(plan(from));
-        traces.points.push_back(plan(to));
+    for (const VertexTrace& trace : found) {
+        traces.points.push_back(plan(trace.from));
+        traces.points.push_back(plan(trace.to));
     }
-    std::sort(traces.points.begin(), traces.points.end());
-    traces.points.erase(std::unique(traces.points.begin(), traces.points.end()),
-                        traces.points.end());
+    sort_unique(traces.points);
     const auto number = [&](std::int32_t v) {
         const auto at = std::lower_bound(traces.points.begin(), traces.points.end(), plan(v));
+        assert(at != traces.points.end() && *at == plan(v));
         return static_cast<std::int32_t>(at - traces.points.begin());
     };
-    for (const auto& [from, to, block] : found) {
-        const std::int32_t a = number(from), b = number(to);
-        if (a != b) traces.segments.push_back({{std::min(a, b), std::max(a, b)}, block});
+    for (const VertexTrace& trace : found) {
+        const auto ends = unordered(number(trace.from), number(trace.to));
+        if (ends[0] != ends[1]) traces.segments.push_back({ends, trace.block});
     }
-    std::sort(traces.segments.begin(), traces.segments.end());
-    traces.segments.erase(std::unique(traces.segments.begin(), traces.segments.end()),
-                          traces.segments.end());
+    sort_unique(traces.segments);
     return traces;
 }
 

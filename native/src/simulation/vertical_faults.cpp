@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::simulation {
@@ -22,24 +23,14 @@ struct Nearest {
 };
 
 Nearest nearest_on(const std::array<PlanPoint, 2>& line, const PlanPoint& p) {
-    const double x = line[1][0] - line[0][0], y = line[1][1] - line[0][1];
-    const double square = x * x + y * y;
-    const double along = (p[0] - line[0][0]) * x + (p[1] - line[0][1]) * y;
-    const double share = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
-    return {elementary::hypot(line[0][0] + share * x - p[0], line[0][1] + share * y - p[1]), share};
+    const double share = nearest_share(line[0], line[1], p);
+    return {distance(p, moved(line[0], share, minus(line[1], line[0]))), share};
 }
 
 bool is_upright(const ComplexView& model, std::size_t face) {
     const auto loop = model.face(face);
-    const auto o = model.vertex(loop[0]);
-    std::array<double, 3> area{}, u{};
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-        const auto p = model.vertex(loop[i]);
-        const std::array<double, 3> v{p[0] - o[0], p[1] - o[1], p[2] - o[2]};
-        for (std::size_t k = 0; k < 3; ++k)
-            area[k] += u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-        u = v;
-    }
+    const Vec3 area =
+        polygon_normal(loop.size(), [&](std::size_t i) { return model.vertex(loop[i]); });
     return std::abs(area[2]) < kUpright * elementary::hypot(area[0], area[1]);
 }
 
@@ -54,9 +45,9 @@ PlanPoint farthest_from(const ComplexView& model, std::span<const std::int32_t> 
     double most = 0;
     for (const std::int32_t v : loop) {
         const PlanPoint p = plan_of(model, v);
-        const double distance = elementary::hypot(p[0] - from[0], p[1] - from[1]);
-        if (distance <= most) continue;
-        most = distance;
+        const double own = distance(from, p);
+        if (own <= most) continue;
+        most = own;
         found = p;
     }
     return found;
@@ -104,7 +95,7 @@ VerticalFaults::VerticalFaults(const ComplexView& model,
 std::int32_t VerticalFaults::fault_at(const PlanPoint& from, const PlanPoint& to,
                                       double height) const {
     const PlanPoint middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
-    const double edge = elementary::hypot(to[0] - from[0], to[1] - from[1]);
+    const double edge = distance(from, to);
     const spatial::Box box = plan_box(std::array<PlanPoint, 1>{middle}, kReach * edge);
     double least = kReach * edge;
     face_tree_.find(box, [&](std::int32_t n) {
@@ -129,9 +120,9 @@ std::int32_t VerticalFaults::fault_at(const PlanPoint& from, const PlanPoint& to
 /// Whether a face has this height, at a share of its way in plan.
 bool VerticalFaults::reaches(const Face& face, double share, double height, double rounding) const {
     const auto loop = model_.face(index(face.number));
-    const double x = face.line[1][0] - face.line[0][0], y = face.line[1][1] - face.line[0][1];
-    const auto share_of = [&](const std::array<double, 3>& p) {
-        return ((p[0] - face.line[0][0]) * x + (p[1] - face.line[0][1]) * y) / (x * x + y * y);
+    const PlanPoint way = minus(face.line[1], face.line[0]);
+    const auto share_of = [&](const Vec3& p) {
+        return dot(minus({p[0], p[1]}, face.line[0]), way) / dot(way, way);
     };
     double low = HUGE_VAL, high = -HUGE_VAL;
     const auto include = [&](double z) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/index.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -72,9 +73,7 @@ std::optional<MeshLocator::Found> MeshLocator::find(const PlanPosition& position
         Found found{t, {}};
         double sum = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            const PlanPosition &a = corner[(i + 1) % 3], &b = corner[(i + 2) % 3];
-            const double area = (a[0] - position[0]) * (b[1] - position[1]) -
-                                (b[0] - position[0]) * (a[1] - position[1]);
+            const double area = twice_area(position, corner[(i + 1) % 3], corner[(i + 2) % 3]);
             found.weights[i] = std::max(0.0, way * area);
             sum += found.weights[i];
         }

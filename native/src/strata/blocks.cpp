@@ -8,10 +8,10 @@
 #include "strata/cells/cell_building.hpp"
 #include "strata/cells/whole_faces.hpp"
 #include "strata/overlay/block_envelope.hpp"
+#include "strata/overlay/block_raising.hpp"
 #include "strata/overlay/rock_footprints.hpp"
 #include "strata/overlay/windowed_region.hpp"
 #include "strata/steps.hpp"
-#include "strata/tiling/block_raising.hpp"
 
 namespace realmodel::strata {
 

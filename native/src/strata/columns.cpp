@@ -7,10 +7,10 @@
 #include "strata/cells/cell_building.hpp"
 #include "strata/overlay/facet_overlay.hpp"
 #include "strata/overlay/rock_footprints.hpp"
+#include "strata/overlay/rules.hpp"
 #include "strata/overlay/whole_triangles.hpp"
 #include "strata/overlay/windowed_region.hpp"
 #include "strata/steps.hpp"
-#include "strata/tiling/rules.hpp"
 
 namespace realmodel::strata {
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/dump.hpp"
 
-#include <fstream>
-#include <limits>
 #include <map>
-#include <span>
-#include <stdexcept>
 #include <string>
+
+#include "base/obj_file.hpp"
 
 // Named when a program is linked (native/cmake/Fuzzing.cmake), so that it contains this file
 // although it never calls it.
@@ -20,41 +18,6 @@ namespace {
 
 using exact::PlanArrangement;
 using Position = std::array<double, 3>;
-
-class ObjFile {
-public:
-    explicit ObjFile(const char* path) : file_(path) {
-        if (!file_) throw std::runtime_error(std::string("cannot write ") + path);
-        file_.precision(std::numeric_limits<double>::max_digits10);
-    }
-
-    void begin_group(const std::string& name) { file_ << "g " << name << '\n'; }
-    void add_vertex(const Position& at) {
-        file_ << "v " << at[0] << ' ' << at[1] << ' ' << at[2] << '\n';
-        ++vertices_;
-    }
-    /// A face on vertices that were added before, counted from 0.
-    void add_face(std::span<const std::int32_t> vertices) {
-        file_ << 'f';
-        for (const std::int32_t vertex : vertices)
-            file_ << ' ' << vertex + 1;
-        file_ << '\n';
-    }
-    /// A face, or a line of two corners, with vertices of its own.
-    void add(char kind, std::span<const Position> corners) {
-        const std::size_t first = vertices_ + 1;
-        for (const Position& corner : corners)
-            add_vertex(corner);
-        file_ << kind;
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            file_ << ' ' << first + i;
-        file_ << '\n';
-    }
-
-private:
-    std::ofstream file_;
-    std::size_t vertices_ = 0;
-};
 
 std::string group_name(std::int32_t surface) {
     if (surface >= 0) return "surface_" + std::to_string(surface);

@@ -9,9 +9,6 @@
 
 namespace realmodel::structures {
 
-using cutting::cross;
-using cutting::dot;
-using cutting::minus;
 using cutting::Position;
 using spatial::Box;
 
@@ -37,13 +34,7 @@ std::optional<Slab> slab_of(const std::array<Position, 3>& corners) {
     Slab slab{.corners = corners, .normals = {}, .box = {}};
     for (const Position& p : corners)
         slab.box.include(p);
-    const auto unit = [](Position p) {
-        const double size = std::sqrt(dot(p, p));
-        for (double& x : p)
-            x /= size;
-        return p;
-    };
-    const Position normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+    const Position normal = triangle_normal(corners[0], corners[1], corners[2]);
     if (!(dot(normal, normal) > 0)) return std::nullopt;
     slab.normals[0] = unit(normal);
     for (std::size_t i = 0; i < 3; ++i)
@@ -73,7 +64,7 @@ bool may_meet(const Prism& prism, const Slab& slab, double near) {
         Position outward{b[1] - a[1], a[0] - b[0], 0};
         if (dot(outward, minus(prism.corners[(i + 2) % 3], a)) > 0)
             outward = {-outward[0], -outward[1], 0};
-        const double size = std::sqrt(dot(outward, outward));
+        const double size = length(outward);
         if (size > 0 && all_beyond(slab.corners, a, outward, near * size)) return false;
     }
     return true;
@@ -105,7 +96,7 @@ std::vector<std::uint8_t> triangles_beyond(std::span<const Structure> faults,
     for (const Position& p : surface.single[0].vertices)
         all.include(p);
     const Position extent = minus(all.high, all.low);
-    const double near = kTouches * std::sqrt(dot(extent, extent));
+    const double near = kTouches * length(extent);
     Box sheet;
     for (Prism& prism : prisms) {
         prism.box.widen(near);

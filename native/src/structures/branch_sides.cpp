@@ -3,27 +3,22 @@
 #include "structures/branch_sides.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "arrangement/triangle_arrangement.hpp"
+#include "arrangement/triangulate.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {
 
 using arrangement::TriangleArrangement;
-using cutting::dot;
-using cutting::polygon_normal;
 using cutting::Position;
 using exact::SpacePointId;
 using spatial::Box;
 
 namespace {
-
-double size_of(const Position& normal) {
-    return std::sqrt(dot(normal, normal));
-}
 
 /// The area of a region, twice, and a place well inside of it: the middle of the largest of its
 /// triangles.
@@ -32,22 +27,22 @@ std::pair<double, Position> measured(const exact::SpacePoints& points,
                                      const Position& normal) {
     const arrangement::View view(normal);
     std::vector<Position> corners;
-    std::vector<cutting::Loop> seen;
+    std::vector<arrangement::Loop> seen;
     for (const auto& loop : loops) {
-        cutting::Loop& own = seen.emplace_back();
+        arrangement::Loop& own = seen.emplace_back();
         for (const SpacePointId p : loop) {
             own.push_back({static_cast<cutting::NodeId>(corners.size()), view(points.rounded(p))});
             corners.push_back(points.rounded(p));
         }
     }
-    std::vector<std::array<cutting::LoopCorner, 3>> triangles;
-    cutting::triangulate(seen, view.rounding(corners), triangles);
+    std::vector<std::array<arrangement::LoopCorner, 3>> triangles;
+    arrangement::triangulate(seen, view.rounding(corners), triangles);
     double area = 0, largest = -1;
     Position middle{0, 0, 0};
     for (const auto& t : triangles) {
         const std::array at{corners[index(t[0].node)], corners[index(t[1].node)],
                             corners[index(t[2].node)]};
-        const double size = size_of(polygon_normal(at));
+        const double size = length(polygon_normal(at));
         area += size;
         if (size <= largest) continue;
         largest = size;
@@ -106,6 +101,7 @@ BranchSides branch_sides(const StructureSurface& surface, std::int32_t branch, s
     for (const auto& met : meetings)
         arrangement.insert(met);
     arrangement.divide({1, nullptr});
+    assert(branch != other && own <= triangles.size());
     const cutting::NearestSide nearest(surface.single[index(other)]);
     const auto& regions = arrangement.regions();
     for (std::size_t r = 0; r < regions.size(); ++r) {

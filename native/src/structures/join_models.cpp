@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models of the parts that structures leave, cut and joined.
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <optional>
 
@@ -12,11 +13,11 @@
 #include "cutting/model_check.hpp"
 #include "cutting/near_part.hpp"
 #include "cutting/nearest_side.hpp"
-#include "cutting/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "exact/space_predicates.hpp"
 #include "realmodel/base/errors.hpp"
 #include "strata/cells/volumes.hpp"
+#include "structures/joined_rounding.hpp"
 #include "structures/near_cells.hpp"
 #include "structures/wanted_parts.hpp"
 
@@ -46,7 +47,7 @@ struct Together {
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
-    Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
+    Together(std::span<const PartModel> models, const std::vector<std::vector<CellPlace>>& places,
              const Execution& execution);
     void share_vertices(const Execution& execution);
     ComplexView view() const {
@@ -63,13 +64,13 @@ struct Together {
 };
 
 /// @param places  of the cells of each model
-Together::Together(std::span<const PartModel> models, const std::vector<std::vector<Place>>& places,
-                   const Execution& execution) {
+Together::Together(std::span<const PartModel> models,
+                   const std::vector<std::vector<CellPlace>>& places, const Execution& execution) {
     // the cells and faces of each model that are wanted: how many, then how many before
     std::vector<std::size_t> positions, cells(models.size()), faces(models.size()),
         corners(models.size());
     const auto is_wanted = [&](std::size_t m, std::int32_t cell) {
-        return cell >= 0 && places[m][index(cell)] != Place::kElsewhere;
+        return cell >= 0 && places[m][index(cell)] != CellPlace::kElsewhere;
     };
     const auto each_face = [&](std::size_t m, const auto& visit) {
         const ComplexView& model = models[m].model;
@@ -86,7 +87,7 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
     }
     parallel_chunks(models.size(), execution, [&](std::size_t m) {
         cells[m] = places[m].size() -
-                   static_cast<std::size_t>(std::ranges::count(places[m], Place::kElsewhere));
+                   static_cast<std::size_t>(std::ranges::count(places[m], CellPlace::kElsewhere));
         std::size_t own_faces = 0, own_corners = 0;
         each_face(m, [&](std::size_t f, const auto&) {
             ++own_faces;
@@ -111,11 +112,11 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
         std::vector<std::int32_t> number(model.cell_count(), -1);
         std::size_t cell = cells[m], face = faces[m], corner = corners[m];
         for (std::size_t c = 0; c < number.size(); ++c) {
-            if (places[m][c] == Place::kElsewhere) continue;
+            if (places[m][c] == CellPlace::kElsewhere) continue;
             number[c] = static_cast<std::int32_t>(cell);
             cell_block[cell] = model.cell_block[c];
             model_of_cell[cell] = static_cast<std::int32_t>(m);
-            is_near[cell++] = places[m][c] == Place::kNear ? 1 : 0;
+            is_near[cell++] = places[m][c] == CellPlace::kNear ? 1 : 0;
         }
         for (std::size_t v = 0; v < model.vertex_count(); ++v)
             vertices[positions[m] + v] = model.vertex(static_cast<std::int32_t>(v));
@@ -132,6 +133,8 @@ Together::Together(std::span<const PartModel> models, const std::vector<std::vec
             }
             face_surface[face++] = model.face_surface[f];
         });
+        assert(face == (m + 1 < faces.size() ? faces[m + 1] : face_surface.size()));
+        assert(cell == (m + 1 < cells.size() ? cells[m + 1] : cell_block.size()));
     });
 }
 
@@ -154,8 +157,10 @@ void Together::share_vertices(const Execution& execution) {
         if (i == 0 || order[i].first != order[i - 1].first) distinct.push_back(order[i].first);
         number[index(order[i].second)] = static_cast<std::int32_t>(distinct.size() - 1);
     }
-    for (std::int32_t& v : face_vertices)
+    for (std::int32_t& v : face_vertices) {
+        assert(number[index(v)] >= 0);
         v = number[index(v)];
+    }
     vertices = std::move(distinct);
 }
 
@@ -218,6 +223,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     begin(execution.progress, 0.3, 0.5, "finding what structures go through");
     const CutterWinding winding(overlay, execution.progress);
     const StructureSides sides(overlay, winding, surface, structures, execution.progress);
+    assert(model_of_cell.size() == near.cell_count());
     std::vector<Sides> model_sides;
     for (const PartModel& own : models)
         model_sides.push_back(own.sides);
@@ -225,9 +231,9 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
     begin(execution.progress, 0.85, 0.92, "rounding what was cut");
-    cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          execution, true, least_rounding)
-        .run();
+    round_joined_parts(
+        {near, overlay.new_positions(), made.pieces, made.half_cells, true, execution},
+        made.touches, least_rounding);
     const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
     const auto pieces = part.put_back(std::move(made.pieces), made.half_cells, sides_beside);
     if (!pieces) return std::nullopt;
@@ -289,7 +295,7 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
                                                        : structure_surface(structures, continued);
     const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(execution.progress, 0, 0.1, "leaving out what is in other parts");
-    std::vector<std::vector<Place>> places;
+    std::vector<std::vector<CellPlace>> places;
     for (const PartModel& own : models) {
         places.push_back(places_of_cells(own.model, own.sides, nearest, structures, execution));
     }

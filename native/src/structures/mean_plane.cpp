@@ -3,6 +3,7 @@
 #include "structures/mean_plane.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -12,16 +13,11 @@
 
 namespace realmodel::structures {
 
-using cutting::cross;
-using cutting::dot;
-using cutting::minus;
 using cutting::NodeId;
 using cutting::Position;
 using meshing::PlanPoint;
 
 namespace {
-
-using Corners = std::array<Position, 3>;
 
 /// The directions of a plane and a point of it.
 struct Plane {
@@ -39,14 +35,6 @@ struct Plane {
     }
 };
 
-bool make_unit(Position& p) {
-    const double size = std::sqrt(dot(p, p));
-    if (!(size > 0)) return false;
-    for (double& x : p)
-        x /= size;
-    return true;
-}
-
 /// The plane through the middle of a surface, by areas, at right angles to its mean normal.
 std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     const auto at = [&](NodeId v) { return surface.vertices[index(v)]; };
@@ -54,8 +42,8 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
     Position normal{0, 0, 0}, total{0, 0, 0};
     double whole = 0;
     for (const auto& t : surface.triangles) {
-        const Position own = cross(minus(at(t[1]), at(t[0])), minus(at(t[2]), at(t[0])));
-        const double area = std::sqrt(dot(own, own));
+        const Position own = triangle_normal(at(t[0]), at(t[1]), at(t[2]));
+        const double area = length(own);
         whole += area;
         for (std::size_t k = 0; k < 3; ++k) {
             normal[k] += own[k];
@@ -63,10 +51,11 @@ std::optional<Plane> mean_plane(const cutting::CutterSurface& surface) {
                 total[k] += area * (at(v)[k] - first[k]);
         }
     }
-    if (!make_unit(normal)) return std::nullopt;
+    normal = unit(normal);
+    if (normal == Position{}) return std::nullopt;
     Position strike{-normal[1], normal[0], 0};
     if (elementary::hypot(normal[0], normal[1]) < 1e-6) strike = cross({0, 1, 0}, normal);
-    make_unit(strike);
+    strike = unit(strike);
     Position middle = first;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] += total[k] / (3 * whole);
@@ -115,6 +104,7 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
     }
     // an edge through another place is in two parts, and gapes there
     if (passed != rises.size()) return std::nullopt;
+    assert(std::ranges::find(depth, -1) == depth.end());
     std::vector<std::array<std::int32_t, 3>> found;
     for (std::size_t t = 0; t < depth.size(); ++t) {
         if (depth[t] == 0) found.push_back(mesh.triangles[t]);
@@ -124,7 +114,7 @@ std::optional<std::vector<std::array<std::int32_t, 3>>> outside(
 
 }  // namespace
 
-std::optional<std::vector<Corners>> continued_in_mean_plane(
+std::optional<std::vector<std::array<Position, 3>>> continued_in_mean_plane(
     const cutting::CutterSurface& fault, std::span<const std::array<NodeId, 2>> border,
     std::span<const double> lengths) {
     const auto plane = mean_plane(fault);
@@ -164,7 +154,7 @@ std::optional<std::vector<Corners>> continued_in_mean_plane(
         add(corner, plane->at(corner));
     const auto filled = outside(places, edges);
     if (!filled) return std::nullopt;
-    std::vector<Corners> triangles;
+    std::vector<std::array<Position, 3>> triangles;
     for (const auto& t : *filled)
         triangles.push_back({corners[index(t[0])], corners[index(t[1])], corners[index(t[2])]});
     for (const double length : lengths) {

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "structures/near_cells.hpp"
 
+#include <cassert>
+
 #include "cutting/near_part.hpp"
 
 namespace realmodel::structures {
 
-std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
-                                   std::span<const cutting::NearestSide> structures,
-                                   std::span<const Structure> given, const Execution& execution) {
+std::vector<CellPlace> places_of_cells(const ComplexView& model, const Sides& sides,
+                                       std::span<const cutting::NearestSide> structures,
+                                       std::span<const Structure> given,
+                                       const Execution& execution) {
+    assert(sides.size() == structures.size() && sides.size() == given.size());
     const cutting::CellBoxes cells(model, structures, execution);
-    std::vector<Place> places(model.cell_count(), Place::kInside);
+    std::vector<CellPlace> places(model.cell_count(), CellPlace::kInside);
     for (std::size_t s = 0; s < sides.size(); ++s) {
         auto is_near = cutting::cells_near(cells, structures[s], execution);
         for (std::size_t c = 0; c < places.size(); ++c) {
-            if (places[c] == Place::kElsewhere) {
+            if (places[c] == CellPlace::kElsewhere) {
                 is_near[c] = 1;  // not asked for
             } else if (is_near[c] != 0) {
-                places[c] = Place::kNear;
+                places[c] = CellPlace::kNear;
             }
         }
         if (sides[s] == 0) continue;  // either side will do
@@ -29,7 +33,7 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
         }
         const auto own = cutting::sides_of_far_cells(model, structures[s], is_near, execution);
         for (std::size_t c = 0; c < places.size(); ++c) {
-            if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = Place::kElsewhere;
+            if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = CellPlace::kElsewhere;
         }
     }
     return places;

@@ -13,13 +13,6 @@ namespace realmodel::structures {
 
 using cutting::kAbove;
 using cutting::kBelow;
-using cutting::minus;
-
-namespace {
-
-constexpr std::int32_t kUnknown = INT32_MIN;
-
-}  // namespace
 
 StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
                                const StructureSurface& surface,
@@ -28,16 +21,11 @@ StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& win
       winding_(winding),
       surface_(surface),
       structures_(structures),
-      items_(overlay.size() + overlay.model().face_count()),
       near_(cutting::cells_near_surface(overlay, winding)),
-      joined_(items_ + overlay.size()) {
-    checked_number(items_ + overlay.size(), "faces and their parts");
-    name_structures();
-    join_sectors(progress);
-    number_parts();
-    find_neighbors();
-    sides_.assign(item_.size(), Sides(structures.size(), 0));
-    kept_.resize(structures.size());
+      of_(named_structures()),
+      parts_(overlay, winding, near_, rules(), progress),
+      sides_(parts_.size(), Sides(structures.size(), 0)),
+      kept_(structures.size()) {
     for (const cutting::CutterSurface& single : surface.single)
         nearest_.emplace_back(single);
     // a fault that others end at comes before these
@@ -77,14 +65,14 @@ Position StructureSides::middle_of(std::size_t region) const {
 }
 
 /// Which structures each region that counts is of, by all that coincide with it.
-void StructureSides::name_structures() {
-    of_.resize(overlay_.size());
+std::vector<std::vector<RegionOf>> StructureSides::named_structures() const {
+    std::vector<std::vector<RegionOf>> named(overlay_.size());
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!overlay_.of_cutter(r) || winding_.level(r) < 0) continue;
         const auto triangle = index(overlay_.cutter_triangle(r));
         const std::int32_t s = surface_.structure[triangle];
         const bool is_own = surface_.is_continuation[triangle] == 0;
-        auto& own = of_[index(winding_.level(r))];
+        auto& own = named[index(winding_.level(r))];
         auto known = std::ranges::find(own, s, &RegionOf::structure);
         if (known == own.end()) known = own.insert(own.end(), {s, 0, false});
         if (structures_[index(s)].is_body) {
@@ -94,10 +82,11 @@ void StructureSides::name_structures() {
         }
         known->is_own = known->is_own || is_own;
     }
-    for (auto& own : of_) {
+    for (auto& own : named) {
         std::erase_if(own, [](const RegionOf& of) { return of.change == 0; });
         std::ranges::sort(own, {}, &RegionOf::structure);
     }
+    return named;
 }
 
 /// Whether sides around an edge are known in rock alone: a fault ends there, or no rock is near, so
@@ -107,7 +96,7 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
     bool has_faces = false;
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
-        if (item >= overlay_.size() || !overlay_.of_cutter(item)) {
+        if (!overlay_.of_cutter(item)) {
             has_faces = true;
             continue;
         }
@@ -133,79 +122,10 @@ std::vector<std::uint8_t> StructureSides::regions_beyond() const {
     return found;
 }
 
-/// What bounds one sector around an edge is in one part. This is said of sectors beside the rock,
-/// too, for the sake of cells that rounding flattened away.
-void StructureSides::join_sectors(Progress* progress) {
-    const std::vector<std::uint8_t> is_beyond = regions_beyond();
-    cutting::join_beside_surface(overlay_, winding_, near_, progress,
-                                 [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
-    const auto item_at = [this](const EdgeUse& use, std::size_t side) {
-        const auto item = index(use.item);
-        if (item >= overlay_.size() || !overlay_.of_cutter(item)) return use.item;
-        return static_cast<std::int32_t>(side == 0 ? item : items_ + item);
-    };
-    const auto join_around = [&](std::size_t e) {
-        const auto uses = winding_.edge(e);
-        const auto& fan = winding_.sectors(e).fan;
-        const auto& windings = winding_.sectors(e).windings;
-        const bool in_rock_alone = is_known_in_rock_alone(uses);
-        for (std::size_t b = 0; b < fan.blades(); ++b) {
-            if (in_rock_alone && windings[b] == 0) continue;
-            std::int32_t first = -1;
-            const auto join_all = [&](std::size_t blade, bool ahead) {
-                for (const std::size_t i : fan.blade(blade)) {
-                    const EdgeUse& use = uses[i];
-                    const auto item = index(use.item);
-                    const bool is_face = item >= overlay_.size() || !overlay_.of_cutter(item);
-                    if (is_face && item < overlay_.size() && winding_.level(item) >= 0) continue;
-                    if (!is_face && is_beyond[item] != 0) continue;
-                    const std::int32_t at = item_at(use, ahead ? use.ahead() : use.behind());
-                    if (first < 0) {
-                        first = at;
-                    } else {
-                        joined_.join(first, at);
-                    }
-                }
-            };
-            join_all(b, true);
-            join_all((b + 1) % fan.blades(), false);
-        }
-    };
-    parallel_ranges(winding_.edge_count(), 1 << 10, {overlay_.threads(), progress},
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t e = begin; e < end; ++e)
-                            join_around(e);
-                    });
-}
-
-void StructureSides::number_parts() {
-    part_.assign(items_ + overlay_.size(), -1);
-    std::vector<std::int32_t> number(part_.size(), -1);
-    for (std::size_t i = 0; i < part_.size(); ++i) {
-        const bool is_region = i < overlay_.size() || i >= items_;
-        const std::size_t own = i >= items_ ? i - items_ : i;
-        const bool of_cutter = is_region && overlay_.of_cutter(own);
-        if (is_region ? of_cutter ? !winding_.counts(own) || !winding_.touches_model(own)
-                                  : i >= items_ || winding_.level(own) >= 0
-                      : overlay_.is_active(i - overlay_.size()))
-            continue;
-        auto& known = number[index(joined_.find(static_cast<std::int32_t>(i)))];
-        if (known < 0) {
-            known = static_cast<std::int32_t>(item_.size());
-            item_.push_back(static_cast<std::int32_t>(i));
-        }
-        part_[i] = known;
-    }
-}
-
-void StructureSides::find_neighbors() {
-    neighbors_.resize(item_.size());
-    for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!overlay_.of_cutter(r) || part_[r] < 0) continue;
-        const auto region = static_cast<std::int32_t>(r);
-        neighbors_[part_at(r, 0)].push_back({part_[items_ + r], region, 1});
-        neighbors_[part_at(r, 1)].push_back({part_[r], region, -1});
-    }
+/// Around edges where structures may end unnoticed nothing is said of the outside of the rock.
+cutting::SurfaceCells::Rules StructureSides::rules() const {
+    return {[this](std::span<const EdgeUse> uses) { return is_known_in_rock_alone(uses); },
+            [is_beyond = regions_beyond()](std::size_t region) { return is_beyond[region] != 0; }};
 }
 
 /// Whether a part is beyond one of the faults that a fault ends at.
@@ -229,88 +149,70 @@ void StructureSides::find_kept_sides(std::int32_t s) {
 }
 
 /// Takes what is known of a part to all that can be reached from it.
-void StructureSides::spread(std::int32_t s, std::size_t start, std::vector<std::int32_t>& known) {
+void StructureSides::spread(std::int32_t s, std::size_t start, Known& known) const {
+    using Way = arrangement::SpaceCells::Way;
     const bool is_body = structures_[index(s)].is_body;
-    std::vector<std::size_t> open{start};
-    while (!open.empty()) {
-        const std::size_t part = open.back();
-        open.pop_back();
-        for (const Neighbor& way : neighbors_[part]) {
-            if (is_beyond(s, index(way.part))) continue;
-            std::int32_t change = 0;
-            for (const RegionOf& of : of_[index(way.region)]) {
-                if (of.structure == s) change = is_body ? of.change : way.direction * of.change;
-            }
-            const std::int32_t next = is_body ? known[part] ^ change : known[part] + change;
-            auto& other = known[index(way.part)];
-            if (other == kUnknown) {
-                other = next;
-                open.push_back(index(way.part));
-            } else if (other != next) {
-                refuse("ends_inside", "the fault ends in the rock", s, index(way.region));
-            }
+    const auto beyond = [&](const Way& way, std::int32_t side) -> std::optional<std::int32_t> {
+        if (is_beyond(s, index(way.to))) return std::nullopt;
+        for (const RegionOf& of : of_[index(way.facet)]) {
+            if (of.structure == s)
+                return is_body ? side ^ of.change : side + way.direction * of.change;
         }
-    }
+        return side;
+    };
+    parts_.cells().spread(start, known, beyond, [&](const Way& way) {
+        refuse("ends_inside", "the fault ends in the rock", s, index(way.facet));
+    });
 }
 
 /// By the rays that leave the body.
 bool StructureSides::is_inside(std::int32_t s, std::size_t part) {
-    const auto item = index(item_[part]);
-    const bool is_region = item < overlay_.size() || item >= items_;
-    const std::size_t own = item >= items_ ? item - items_ : item;
-    exact::SpacePoints& points = overlay_.points();
-    const std::pair<std::size_t, int> seen =
-        is_region ? overlay_.view_of(own) : std::pair<std::size_t, int>{2, 1};
-    const auto p = is_region ? overlay_.inner_point(own)
-                             : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
-    // the ray goes down: a part on the upper side of a region crosses that region too
-    const bool is_below =
-        is_region && overlay_.of_cutter(own) && (item < items_) == (seen.second > 0);
-    bool inside = false;
-    const auto& body = surface_.single[index(s)];
-    for (const auto& t : body.triangles) {
-        std::array<exact::SpacePointId, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = points.add(body.vertices[index(t[i])]);
-        if (exact::ray_crosses(points, seen.first, p, corners, is_below) != 0) inside = !inside;
+    const auto [item, side] = parts_.first_side(part);
+    const auto& body = nearest_[index(s)];
+    if (item >= overlay_.size()) {
+        const auto face = overlay_.model().face(item - overlay_.size());
+        return body.within(overlay_.points(), overlay_.exact(face[0]), 2, false) == kBelow;
     }
-    return inside;
+    const auto [axis, facing] = overlay_.view_of(item);
+    // of a region of the surface that is crossed, too, by a ray from where it is seen from behind
+    const bool is_below = overlay_.of_cutter(item) && (side == 0) == (facing > 0);
+    return body.within(overlay_.points(), overlay_.inner_point(item), axis, is_below) == kBelow;
 }
 
 void StructureSides::find_sides(std::int32_t s) {
     const bool is_body = structures_[index(s)].is_body;
-    std::vector<std::int32_t> known(item_.size(), kUnknown);
+    Known known(parts_.size());
     // where a fault itself is between rock on both sides, below is 0 and above is 1
     if (!is_body) {
         for (std::size_t r = 0; r < overlay_.size(); ++r) {
-            if (!overlay_.of_cutter(r) || part_[r] < 0) continue;
+            if (!overlay_.of_cutter(r) || parts_.of(r) < 0) continue;
             for (const RegionOf& of : of_[r]) {
                 if (of.structure != s || !of.is_own || std::abs(of.change) != 1) continue;
                 const std::size_t low = part_at(r, of.change > 0 ? 0 : 1);
                 const std::size_t high = part_at(r, of.change > 0 ? 1 : 0);
                 if (is_beyond(s, low) || is_beyond(s, high)) continue;
-                if (known[low] != kUnknown || known[high] != kUnknown) continue;
+                if (known[low] || known[high]) continue;
                 known[low] = 0;
                 spread(s, low, known);
             }
         }
     }
-    for (std::size_t part = 0; part < item_.size(); ++part) {
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
         if (is_beyond(s, part)) continue;
-        if (known[part] == kUnknown) {
+        if (!known[part]) {
             if (is_body) {
                 known[part] = is_inside(s, part) ? 1 : 0;
             } else {
-                const auto item = index(item_[part]);
-                const bool is_face = item >= overlay_.size() && item < items_;
+                const std::size_t item = parts_.first_side(part).first;
                 const Position p =
-                    is_face ? overlay_.position(overlay_.model().face(item - overlay_.size())[0])
-                            : middle_of(item >= items_ ? item - items_ : item);
+                    item < overlay_.size()
+                        ? middle_of(item)
+                        : overlay_.position(overlay_.model().face(item - overlay_.size())[0]);
                 known[part] = nearest_[index(s)](p) == kAbove;
             }
             spread(s, part, known);
         }
-        const bool below = is_body ? known[part] == 1 : known[part] < 1;
+        const bool below = is_body ? *known[part] == 1 : *known[part] < 1;
         sides_[part][index(s)] = below ? kBelow : kAbove;
     }
 }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/disjoint_sets.hpp"
 #include "cutting/cutter_sides.hpp"
 #include "structures/structure_surface.hpp"
 
@@ -35,14 +34,14 @@ public:
                    const StructureSurface& surface, std::span<const Structure> structures,
                    Progress* progress);
 
-    std::size_t parts() const { return sides_.size(); }
+    std::size_t parts() const { return parts_.size(); }
     const Sides& sides(std::size_t part) const { return sides_[part]; }
     /// The part that a region of a face or a face without regions (counted after all regions) is
     /// in.
-    std::size_t part_of(std::size_t item) const { return index(part_[item]); }
+    std::size_t part_of(std::size_t item) const { return index(parts_.of(item)); }
     /// The part at side 0 or 1 of a region of the surface that counts and touches rock.
     std::size_t part_at(std::size_t region, std::size_t side) const {
-        return index(part_[side == 0 ? region : items_ + region]);
+        return index(parts_.at(region, side));
     }
     /// Of a region of the surface that counts.
     const std::vector<RegionOf>& structures_at(std::size_t region) const { return of_[region]; }
@@ -53,36 +52,26 @@ public:
                              std::size_t region) const;
 
 private:
-    void name_structures();
+    using Known = std::vector<std::optional<std::int32_t>>;  ///< of parts: on which side
+
+    cutting::SurfaceCells::Rules rules() const;
+    std::vector<std::vector<RegionOf>> named_structures() const;
     bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
     std::vector<std::uint8_t> regions_beyond() const;
-    void join_sectors(Progress* progress);
-    void number_parts();
-    void find_neighbors();
     void find_sides(std::int32_t s);
-    void spread(std::int32_t s, std::size_t start, std::vector<std::int32_t>& known);
+    void spread(std::int32_t s, std::size_t start, Known& known) const;
     bool is_beyond(std::int32_t s, std::size_t part) const;
     void find_kept_sides(std::int32_t s);
     Position middle_of(std::size_t region) const;
     bool is_inside(std::int32_t s, std::size_t part);
 
-    /// A way from one part to another through a region.
-    struct Neighbor {
-        std::int32_t part, region;
-        std::int8_t direction;  ///< 1 from side 0 to 1
-    };
-
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
     const StructureSurface& surface_;
     std::span<const Structure> structures_;
-    std::size_t items_;  ///< regions and faces; sides 1 of regions come after them
     std::vector<std::uint8_t> near_;
     std::vector<std::vector<RegionOf>> of_;
-    DisjointSets joined_;
-    std::vector<std::int32_t> part_;  ///< of items, -1 none
-    std::vector<std::int32_t> item_;  ///< of parts: one of each
-    std::vector<std::vector<Neighbor>> neighbors_;
+    cutting::SurfaceCells parts_;
     std::vector<Sides> sides_;
     std::vector<std::vector<std::int8_t>> kept_;  ///< of structures: the side of each it ends at
     std::vector<cutting::NearestSide> nearest_;   ///< of structures

@@ -16,38 +16,20 @@
 
 namespace realmodel::structures {
 
-using cutting::cross;
 using cutting::CutterSurface;
-using cutting::dot;
-using cutting::minus;
 using cutting::NodeId;
 using cutting::Position;
-using cutting::unordered;
 using spatial::Box;
 
 namespace {
 
-Position unit(const Position& p) {
-    const double size = std::sqrt(dot(p, p));
-    return size > 0 ? Position{p[0] / size, p[1] / size, p[2] / size} : Position{0, 0, 0};
-}
-
-Position sum(const Position& a, const Position& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-Position beyond(const Position& p, const Position& direction, double length) {
-    return {p[0] + length * direction[0], p[1] + length * direction[1],
-            p[2] + length * direction[2]};
-}
-
 /// An edge of one triangle, as that triangle runs.
-struct BorderEdge {
+struct OpenEdge {
     NodeId from, to, corner;
 };
 
-std::vector<BorderEdge> border_of(const CutterSurface& surface) {
-    std::map<std::array<NodeId, 2>, std::pair<int, BorderEdge>> users;
+std::vector<OpenEdge> border_of(const CutterSurface& surface) {
+    std::map<std::array<NodeId, 2>, std::pair<int, OpenEdge>> users;
     for (const auto& t : surface.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
             auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
@@ -55,7 +37,7 @@ std::vector<BorderEdge> border_of(const CutterSurface& surface) {
             edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
         }
     }
-    std::vector<BorderEdge> border;
+    std::vector<OpenEdge> border;
     for (const auto& [key, use] : users) {
         if (use.first % 2 == 1) border.push_back(use.second);
     }
@@ -87,12 +69,12 @@ public:
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
         for (std::size_t i = 0; i < border_.size(); ++i) {
-            const BorderEdge& edge = border_[i];
+            const OpenEdge& edge = border_[i];
             const Position& way = direction_[i];
             Position a = at(edge.from), b = at(edge.to);
             for (const double length : lengths_) {
-                const Position far_a = beyond(at(edge.from), way, length);
-                const Position far_b = beyond(at(edge.to), way, length);
+                const Position far_a = moved(at(edge.from), length, way);
+                const Position far_b = moved(at(edge.to), length, way);
                 triangles_.push_back({b, a, far_a});
                 triangles_.push_back({b, far_a, far_b});
                 a = far_a;
@@ -105,8 +87,8 @@ public:
             const auto& outs = leaving[v];
             for (std::size_t i = 0; i < std::min(ins.size(), outs.size()); ++i) {
                 // both edges run back from v: their middle points away from the surface
-                const Position away = sum(unit(minus(at(v), at(ins[i].first))),
-                                          unit(minus(at(v), at(outs[i].first))));
+                const Position away = plus(unit(minus(at(v), at(ins[i].first))),
+                                           unit(minus(at(v), at(outs[i].first))));
                 add_fan(at(v), ins[i].second, outs[i].second, away, 0);
             }
         }
@@ -117,22 +99,19 @@ private:
     Position at(NodeId v) const { return fault_.vertices[index(v)]; }
 
     /// Away from an edge, in the plane of its triangle.
-    Position away_from(const BorderEdge& edge) const {
+    Position away_from(const OpenEdge& edge) const {
         const Position along = minus(at(edge.to), at(edge.from));
         const Position inward = minus(at(edge.corner), at(edge.from));
         const double share = dot(inward, along) / dot(along, along);
-        Position away;
-        for (std::size_t k = 0; k < 3; ++k)
-            away[k] = share * along[k] - inward[k];
-        return unit(away);
+        return unit(minus(times(share, along), inward));
     }
 
     void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
-        const auto are_beyond = [](const std::vector<std::uint8_t>& own, const BorderEdge& edge) {
+        const auto are_beyond = [](const std::vector<std::uint8_t>& own, const OpenEdge& edge) {
             return own[index(edge.from)] != 0 && own[index(edge.to)] != 0;
         };
         std::vector<std::vector<std::int32_t>> leaving(fault_.vertices.size());
-        for (const BorderEdge& edge : border_) {
+        for (const OpenEdge& edge : border_) {
             const Position away = away_from(edge);
             const bool is_steep = std::abs(away[2]) >= 0.5;
             const bool in_plane =
@@ -172,11 +151,11 @@ private:
     /// to the fault, directions turn the way that the border does not.
     bool overlap(std::int32_t i, std::int32_t next) const {
         constexpr double kTurns = 0.25;  // a little overlap, nearly in one plane, parts nothing
-        const BorderEdge &one = border_[index(i)], &other = border_[index(next)];
-        const Position normal = unit(sum(normal_of(one), normal_of(other)));
+        const OpenEdge &one = border_[index(i)], &other = border_[index(next)];
+        const Position normal = unit(plus(normal_of(one), normal_of(other)));
         return dot(normal, cross(direction_[index(i)], direction_[index(next)])) < -kTurns;
     }
-    Position normal_of(const BorderEdge& edge) const {
+    Position normal_of(const OpenEdge& edge) const {
         return unit(
             cross(minus(at(edge.to), at(edge.from)), minus(at(edge.corner), at(edge.from))));
     }
@@ -195,15 +174,15 @@ private:
         };
         for (std::size_t i = 0; i < border_.size(); ++i) {
             const Position along = minus(at(border_[i].to), at(border_[i].from));
-            const double length = std::sqrt(dot(along, along));
+            const double size = length(along);
             Sum& all = sum_of(i);
-            all.way = beyond(all.way, own[i], length);
-            all.whole += length;
+            all.way = moved(all.way, size, own[i]);
+            all.whole += size;
             ++all.edges;
         }
         for (std::size_t i = 0; i < border_.size(); ++i) {
             const Sum& all = sum_of(i);
-            if (all.edges > 1 && std::sqrt(dot(all.way, all.way)) >= kRound * all.whole)
+            if (all.edges > 1 && length(all.way) >= kRound * all.whole)
                 direction_[i] = unit(all.way);
         }
     }
@@ -214,7 +193,7 @@ private:
                  int depth) {
         if (from == to) return;
         if (depth < 4 && dot(from, to) < 0.5) {
-            Position middle = sum(from, to);
+            Position middle = plus(from, to);
             if (dot(middle, middle) < 0.1) middle = away;
             middle = unit(middle);
             if (dot(middle, middle) > 0) {
@@ -223,15 +202,15 @@ private:
                 return;
             }
         }
-        const Position a = beyond(p, from, lengths_[0]), b = beyond(p, to, lengths_[0]);
-        const Position far_a = beyond(p, from, lengths_[1]), far_b = beyond(p, to, lengths_[1]);
+        const Position a = moved(p, lengths_[0], from), b = moved(p, lengths_[0], to);
+        const Position far_a = moved(p, lengths_[1], from), far_b = moved(p, lengths_[1], to);
         triangles_.push_back({p, a, b});
         triangles_.push_back({b, a, far_a});
         triangles_.push_back({b, far_a, far_b});
     }
 
     const CutterSurface& fault_;
-    std::vector<BorderEdge> border_;
+    std::vector<OpenEdge> border_;
     std::vector<Position> direction_;  ///< of these
     std::array<double, 2> lengths_;
     std::vector<std::array<Position, 3>> triangles_;
@@ -268,7 +247,7 @@ bool passes(const Box& box, const std::array<Position, 3>& triangle) {
             if (at_a >= 0) kept.push_back(a);
             if ((at_a < 0) != (at_b < 0)) {
                 const double share = at_a / (at_a - at_b);
-                kept.push_back(beyond(a, minus(b, a), share));
+                kept.push_back(moved(a, share, minus(b, a)));
             }
         }
         left = std::move(kept);
@@ -280,11 +259,11 @@ bool passes(const Box& box, const std::array<Position, 3>& triangle) {
 bool divides(const CutterSurface& fault, const Box& rock) {
     const Position extent = minus(rock.high, rock.low);
     Box near = rock;
-    near.widen(1e-6 * std::sqrt(dot(extent, extent)));
+    near.widen(1e-6 * length(extent));
     const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
     return std::ranges::none_of(
                border_of(fault),
-               [&](const BorderEdge& edge) { return passes(near, at(edge.from), at(edge.to)); }) &&
+               [&](const OpenEdge& edge) { return passes(near, at(edge.from), at(edge.to)); }) &&
            std::ranges::any_of(fault.triangles, [&](const auto& t) {
                return passes(rock, std::array{at(t[0]), at(t[1]), at(t[2])});
            });
@@ -303,11 +282,11 @@ std::vector<std::vector<std::uint8_t>> beyond_others(const Structure& structure,
         for (const auto& t : own.triangles) {
             const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
                                      own.vertices[index(t[2])]};
-            const Position normal = cutting::polygon_normal(corners);
+            const Position normal = polygon_normal(corners);
             Position middle{0, 0, 0};
             for (std::size_t k = 0; k < 3; ++k)
                 middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
-            above += nearest(middle) * std::sqrt(dot(normal, normal));
+            above += nearest(middle) * length(normal);
         }
         for (std::size_t v = 0; v < found.size(); ++v) {
             if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
@@ -325,7 +304,7 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
     if (!structure.dies_out)
         return Continuation(own, beyond_others(structure, given, own), size).triangles();
     std::vector<std::array<NodeId, 2>> border;
-    for (const BorderEdge& edge : border_of(own))
+    for (const OpenEdge& edge : border_of(own))
         border.push_back({edge.from, edge.to});
     auto found = continued_in_mean_plane(own, border, reaches(size));
     if (!found)
@@ -380,7 +359,7 @@ StructureSurface surface_of(std::span<const Structure> structures, std::size_t c
             whole.include(p);
     }
     const Position extent = minus(whole.high, whole.low);
-    const double size = std::sqrt(dot(extent, extent));
+    const double size = length(extent);
     SurfaceOfTriangles all;
     for (std::int32_t s = 0; index(s) < count; ++s) {
         const CutterSurface& own = given[index(s)];

@@ -1,6 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+// The words of this folder, beside those of cutting (cutting/pieces.hpp), whose cutter is all
+// structures together:
+//
+// structure     a fault, an open surface, or a body, a closed one
+// continuation  of a fault beyond its border, as far as the rock reaches: it divides nothing, but
+//               with it every way from one side to the other crosses the fault
+// branch        a fault that ends at others; it is kept on one side of each (kept_side)
+// tip           the border of a fault in the rock, where it dies out
+// part          of space: what is on the same sides of all structures (StructureSides). A model is
+//               made for each; of its cells those parts are wanted that lie in its part of space
+// sides         of a part of space, by structures: 1 above a fault or outside of a body, -1 below
+//               or inside, 0 where the structure is not, or for either
+// acts          a structure, on a block: it divides it. Others leave the cells on both sides as one
+// sliver        a region no wider than rounding: two models have one surface there, but each was
+//               rounded by itself. It joins nothing and refuses nothing
+// piece, node   as in cutting: of the cells of all models together, whose equal vertices are one
+// facing        two equal pieces of one part, against each other: they cancel (cancel_facing)
+// touching      an edge that a part has more than twice: it is set apart there, or stays
+//               (set_touching_apart)
+
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -2,6 +2,7 @@
 #include "structures/wanted_parts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace realmodel::structures {
@@ -25,6 +26,7 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
       sides_(sides),
       model_of_cell_(model_of_cell),
       acts_(acts) {
+    assert(model_of_cell.size() == overlay.model().cell_count());
     for (std::size_t part = 0; part < sides.parts(); ++part) {
         const Sides& own = sides.sides(part);
         const auto allows = [&own](const Sides& wanted) {
@@ -50,6 +52,7 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
 }
 
 std::int8_t WantedParts::of_item(std::size_t item, std::size_t face) const {
+    assert(sides_.part_of(item) < model_of_part_.size());
     const std::int32_t model = model_of_cell_[index(overlay_.model().cell(face, 0))];
     return model_of_part_[sides_.part_of(item)] == model ? kAbove : kOn;
 }
@@ -86,6 +89,7 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
 /// and what fills a void from a base elevation may have it beside it. Where a body was protected,
 /// what came later may end at its border.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
+    assert(low >= 0 || high >= 0);
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
     const Sides& above = sides_.sides(sides_.part_at(region, 1));
     const ComplexView& model = overlay_.model();
@@ -159,11 +163,10 @@ bool WantedParts::is_sliver(std::size_t region) const {
         for (const NodeId node : loops[k])
             corners.push_back(overlay_.position(node));
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            const Position step = cutting::minus(corners[(i + 1) % corners.size()], corners[i]);
-            length += std::sqrt(cutting::dot(step, step));
+            length += realmodel::length(minus(corners[(i + 1) % corners.size()], corners[i]));
         }
-        const Position normal = cutting::polygon_normal(corners);
-        const double size = std::sqrt(cutting::dot(normal, normal));
+        const Position normal = polygon_normal(corners);
+        const double size = realmodel::length(normal);
         area += k == 0 ? size : -size;
         rounding = std::max(rounding, cutting::rounding_of(corners));
     }

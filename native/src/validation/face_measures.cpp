@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/vectors.hpp"
 #include "validation/chunked.hpp"
 #include "validation/face_shape.hpp"
 
@@ -52,10 +53,7 @@ FaceMeasures::FaceMeasures(const ComplexView& model, const CellSides& sides,
                     const std::int32_t cell = model.cell(f, side);
                     if (cell < 0) continue;
                     const Position o = model.vertex(origin[static_cast<std::size_t>(cell)]);
-                    const double volume =
-                        ((first[0] - o[0]) * area[0] + (first[1] - o[1]) * area[1] +
-                         (first[2] - o[2]) * area[2]) /
-                        6;
+                    const double volume = dot(minus(first, o), area) / 6;
                     measure.volume[side] = side == 0 ? volume : -volume;
                 }
                 measure.rounding = (std::abs(area[0]) * step[0] + std::abs(area[1]) * step[1] +

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vectors.hpp"
 #include "exact/double_double_interval.hpp"
 #include "realmodel/strata/stack.hpp"
 
@@ -15,19 +16,11 @@ namespace {
 
 constexpr double kTiny = 1e-290;
 
-double cross(const std::array<double, 2>& u, const std::array<double, 2>& v) {
-    return u[0] * v[1] - u[1] * v[0];
-}
-
 /// Moving both ends of both edges by the allowance changes their cross product by this much.
 double cross_allowance(const std::array<double, 2>& u, const std::array<double, 2>& v,
                        const std::array<double, 2>& allowance) {
     return 2 * (allowance[0] * (std::abs(u[1]) + std::abs(v[1]) + allowance[1]) +
                 allowance[1] * (std::abs(u[0]) + std::abs(v[0]) + allowance[0]));
-}
-
-std::array<double, 2> minus(const std::array<double, 2>& a, const std::array<double, 2>& b) {
-    return {a[0] - b[0], a[1] - b[1]};
 }
 
 }  // namespace
@@ -75,18 +68,7 @@ void FaceShape::load(std::size_t face) {
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
         allowance_[axis] = kRoundingSteps * last_place(largest[axis]) + kTiny;
-    area_ = {0, 0, 0};
-    const Position& o = corners_.front();
-    Position u{};
-    for (std::size_t i = 1; i < corners_.size(); ++i) {
-        const Position v{corners_[i][0] - o[0], corners_[i][1] - o[1], corners_[i][2] - o[2]};
-        if (i > 1) {
-            area_[0] += u[1] * v[2] - u[2] * v[1];
-            area_[1] += u[2] * v[0] - u[0] * v[2];
-            area_[2] += u[0] * v[1] - u[1] * v[0];
-        }
-        u = v;
-    }
+    area_ = polygon_normal(corners_);
 }
 
 std::optional<std::string> FaceShape::fault_of_base() const {
@@ -111,9 +93,8 @@ bool FaceShape::is_flat() const {
                            std::abs(area_[2]) * allowance_[2];
     const Position& o = corners_.front();
     for (const Position& p : corners_) {
-        const double off =
-            area_[0] * (p[0] - o[0]) + area_[1] * (p[1] - o[1]) + area_[2] * (p[2] - o[2]);
-        if (std::abs(off) > allowed) return is_flat_precisely() || is_upright(way_of_wall());
+        if (std::abs(dot(area_, minus(p, o))) > allowed)
+            return is_flat_precisely() || is_upright(way_of_wall());
     }
     return true;
 }

@@ -26,7 +26,7 @@ class FaceShape {
 public:
     explicit FaceShape(const ComplexView& model) : model_(model) {}
 
-    /// Takes up a face; all questions are about it from then on.
+    /// Takes a face, which all questions are about from then on.
     void load(std::size_t face);
     const std::array<double, 3>& corner(std::size_t i) const { return corners_[i]; }
     /// Twice the area vector, which points out of the first cell.

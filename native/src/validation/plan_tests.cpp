@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/elementary.hpp"
 
@@ -29,9 +30,7 @@ bool passes(const PlanPosition& from, const PlanPosition& to, const PlanPosition
         if (place[axis] < std::min(from[axis], to[axis]) - reach) return false;
         if (place[axis] > std::max(from[axis], to[axis]) + reach) return false;
     }
-    const double dx = to[0] - from[0], dy = to[1] - from[1];
-    const double off = dx * (place[1] - from[1]) - dy * (place[0] - from[0]);
-    return std::abs(off) <= 1.001 * reach * elementary::hypot(dx, dy) + 1e-290;
+    return std::abs(twice_area(from, to, place)) <= 1.001 * reach * distance(from, to) + 1e-290;
 }
 
 }  // namespace realmodel::validation

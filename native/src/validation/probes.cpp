@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::validation {
@@ -91,8 +92,7 @@ PlanPosition place_on_face(const ComplexView& model, std::size_t face) {
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
         const std::array<PlanPosition, 3> p{plan(model, loop[0]), plan(model, loop[i]),
                                             plan(model, loop[i + 1])};
-        const double area = std::abs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                                     (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+        const double area = std::abs(twice_area(p[0], p[1], p[2]));
         if (area > largest_area) {
             largest_area = area;
             largest = p;
@@ -157,17 +157,13 @@ std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t fa
 
 /// The way out of a wall's first cell, a unit vector.
 PlanPosition outward(const ComplexView& model, const WallSample& wall) {
-    const double dx = wall.to[0] - wall.from[0], dy = wall.to[1] - wall.from[1];
     const auto loop = model.face(static_cast<std::size_t>(wall.face));
-    const auto o = model.vertex(loop[0]);
-    double area_x = 0, area_y = 0;
-    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-        const auto p = model.vertex(loop[i]), q = model.vertex(loop[i + 1]);
-        area_x += (p[1] - o[1]) * (q[2] - o[2]) - (p[2] - o[2]) * (q[1] - o[1]);
-        area_y += (p[2] - o[2]) * (q[0] - o[0]) - (p[0] - o[0]) * (q[2] - o[2]);
-    }
-    const double length = elementary::hypot(dx, dy), sign = area_x * dy - area_y * dx >= 0 ? 1 : -1;
-    return {sign * dy / length, -sign * dx / length};
+    const Vec3 normal =
+        polygon_normal(loop.size(), [&](std::size_t i) { return model.vertex(loop[i]); });
+    const PlanPosition way = minus(wall.to, wall.from);
+    const double length = distance(wall.from, wall.to),
+                 sign = cross(PlanPosition{normal[0], normal[1]}, way) >= 0 ? 1 : -1;
+    return {sign * way[1] / length, -sign * way[0] / length};
 }
 
 class Choice {

@@ -41,7 +41,7 @@ struct PlanRounding {
 struct Probes {
     std::vector<Probe> probes;
     std::vector<WallSample> walls;
-    std::int64_t narrow_walls = 0;  ///< chosen, but too short for their sides to be told apart
+    std::int64_t narrow_walls = 0;  ///< chosen, but too short to have two sides beyond rounding
 };
 
 /// The largest plan coordinate of a model and its input.

@@ -34,7 +34,7 @@ std::string figure(double value) {
     return text;
 }
 
-std::string told(const std::vector<Interval>& column) {
+std::string text_of(const std::vector<Interval>& column) {
     std::string text;
     for (const Interval& i : column) {
         text += (text.empty() ? "block " : ", block ") + std::to_string(i.block) + " from " +
@@ -170,8 +170,8 @@ private:
                                                   : 0.0;
             return Offender{
                 .text = at(probe) +
-                        (column.broken.empty() ? "the model has " + told(have) : column.broken) +
-                        "; the closed form has " + told(want),
+                        (column.broken.empty() ? "the model has " + text_of(have) : column.broken) +
+                        "; the closed form has " + text_of(want),
                 .block = !have.empty() ? have[0].block : -1,
                 .place = std::array<double, 3>{p[0], p[1], height}};
         });
@@ -299,7 +299,7 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
     all.walls.undecided += 2 * probes.narrow_walls;
     report(1.0, "comparing with the closed form");
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    // what the three cost is one thing, told with the first
+    // all three are tested in one pass: its time stands with the first
     return {{"places", "places", std::move(all.places), seconds.count()},
             {"surfaces", "faces met", std::move(all.surfaces), 0.0},
             {"walls", "wall sides", std::move(all.walls), 0.0}};

@@ -176,8 +176,8 @@ Findings check_block_volumes(const ComplexView& model, const CellSides& sides,
     Findings found;
     found.examined = static_cast<std::int64_t>(sums.size());
     for (std::size_t b = 0; b < sums.size(); ++b) {
-        const double told = model.block_volume[b], summed = sums[b].value();
-        const double off = std::abs(told - summed);
+        const double stated = model.block_volume[b], summed = sums[b].value();
+        const double off = std::abs(stated - summed);
         if (off <= 1e-9 * std::abs(summed)) continue;
         if (off <= volume_rounding(model, sides, b)) {  // a block as thin as rounding
             ++found.undecided;
@@ -185,7 +185,7 @@ Findings check_block_volumes(const ComplexView& model, const CellSides& sides,
         }
         found.fail([&] {
             return Offender{.text = "block " + std::to_string(b) + " is reported with volume " +
-                                    figure(told) + ", its cells have " + figure(summed),
+                                    figure(stated) + ", its cells have " + figure(summed),
                             .block = static_cast<std::int64_t>(b)};
         });
     }

@@ -62,5 +62,24 @@ TEST(EdgeUse, KnowsWhatIsAheadGoingRound) {
     EXPECT_EQ(uses[2].behind(), 0U);
 }
 
+TEST(EdgesOf, EachEdgeHasAllItsUses) {
+    const std::vector<std::array<NodeId, 3>> triangles{{0, 1, 2}, {2, 1, 3}, {1, 2, 4}};
+    const EdgeUses edges =
+        edges_of(3, 5, [&](std::size_t t) -> const auto& { return triangles[t]; }, {1, nullptr});
+    ASSERT_EQ(edges.size(), 7U);
+    std::vector<std::array<NodeId, 2>> ends;
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        ends.push_back(edges.ends(e));
+    EXPECT_EQ(ends, (std::vector<std::array<NodeId, 2>>{
+                        {0, 1}, {0, 2}, {1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}}));
+    ASSERT_EQ(edges[2].size(), 3U);
+    EXPECT_EQ(edges[2][0].direction, 1);
+    EXPECT_EQ(edges[2][1].direction, -1);
+    EXPECT_EQ(edges[2][2].item, 2);
+    EXPECT_EQ(edges.between({1, 2}).data(), edges[2].data());
+    EXPECT_EQ(edges.between({1, 2}).size(), 3U);
+    EXPECT_TRUE(edges.between({0, 3}).empty());
+}
+
 }  // namespace
 }  // namespace realmodel::arrangement

@@ -6,12 +6,14 @@
 #include <set>
 
 #include "cutting/halves.hpp"
-#include "cutting/part_rounding.hpp"
+#include "cutting/rounding/part_rounding.hpp"
+#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 
 /// One cell, a box of 1 x 1 x 2, that a level cutter divides at some height. Nodes 8 to 11 are
-/// where it cuts the upright edges.
+/// where it cuts the upright edges, in the order of x and then y. Pieces 0 and 1 are the bottom and
+/// the top, then come the lower and the upper piece of each side, and the cap (kCap).
 class AHalvedBox : public testing::Test {
 protected:
     AHalvedBox() {
@@ -49,8 +51,12 @@ protected:
         }
         pieces_.add(std::array{8, 9, 11, 10}, {-1, {0, 0}, {kBelow, kAbove}, true, {0, 1}});
     }
+    RoundedParts rounded_parts(bool are_joined = false) {
+        return {model_, new_, pieces_, parts_, are_joined, {1, nullptr}};
+    }
+    NodeLoop nodes(std::size_t piece) const { return from_least(pieces_.polygons[piece]); }
     Cut rounded() {
-        PartRounding(model_, new_, pieces_, parts_, {false, false}, {1, nullptr}).run();
+        round_parts(rounded_parts(), {false, false});
         return assemble_halves(model_, new_, pieces_, parts_, {1, nullptr});
     }
     static void expect_distinct(const CellComplex& half) {
@@ -58,6 +64,7 @@ protected:
         EXPECT_EQ(found.size(), half.vertices.size());
     }
 
+    static constexpr std::size_t kCap = 10;
     static constexpr std::array<std::array<std::int32_t, 4>, 6> kFaces{
         {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}}};
     std::vector<double> vertices_;

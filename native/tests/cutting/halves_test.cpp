@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {

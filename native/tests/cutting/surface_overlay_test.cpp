@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <map>
 
+#include "../arrangement/small_polygons.hpp"
 #include "../validation/small_complex.hpp"
 #include "base/ulp.hpp"
 #include "exact/space_predicates.hpp"
 #include "level_cutter.hpp"
 #include "prism.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 namespace {

@@ -208,7 +208,7 @@ TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
         const ComplexView all = j.complex;
         for (const std::int32_t v : all.face(f))
             corners.push_back(all.vertex(v));
-        const auto normal = cutting::polygon_normal(corners);
+        const auto normal = polygon_normal(corners);
         area += std::abs(normal[0]) / 2;
     }
     EXPECT_NEAR(area, 4 * 2.5, 1e-12);  // from 0 to 2.5 on one side or the other
@@ -509,12 +509,12 @@ TEST(ContinuationOf, AFaultThatDiesOutDoesNotCrossItselfWhereItBends) {
     // all that has the mean plane's normal on one side: a function over that plane
     std::vector<std::array<double, 3>> normals;
     for (const auto& t : beyond) {
-        const auto a = cutting::minus(t[1], t[0]), b = cutting::minus(t[2], t[0]);
+        const auto a = minus(t[1], t[0]), b = minus(t[2], t[0]);
         normals.push_back(
             {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
     }
     for (const auto& n : normals)
-        EXPECT_GT(cutting::dot(n, normals[0]), 0);
+        EXPECT_GT(dot(n, normals[0]), 0);
 }
 
 /// Of triangles in a plane x = const: the sum of their areas, negative where they turn about.

@@ -1,7 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Meshes of prisms for solvers, made from a model (docs/dev/simulation.md): lines of the plan are
 /// simplified, a planar mesh is made with them (realmodel/meshing), and columns of elements stand
-/// on it.
+/// on it. Names, in the order in which things are made:
+///
+/// - trace: in plan, an edge of the top or the bottom of a block that ends or steps there.
+/// - anchor: a point on traces. What of these is nearest to an anchor moves to it.
+/// - segment: a line between two anchors, in the place of traces. A step has other heights on its
+///   other side; along other segments blocks end without thickness.
+/// - node: a vertex of the planar mesh. Segments are chains of its edges.
+/// - post: one part of the surroundings of a node, between steps; a node on no step has one.
+/// - rock mass, block, layer: a rock mass has blocks, oldest first; a block is divided into layers.
+/// - level: l of a post is the height at which layer l of its rock mass begins; two are equal where
+///   the layer is absent.
+/// - height: h of a node, ascending. Posts of one node share heights; each level is the number of
+///   one. A point of the mesh is a node with a height.
+/// - front: one height at each corner of a triangle of the planar mesh.
+/// - element: what lies between two fronts that differ by one height at one corner (tetrahedron),
+///   two (pyramid) or three (prism). All over one triangle are its column.
+/// - removal: a height is given up; what had it takes the next one below or above.
+///
+/// The repair of columns asks for elements and faces that are weak (thin ends), steep, failing
+/// (whatever OpenFOAM's checkMesh does) or skewed: src/simulation/column_repair.cpp has the steps.
 #pragma once
 
 #include <array>

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/counting_sort.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
@@ -25,22 +26,20 @@ struct Foot {
     double height, share;
 };
 Foot foot(const Position& a, const Position& b, const Position& p) {
-    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = p[0] - a[0], vy = p[1] - a[1];
-    const double squared = ux * ux + uy * uy;
-    return {std::abs(ux * vy - uy * vx) / std::sqrt(squared), (ux * vx + uy * vy) / squared};
+    const Position u = minus(b, a), v = minus(p, a);
+    return {std::abs(cross(u, v)) / length(u), dot(u, v) / dot(u, u)};
 }
 
 bool has_area(const Position& a, const Position& b, const Position& c) {
-    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
-    const double longest = std::max(
-        {ux * ux + uy * uy, vx * vx + vy * vy, (ux - vx) * (ux - vx) + (uy - vy) * (uy - vy)});
-    return std::abs(ux * vy - uy * vx) > kFlat * longest;
+    const Position u = minus(b, a), v = minus(c, a);
+    const double longest = std::max({dot(u, u), dot(v, v), squared_distance(u, v)});
+    return std::abs(cross(u, v)) > kFlat * longest;
 }
 
 Hinge hinge(std::span<const Position> nodes, const std::array<std::int32_t, 4>& of) {
     const auto at = [&](int k) { return nodes[of[k]]; };
     const Position a = at(0), b = at(1), c = at(2), d = at(3);
-    const double length = elementary::hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = distance(a, b);
     const Foot left = foot(a, b, c), right = foot(a, b, d);
     // L^2 / (A + B), and the areas are L h / 2.
     const double scale = std::sqrt(2 * length / (left.height + right.height));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/counting_sort.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
@@ -18,8 +19,7 @@ double mean_edge(std::span<const Position> nodes,
     double sum = 0;
     for (const auto& t : triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const Position &a = nodes[t[k]], &b = nodes[t[(k + 1) % 3]];
-            sum += elementary::hypot(a[0] - b[0], a[1] - b[1]);
+            sum += distance(nodes[t[k]], nodes[t[(k + 1) % 3]]);
         }
     }
     const double mean = sum / (3 * static_cast<double>(triangles.size()));

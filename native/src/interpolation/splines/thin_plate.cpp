@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/vectors.hpp"
 #include "interpolation/drift_basis.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
@@ -19,11 +20,6 @@ namespace {
 /// r^2 log r from r^2.
 double kernel(double squared) {
     return squared > 0 ? 0.5 * squared * elementary::log(squared) : 0;
-}
-
-double squared_distance(const Position& a, const Position& b) {
-    const double dx = a[0] - b[0], dy = a[1] - b[1];
-    return dx * dx + dy * dy;
 }
 
 double spacing_in(const spatial::PlanBox& box, std::size_t points) {

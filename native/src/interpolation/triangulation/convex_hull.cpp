@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/keep_single.hpp"
 #include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
@@ -11,8 +12,7 @@
 namespace realmodel::interpolation {
 
 ConvexHull::ConvexHull(std::vector<Position> positions) {
-    std::sort(positions.begin(), positions.end());
-    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    sort_unique(positions);
     const auto add = [](std::vector<Position>& chain, const Position& position, int outward) {
         while (chain.size() > 1 &&
                exact::orient2d(chain[chain.size() - 2], chain.back(), position) != -outward) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/vectors.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
@@ -97,11 +98,9 @@ double HullBorder::nearest_value(const Position& position) const {
     const Edge* nearest = nullptr;
     for (const Edge& edge : edges_) {
         const Position& from = edge.from;
-        const double ux = edge.to[0] - from[0], uy = edge.to[1] - from[1];
-        const double vx = position[0] - from[0], vy = position[1] - from[1];
-        const double length = ux * ux + uy * uy;
-        const double t = length > 0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0;
-        const double dx = vx - t * ux, dy = vy - t * uy, squared = dx * dx + dy * dy;
+        const double t = nearest_share(from, edge.to, position);
+        const Position off = moved(minus(position, from), -t, minus(edge.to, from));
+        const double squared = dot(off, off);
         const bool is_first = squared == least && nearest != nullptr && from < nearest->from;
         if (!(squared < least) && !is_first) continue;
         least = squared;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/keep_single.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
@@ -95,8 +96,7 @@ std::vector<std::int32_t> ManyPoints::kept(std::span<const spatial::Neighbor> ne
     numbers.reserve(near.size());
     for (const spatial::Neighbor& neighbor : near)
         numbers.push_back(neighbor.point);
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    sort_unique(numbers);
     return numbers;
 }
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/keep_single.hpp"
+#include "base/vectors.hpp"
+
 namespace realmodel::simulation {
 
 namespace {
@@ -16,10 +19,6 @@ constexpr double kLeastVolume = 1e-8;
 
 bool is_flat(const CellShape& cell) {
     return cell.volume <= kLeastVolume * cell.area * std::sqrt(cell.area);
-}
-
-bool contains(std::span<const std::int32_t> numbers, std::int32_t number) {
-    return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
 }
 
 /// Whether two loops have the same corners in the same or in the opposite order.
@@ -241,16 +240,14 @@ void ChangeCheck::take_surroundings(const Change& change, std::int32_t cell,
         const Loop loop = loop_of(change, each.face);
         vertices_.insert(vertices_.end(), loop.begin(), loop.end());
     }
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    sort_unique(vertices_);
     for (const std::int32_t v : vertices_) {
         for (const std::int32_t f : complex_.vertex_faces(v)) {
             const auto [a, b] = complex_.cells(f);
             if (a == cell || b == cell) before_.push_back(f);
         }
     }
-    std::sort(before_.begin(), before_.end());
-    before_.erase(std::unique(before_.begin(), before_.end()), before_.end());
+    sort_unique(before_);
 }
 
 /// Of a cell whose faces after_ has.
@@ -270,12 +267,12 @@ bool ChangeCheck::keeps_shape(const Change& change, std::int32_t cell, double& v
 bool ChangeCheck::keeps_volume(const Change& change, std::int32_t cell, std::span<const Beside> own,
                                double& volume) const {
     const CellShape& old = complex_.cell(cell);
-    const SpaceVector from = complex_.point(loop_of(change, own[0].face)[0]);
+    const Vec3 from = complex_.point(loop_of(change, own[0].face)[0]);
     volume = old.volume;
     for (const Beside& each : own) {
         const FaceShape& shape = shape_of(change, each.face);
         const bool adds = (each.face < 0) == (cells_of(change, each.face)[0] == cell);
-        volume += (adds ? 1 : -1) * dot(shape.area, shape.center - from) / 3;
+        volume += (adds ? 1 : -1) * dot(shape.area, minus(shape.center, from)) / 3;
     }
     return volume > kLeastVolume * old.area * std::sqrt(old.area);
 }
@@ -296,31 +293,25 @@ int ChangeCheck::euler_number(const Change& change, std::int32_t cell,
         }
         vertices_.insert(vertices_.end(), loop.begin(), loop.end());
     }
-    std::sort(vertices_.begin(), vertices_.end());
-    const auto corners = std::unique(vertices_.begin(), vertices_.end()) - vertices_.begin();
-    std::sort(edges_.begin(), edges_.end());
-    const auto end = std::unique(edges_.begin(), edges_.end());
-    doubled = static_cast<int>(edges_.end() - end);
-    edges_.erase(end, edges_.end());
+    const std::size_t uses = edges_.size();
+    sort_unique(vertices_);
+    sort_unique(edges_);
+    doubled = static_cast<int>(uses - edges_.size());
     for (auto& [from, to] : edges_) {
         if (from > to) std::swap(from, to);
     }
-    std::sort(edges_.begin(), edges_.end());
-    const auto edges = std::unique(edges_.begin(), edges_.end()) - edges_.begin();
-    return static_cast<int>(corners - edges + static_cast<std::ptrdiff_t>(faces.size()));
+    sort_unique(edges_);
+    return static_cast<int>(vertices_.size() + faces.size()) - static_cast<int>(edges_.size());
 }
 
 /// Whether around each edge at a vertex cells and faces follow one another in one round.
 bool ChangeCheck::keeps_edges(const Change& change, std::int32_t vertex) {
     around_.clear();
     const auto add = [&](std::int32_t face) {
-        const Loop loop = loop_of(change, face);
-        const auto at =
-            static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
-        if (at == loop.size()) return;
-        const auto cells = cells_of(change, face);
-        around_.push_back({loop[(at + 1) % loop.size()], cells});
-        around_.push_back({loop[(at + loop.size() - 1) % loop.size()], cells});
+        const auto found = beside(loop_of(change, face), vertex);
+        if (!found) return;
+        for (const std::int32_t v : *found)
+            around_.push_back({v, cells_of(change, face)});
     };
     for (const std::int32_t f : complex_.vertex_faces(vertex)) {
         if (!is_removed(f)) add(f);

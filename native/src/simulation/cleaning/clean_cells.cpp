@@ -6,7 +6,9 @@
 #include <queue>
 #include <tuple>
 
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "simulation/cleaning/change_check.hpp"
 #include "simulation/cleaning/editable_complex.hpp"
 
@@ -76,18 +78,13 @@ private:
         }
     }
 
-    static void sort_once(std::vector<Edge>& edges) {
-        std::sort(edges.begin(), edges.end());
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    }
-
     void list_all_edges() {
         edges_.clear();
         next_edge_ = 0;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
             if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, edges_);
         }
-        sort_once(edges_);
+        sort_unique(edges_);
     }
 
     /// The next of the listed edges and of those that came since, by length; false: there is none.
@@ -110,15 +107,9 @@ private:
         return false;
     }
 
-    static bool contains(std::span<const std::int32_t> numbers, std::int32_t number) {
-        return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
-    }
-
     static bool next_to(std::span<const std::int32_t> loop, std::int32_t u, std::int32_t v) {
-        const auto at =
-            static_cast<std::size_t>(std::find(loop.begin(), loop.end(), u) - loop.begin());
-        const std::size_t n = loop.size();
-        return at < n && (loop[(at + 1) % n] == v || loop[(at + n - 1) % n] == v);
+        const auto found = beside(loop, u);
+        return found && contains(*found, v);
     }
 
     void join_short_edges() {
@@ -142,10 +133,10 @@ private:
         if (forward && backward) {
             const double difference = cost - check_.volume_change();
             const double least = kAlike * std::max(cost, check_.volume_change());
-            const SpaceVector a = complex_.point(edge.from), b = complex_.point(edge.to);
+            const Vec3 a = complex_.point(edge.from), b = complex_.point(edge.to);
             takes_other = std::abs(difference) > least
                               ? difference > 0
-                              : std::tie(a.z, a.x, a.y) > std::tie(b.z, b.x, b.y);
+                              : std::tie(a[2], a[0], a[1]) > std::tie(b[2], b[0], b[1]);
         }
         const std::int32_t gone = takes_other ? edge.to : edge.from;
         const std::int32_t kept = takes_other ? edge.from : edge.to;
@@ -192,7 +183,7 @@ private:
         fresh_edges_.clear();
         for (const std::int32_t f : complex_.vertex_faces(vertex))
             list_edges_of(complex_.corners(f), vertex, fresh_edges_);
-        sort_once(fresh_edges_);
+        sort_unique(fresh_edges_);
         for (const Edge& edge : fresh_edges_)
             queue_.push(edge);
     }
@@ -221,15 +212,15 @@ private:
         // a polygon is at least as wide as its area over its longest edge is
         if (!(length(complex_.shape(face).area) < tolerance_ * most)) return;
         const std::int32_t from = loop[longest], to = loop[(longest + 1) % n];
-        const SpaceVector start = complex_.point(from);
-        const SpaceVector way = (1 / most) * (complex_.point(to) - start);
+        const Vec3 start = complex_.point(from);
+        const Vec3 way = times(1 / most, minus(complex_.point(to), start));
         std::int32_t nearest = -1;
         double least = tolerance_, widest = 0;
         for (const std::int32_t v : loop) {
             if (v == from || v == to) continue;
-            const SpaceVector arm = complex_.point(v) - start;
+            const Vec3 arm = minus(complex_.point(v), start);
             const double along = dot(arm, way);
-            const double across = length(arm - along * way);
+            const double across = length(minus(arm, times(along, way)));
             widest = std::max(widest, across);
             if (along > 0 && along < most && across < least) {
                 least = across;
@@ -271,7 +262,7 @@ private:
             if (!(area > 0)) continue;
             double most = 0;
             for (std::size_t i = 0; i < vertices.size() && most < least; ++i) {
-                const SpaceVector arm = complex_.point(vertices[i]) - face.center;
+                const Vec3 arm = minus(complex_.point(vertices[i]), face.center);
                 most = std::max(most, std::abs(dot(arm, face.area)) / area);
             }
             least = std::min(least, most);

@@ -2,9 +2,14 @@
 #include "simulation/cleaning/editable_complex.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <map>
 #include <string>
 
+#include "base/counting_sort.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::simulation {
@@ -50,40 +55,32 @@ std::vector<std::int32_t> copy_of(std::span<const std::int32_t> numbers) {
 /// Lists of the faces that have each of `count` things; visit(face, see) calls see(thing).
 template <class Visit>
 ListPool faces_of(std::size_t count, std::size_t faces, const Visit& visit) {
-    std::vector<std::int64_t> offsets(count + 1, 0);
-    for (std::size_t f = 0; f < faces; ++f)
-        visit(f, [&](std::int32_t thing) { ++offsets[index(thing) + 1]; });
-    for (std::size_t i = 0; i < count; ++i)
-        offsets[i + 1] += offsets[i];
-    std::vector<std::int64_t> next(offsets.begin(), offsets.end() - 1);
-    std::vector<std::int32_t> found(static_cast<std::size_t>(offsets[count]));
-    for (std::size_t f = 0; f < faces; ++f) {
-        visit(f, [&](std::int32_t thing) {
-            found[static_cast<std::size_t>(next[index(thing)]++)] = static_cast<std::int32_t>(f);
-        });
-    }
-    return {std::span<const std::int64_t>(offsets), std::move(found)};
+    const auto found = bucketize<std::int32_t>(count, [&](const auto& put) {
+        for (std::size_t f = 0; f < faces; ++f)
+            visit(f, [&](std::int32_t thing) { put(index(thing), static_cast<std::int32_t>(f)); });
+    });
+    return {std::span<const std::uint32_t>(found.offsets), copy_of(found.values)};
 }
 
 }  // namespace
 
 CellShape cell_shape(std::span<const SeenFace> faces) {
     CellShape found;
-    SpaceVector middle;
+    Vec3 middle{};
     for (const SeenFace& face : faces)
-        middle = middle + face.shape.center;
-    middle = (1.0 / static_cast<double>(faces.size())) * middle;
-    SpaceVector moment;
+        middle = plus(middle, face.shape.center);
+    middle = times(1.0 / static_cast<double>(faces.size()), middle);
+    Vec3 moment{};
     for (const SeenFace& face : faces) {
-        const SpaceVector arm = face.shape.center - middle;
+        const Vec3 arm = minus(face.shape.center, middle);
         const double part = face.sign * dot(face.shape.area, arm) / 3;
         found.volume += part;
-        moment = moment + part * (0.75 * arm);
+        moment = moved(moment, part, times(0.75, arm));
         found.area += length(face.shape.area);
     }
-    const SpaceVector center = found.volume > 0 ? middle + (1 / found.volume) * moment : middle;
+    const Vec3 center = found.volume > 0 ? moved(middle, 1 / found.volume, moment) : middle;
     for (const SeenFace& face : faces) {
-        if (!(face.sign * dot(face.shape.area, face.shape.center - center) > 0))
+        if (!(face.sign * dot(face.shape.area, minus(face.shape.center, center)) > 0))
             ++found.turned_faces;
     }
     return found;
@@ -168,25 +165,38 @@ EditableComplex::EditableComplex(const ComplexView& model, const Execution& exec
 }
 
 FaceShape EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
-    SpaceVector middle;
+    Vec3 middle{};
     for (const std::int32_t v : loop)
-        middle = middle + point(v);
-    middle = (1.0 / static_cast<double>(loop.size())) * middle;
+        middle = plus(middle, point(v));
+    middle = times(1.0 / static_cast<double>(loop.size()), middle);
     FaceShape found;
-    SpaceVector moment;
+    Vec3 moment{};
     double weights = 0;
-    SpaceVector from = point(loop.back()) - middle;
+    Vec3 from = minus(point(loop.back()), middle);
     for (const std::int32_t v : loop) {
-        const SpaceVector to = point(v) - middle;
-        const SpaceVector part = 0.5 * cross(from, to);
+        const Vec3 to = minus(point(v), middle);
+        const Vec3 part = times(0.5, cross(from, to));
         const double weight = length(part);
-        found.area = found.area + part;
-        moment = moment + weight * (from + to);
+        found.area = plus(found.area, part);
+        moment = moved(moment, weight, plus(from, to));
         weights += weight;
         from = to;
     }
-    found.center = weights > 0 ? middle + (1 / (3 * weights)) * moment : middle;
+    found.center = weights > 0 ? moved(middle, 1 / (3 * weights), moment) : middle;
     return found;
+}
+
+/// Whether the faces of a cell use each of its edges as often one way as the other.
+[[maybe_unused]] bool EditableComplex::is_closed(std::int32_t cell) const {
+    std::map<std::array<std::int32_t, 2>, int> uses;
+    for (const std::int32_t f : cell_faces(cell)) {
+        std::int32_t from = corners(f).back();
+        for (const std::int32_t to : corners(f)) {
+            uses[unordered(from, to)] += (from < to) == (cells(f)[0] == cell) ? 1 : -1;
+            from = to;
+        }
+    }
+    return std::ranges::all_of(uses, [](const auto& edge) { return edge.second == 0; });
 }
 
 CellShape EditableComplex::measured(std::int32_t cell) const {
@@ -213,6 +223,7 @@ void EditableComplex::apply(const Change& change) {
         }
     };
     for (const std::int32_t f : change.removed) {
+        assert(has_face(f));
         touch(cells(f));
         remove(f);
     }
@@ -235,10 +246,11 @@ void EditableComplex::apply(const Change& change) {
         }
         touch(face.cells);
     }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    for (const std::int32_t c : touched)
+    sort_unique(touched);
+    for (const std::int32_t c : touched) {
         cell_shapes_[index(c)] = measured(c);
+        assert(!has_cell(c) || is_closed(c));
+    }
 }
 
 ComplexCounts EditableComplex::counts() const {
@@ -251,17 +263,14 @@ ComplexCounts EditableComplex::counts() const {
     for (std::int32_t v = 0; v < vertex_count(); ++v) {
         ends.clear();
         for (const std::int32_t f : vertex_faces(v)) {
-            const auto loop = corners(f);
-            const auto at =
-                static_cast<std::size_t>(std::find(loop.begin(), loop.end(), v) - loop.begin());
-            for (const std::size_t step : {std::size_t{1}, loop.size() - 1}) {
-                const std::int32_t w = loop[(at + step) % loop.size()];
+            const auto near = beside(corners(f), v);
+            assert(near.has_value());
+            for (const std::int32_t w : *near) {
                 if (w > v) ends.push_back(w);
             }
         }
-        std::sort(ends.begin(), ends.end());
-        found.edges +=
-            static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+        sort_unique(ends);
+        found.edges += ends.size();
     }
     return found;
 }

@@ -1,22 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "realmodel/complex.hpp"
 #include "realmodel/simulation/clean_cells.hpp"
 #include "simulation/cleaning/list_pool.hpp"
-#include "simulation/cleaning/space_vector.hpp"
 
 namespace realmodel::simulation {
+
+inline bool contains(std::span<const std::int32_t> numbers, std::int32_t number) {
+    return std::ranges::find(numbers, number) != numbers.end();
+}
+
+/// The corners after and before one in a loop; nothing where it has no such corner.
+inline std::optional<std::array<std::int32_t, 2>> beside(std::span<const std::int32_t> loop,
+                                                         std::int32_t corner) {
+    const auto at = static_cast<std::size_t>(std::ranges::find(loop, corner) - loop.begin());
+    const std::size_t n = loop.size();
+    if (at == n) return std::nullopt;
+    return std::array{loop[(at + 1) % n], loop[(at + n - 1) % n]};
+}
 
 /// The area vector of a face, away from its first cell, and its center, as OpenFOAM has them: of
 /// the triangles between its edges and the mean of its corners.
 struct FaceShape {
-    SpaceVector area, center;
+    Vec3 area{}, center{};
 };
 
 struct CellShape {
@@ -80,8 +95,10 @@ public:
     const FaceShape& shape(std::int32_t face) const { return shapes_[index(face)]; }
     const CellShape& cell(std::int32_t cell) const { return cell_shapes_[index(cell)]; }
     /// Relative to the middle of the model.
-    SpaceVector point(std::int32_t v) const { return points_[index(v)]; }
-    double distance(std::int32_t u, std::int32_t v) const { return length(point(u) - point(v)); }
+    Vec3 point(std::int32_t v) const { return points_[index(v)]; }
+    double distance(std::int32_t u, std::int32_t v) const {
+        return length(minus(point(u), point(v)));
+    }
     std::int32_t block(std::int32_t cell) const { return model_.cell_block[index(cell)]; }
     bool has_face(std::int32_t face) const { return !corners(face).empty(); }
     bool has_cell(std::int32_t cell) const { return !cell_faces(cell).empty(); }
@@ -102,9 +119,10 @@ public:
 
 private:
     void remove(std::int32_t face);
+    bool is_closed(std::int32_t cell) const;
 
     ComplexView model_;
-    std::vector<SpaceVector> points_;
+    std::vector<Vec3> points_;
     std::vector<std::array<std::int32_t, 2>> cells_;
     std::vector<std::int32_t> surface_;
     std::vector<FaceShape> shapes_;

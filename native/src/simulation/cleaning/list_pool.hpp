@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,6 +44,7 @@ public:
         List& own = lists_[index(list)];
         const auto begin = numbers_.begin() + static_cast<std::ptrdiff_t>(own.begin);
         const auto end = begin + own.size;
+        assert(std::count(begin, end, number) == 1);
         own.size = static_cast<std::uint32_t>(std::remove(begin, end, number) - begin);
     }
     void set(std::int32_t list, std::span<const std::int32_t> numbers) {

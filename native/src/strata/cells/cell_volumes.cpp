@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {
@@ -24,19 +25,7 @@ FaceArea area_of(std::span<const Position> vertices, std::span<const std::int32_
     const auto at = [&](std::size_t i) -> const Position& {
         return vertices[static_cast<std::size_t>(loop[i])];
     };
-    FaceArea face{at(0), {0, 0, 0}};
-    Position u{};
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-        const Position& p = at(i);
-        const Position v{p[0] - face.first[0], p[1] - face.first[1], p[2] - face.first[2]};
-        if (i > 1) {
-            face.area[0] += u[1] * v[2] - u[2] * v[1];
-            face.area[1] += u[2] * v[0] - u[0] * v[2];
-            face.area[2] += u[0] * v[1] - u[1] * v[0];
-        }
-        u = v;
-    }
-    return face;
+    return {at(0), polygon_normal(loop.size(), at)};
 }
 
 [[noreturn]] void refuse(std::size_t face, const char* what) {
@@ -87,10 +76,7 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
                 const auto corner =
                     static_cast<std::size_t>(origin[static_cast<std::size_t>(cell)]);
                 const Position& o = vertices[corner];
-                const double volume =
-                    ((face.first[0] - o[0]) * face.area[0] + (face.first[1] - o[1]) * face.area[1] +
-                     (face.first[2] - o[2]) * face.area[2]) /
-                    6;
+                const double volume = dot(minus(face.first, o), face.area) / 6;
                 share[f][side] = side == 0 ? volume : -volume;
             }
         }

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "base/keep_single.hpp"
 #include "base/parallel_counts.hpp"
 #include "base/ulp.hpp"
 
@@ -197,8 +198,7 @@ private:
                 if (cell != kOutsideCell) found.push_back(cell);
             }
         });
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        sort_unique(cells);
         return cells;
     }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/keep_single.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::strata {
@@ -15,8 +16,7 @@ BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std:
     for (auto& [from, to] : edges) {
         if (from > to) std::swap(from, to);
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
     segments_.reserve(edges.size());
     for (const auto& [from, to] : edges)
         segments_.push_back({from, to, geometry.add_edge(from, to).id()});

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "spatial/plan_tiles.hpp"
-#include "strata/overlay/polygon.hpp"
 #include "strata/tiling/plan_links.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

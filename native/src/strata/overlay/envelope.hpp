@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 #include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "exact/side_rows.hpp"
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

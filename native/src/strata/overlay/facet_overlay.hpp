@@ -6,7 +6,7 @@
 #include "strata/overlay/border_edges.hpp"
 #include "strata/overlay/envelope.hpp"
 #include "strata/overlay/surface_facets.hpp"
-#include "strata/overlay/wanted_space.hpp"
+#include "strata/tiling/wanted_space.hpp"
 
 namespace realmodel::strata {
 

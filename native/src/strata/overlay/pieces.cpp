@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/vectors.hpp"
+
 namespace realmodel::strata {
 
 namespace {
@@ -32,7 +34,7 @@ bool same_corners(PolygonView a, PolygonView b) {
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const auto p = scope.rounded(polygon[i].point);
         const auto q = scope.rounded(polygon[i + 1 < polygon.size() ? i + 1 : 0].point);
-        sum += (p[0] - origin[0]) * (q[1] - origin[1]) - (q[0] - origin[0]) * (p[1] - origin[1]);
+        sum += realmodel::twice_area(origin, p, q);
     }
     return sum;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

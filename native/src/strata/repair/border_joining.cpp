@@ -12,6 +12,7 @@
 #include "base/index.hpp"
 #include "base/keep_single.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "spatial/point_bins.hpp"
@@ -107,14 +108,15 @@ std::vector<PlanEdge> border_of(const Mesh& mesh, Progress* progress) {
 std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::PointBins& vertices,
                                          double reach) {
     const PlanPosition &p = edge.first, &q = edge.second;
-    const double dx = q[0] - p[0], dy = q[1] - p[1], length = elementary::hypot(dx, dy);
+    const PlanPosition way = minus(q, p);
+    const double length = distance(p, q);
     std::vector<std::pair<double, PlanPosition>> found;
     bool beside = false;
     const spatial::PlanBox box = spatial::box_around(std::array{p, q}).widened(2 * reach);
     vertices.within(box, [&](std::size_t, const PlanPosition& v) {
-        const double vx = v[0] - p[0], vy = v[1] - p[1];
-        if (std::abs(vx * dy - vy * dx) > reach * length) return;
-        const double along = (vx * dx + vy * dy) / length;
+        const PlanPosition off = minus(v, p);
+        if (std::abs(cross(off, way)) > reach * length) return;
+        const double along = dot(off, way) / length;
         if (along <= 2 * reach || along >= length - 2 * reach) return;
         found.emplace_back(along, v);
         beside |= exact::orient2d(p, q, v) != 0;
@@ -216,9 +218,8 @@ private:
         vertices.push_back(p[0]);
         vertices.push_back(p[1]);
         if (mesh_.columns == 3) {
-            const double dx = to[0] - from[0], dy = to[1] - from[1];
-            const double share =
-                ((p[0] - from[0]) * dx + (p[1] - from[1]) * dy) / (dx * dx + dy * dy);
+            const PlanPosition way = minus(to, from);
+            const double share = dot(minus(p, from), way) / dot(way, way);
             const double za = vertices[row(a) + 2], zb = vertices[row(b) + 2];
             vertices.push_back(za + share * (zb - za));
         }
@@ -253,8 +254,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
                     [&](std::size_t m) { borders[m] = border_of(meshes[m], execution.progress); });
     for (const auto& border : borders)
         edges.insert(edges.end(), border.begin(), border.end());
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
     BorderChains chains;
     if (edges.empty()) return chains;
     std::vector<PlanPosition> ends;
@@ -265,8 +265,7 @@ BorderChains find_chains(std::span<const StackInput> rocks, const PlanSnapping& 
             largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
         }
     }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    sort_unique(ends);
 
     const double reach = largest * 0x1p-50;  // four to eight units in the last place
     const spatial::PointBins vertices(ends);

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "strata/overlay/wanted_space.hpp"
 #include "strata/repair/plan_snapping.hpp"
 #include "strata/tiling/surface_tiling.hpp"
+#include "strata/tiling/wanted_space.hpp"
 
 namespace realmodel::strata {
 

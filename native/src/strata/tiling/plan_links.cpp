@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/counting_sort.hpp"
+#include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
@@ -187,8 +188,7 @@ std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
         used.push_back(edge.low);
         used.push_back(edge.high);
     }
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    sort_unique(used);
     const auto local = [&](VertexId v) {
         return static_cast<std::int32_t>(std::lower_bound(used.begin(), used.end(), v) -
                                          used.begin());

@@ -7,9 +7,9 @@
 
 #include "realmodel/base/array.hpp"
 #include "realmodel/strata/stack.hpp"
-#include "strata/overlay/plan_grid.hpp"
-#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/plan_grid.hpp"
 #include "strata/tiling/plan_links.hpp"
+#include "strata/tiling/polygon.hpp"
 
 namespace realmodel::strata {
 

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "arrangement/edge_fan.hpp"
+#include "base/counting_sort.hpp"
+#include "base/disjoint_sets.hpp"
+
+namespace realmodel::arrangement {
+
+/// The cells of space between facets, and what is known of each.
+///
+/// Notation:
+///   facet    a polygon that meets others in whole edges only: a triangle of two surfaces that were
+///            divided along one another (P and Q in booleans), a region of a surface or of a face
+///            of a model (cutting, structures)
+///   side     a facet has side 0, below it, where it is seen clockwise from, and side 1, above it.
+///            Sides have numbers, which the caller gives. What does not divide space has both sides
+///            under one number
+///   use      a facet at one of its edges (EdgeUse). For one who goes round the edge, seen along it
+///            counter-clockwise, one side of the facet is ahead of it and the other one behind
+///   blade    the uses that lie in one half-plane that begins at the edge (EdgeFan)
+///   sector   what is between a blade and the next one: the sides ahead of the first and behind the
+///            second are in one cell. So each cell is a set of sides, joined around all edges;
+///            parts of its boundary that do not touch one another are joined along rays
+///   way      from a cell through a facet into another one, in direction 1 from side 0 to side 1,
+///   or
+///            -1 back
+///   label    a number or several of each cell, that change with each facet by what it is told to
+///   be:
+///            how often P and Q go round the cell (winding; a surface goes once round what is below
+///            it), on which side of each fault it is. Around an edge all changes add up to nothing
+///            where no surface ends there; where one does, two ways may lead to different labels
+class SpaceCells {
+public:
+    struct Way {
+        std::int32_t to, facet;
+        std::int8_t direction;
+    };
+
+    /// @throws InputError kind too_large
+    explicit SpaceCells(std::size_t sides)
+        : joined_((checked_number(sides, "sides of faces and their parts"), sides)) {}
+
+    /// Notes that two sides are in one cell. Several threads may do so at once, until number().
+    void join(std::int32_t side, std::int32_t other) { joined_.join(side, other); }
+    /// The same of all that bounds a sector of a fan: that after one of its blades.
+    /// @param side_of  the number of a side of an item: side_of(item, 0 or 1); -1 leaves it out
+    template <class Fan, class SideOf>
+    void join_sector(std::span<const EdgeUse> uses, const Fan& fan, std::size_t blade,
+                     const SideOf& side_of) {
+        std::int32_t first = -1;
+        const auto join_all = [&](std::size_t of, bool is_ahead) {
+            for (const std::size_t i : fan.blade(of)) {
+                const EdgeUse& use = uses[i];
+                const std::int32_t side =
+                    side_of(index(use.item), is_ahead ? use.ahead() : use.behind());
+                if (side < 0) continue;
+                if (first < 0) first = side;
+                join(first, side);
+            }
+        };
+        join_all(blade, true);
+        join_all((blade + 1) % fan.blades(), false);
+    }
+
+    /// Numbers the cells in the order of their first sides.
+    /// @param counts  whether a side does
+    template <class Counts>
+    void number(const Counts& counts) {
+        const std::size_t sides = joined_.size();
+        std::vector<std::int32_t> of_set(sides, -1);
+        cell_.assign(sides, -1);
+        for (std::size_t i = 0; i < sides; ++i) {
+            const auto side = static_cast<std::int32_t>(i);
+            if (!counts(i)) continue;
+            std::int32_t& known = of_set[index(joined_.find(side))];
+            if (known < 0) {
+                known = static_cast<std::int32_t>(first_.size());
+                first_.push_back(side);
+            }
+            cell_[i] = known;
+        }
+    }
+    std::size_t size() const { return first_.size(); }
+    /// The cell of a side, -1 of one that does not count.
+    std::int32_t of(std::size_t side) const { return cell_[side]; }
+    std::size_t first_side(std::size_t cell) const { return index(first_[cell]); }
+
+    /// Takes facets as ways.
+    /// @param each_facet  each_facet(visit) calls visit(facet, cell at side 0, cell at side 1) for
+    ///                    all facets between two cells; it is called twice
+    template <class EachFacet>
+    void connect(const EachFacet& each_facet) {
+        ways_ = bucketize<Way>(size(), [&](const auto& put) {
+            each_facet([&](std::size_t facet, std::int32_t low, std::int32_t high) {
+                assert(low >= 0 && high >= 0 && index(low) < size() && index(high) < size());
+                put(index(low), Way{high, static_cast<std::int32_t>(facet), 1});
+                put(index(high), Way{low, static_cast<std::int32_t>(facet), -1});
+            });
+        });
+    }
+    /// Takes the label of a cell to all that can be reached from it.
+    /// @param beyond   beyond(way, label): the label where the way leads to, none where it ends
+    /// @param differs  differs(way) is called where the label there is known to be another one
+    template <class Label, class Beyond, class Differs>
+    void spread(std::size_t start, std::vector<std::optional<Label>>& labels, const Beyond& beyond,
+                const Differs& differs) const {
+        assert(labels.size() == size() && labels[start]);
+        std::vector<std::size_t> open{start};
+        while (!open.empty()) {
+            const std::size_t cell = open.back();
+            open.pop_back();
+            for (const Way& way : ways_[cell]) {
+                const std::optional<Label> label = beyond(way, *labels[cell]);
+                if (!label) continue;
+                auto& known = labels[index(way.to)];
+                if (!known) {
+                    known = label;
+                    open.push_back(index(way.to));
+                } else if (*known != *label) {
+                    differs(way);
+                }
+            }
+        }
+    }
+
+private:
+    DisjointSets joined_;              ///< sides
+    std::vector<std::int32_t> cell_;   ///< of sides
+    std::vector<std::int32_t> first_;  ///< of cells: their first side
+    Buckets<Way> ways_;                ///< from each cell
+};
+
+}  // namespace realmodel::arrangement

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "arrangement/polygons.hpp"
+
+namespace realmodel::arrangement {
+
+/// A corner of a loop: its node, and where it lies in the view.
+struct LoopCorner {
+    NodeId node;
+    PlanePosition at;
+};
+using Loop = std::vector<LoopCorner>;
+
+/// Which way corners turn: 1 left, -1 right, 0 straight on. By itself it tells that of the places
+/// in the view, exactly; others know better where the corners are than their rounded places say.
+class CornerTurns {
+public:
+    virtual ~CornerTurns() = default;
+    virtual int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const;
+};
+
+/// Divides the region that loops bound (outlines counter-clockwise, holes clockwise; a hole may be
+/// a slit of two corners) into triangles without new nodes, by cutting off ears (G. H. Meisters
+/// 1975), with holes joined to their outline by bridges (D. Eberly, "Triangulation by ear
+/// clipping", 2002).
+///
+/// Each edge of each loop belongs to exactly one triangle, and every other edge to two, whatever
+/// the loops look like: where rounding has made them cross, triangles may overlap by as much, but
+/// nothing gapes. `rounding` is how far corners may be from their places on either axis:
+/// triangles that have an area whatever it does are preferred. False where loops do cross, or
+/// pass over themselves.
+bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
+                 std::vector<std::array<LoopCorner, 3>>& triangles, const CornerTurns& turns = {});
+
+/// The same for one loop, of whose corners is known on which side of something they lie: triangles
+/// on one side are cut off first, so that few are left that reach across.
+/// @param sides  of the loop's corners
+bool triangulate_beside(const Loop& loop, std::span<const std::int8_t> sides,
+                        const PlanePosition& rounding,
+                        std::vector<std::array<LoopCorner, 3>>& triangles);
+
+/// The same region in convex polygons, up to `rounding`: triangles merged wherever that leaves a
+/// convex one (S. Hertel and K. Mehlhorn 1983). `slits` are edges that must stay, as (lesser,
+/// greater) node, sorted.
+bool divide_convex(std::span<const Loop> loops, const PlanePosition& rounding,
+                   std::span<const std::array<NodeId, 2>> slits, Polygons& result,
+                   const CornerTurns& turns = {});
+
+/// Whether a loop turns left everywhere, up to `rounding`, and passes no node twice.
+bool is_convex(const Loop& loop, const PlanePosition& rounding);
+
+}  // namespace realmodel::arrangement

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/rounding/rounded_parts.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace realmodel::cutting {
+
+RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positions,
+                           Pieces& polygons, std::vector<HalfCell>& cells, bool of_several,
+                           const Execution& executed)
+    : model(of),
+      new_positions(positions),
+      pieces(polygons),
+      half_cells(cells),
+      are_joined(of_several),
+      execution(executed) {
+    checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
+    vertices.reserve(model.vertex_count());
+    for (std::size_t v = 0; v < model.vertex_count(); ++v)
+        vertices.push_back(model.vertex(static_cast<NodeId>(v)));
+    parts_of_.assign(model.cell_block.size(), 0);
+    for (const HalfCell& part : half_cells) {
+        auto& count = parts_of_[index(part.cell)];
+        count = static_cast<std::uint8_t>(std::min(count + 1, 2));
+    }
+    update();
+}
+
+/// New nodes are set apart from what is near them; those that are added later may lie between two
+/// vertices that are away from all of them.
+NodeId RoundedParts::add_node(Position p, Freedom freedom) {
+    if (!std::exchange(has_taken_all_, true)) {
+        for (const Position& vertex : vertices)
+            taken.insert(vertex);
+    }
+    if (!taken.insert(p)) p = free_position_beside(p, freedom, taken);
+    new_positions.push_back(p);
+    return checked_number(vertices.size() + new_positions.size(), "vertices and new nodes") - 1;
+}
+
+Freedom RoundedParts::freedom_of(std::span<const NodeId> nodes) const {
+    const auto are_on = [nodes](const std::vector<std::uint8_t>& faces) {
+        return std::ranges::all_of(nodes, [&](NodeId node) { return faces[index(node)] != 0; });
+    };
+    return are_on(on_base) ? Freedom::kLevel : are_on(on_wall) ? Freedom::kUpright : Freedom::kAny;
+}
+
+bool RoundedParts::is_upright(std::size_t piece) const {
+    const auto corners = pieces.polygons[piece];
+    return may_be_wall(piece) && std::ranges::all_of(corners, [&](NodeId node) {
+               return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];
+           });
+}
+
+bool RoundedParts::is_whole_face(std::size_t piece) const {
+    const std::int32_t face = pieces[piece].face;
+    return face >= 0 && std::ranges::equal(pieces.polygons[piece], model.face(index(face)));
+}
+
+bool RoundedParts::are_closed() const {
+    std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> sums;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        const auto nodes = pieces.polygons[p];
+        for (std::size_t i = 0; i < 2 * nodes.size(); ++i) {
+            const std::int32_t part = pieces[p].parts[i % 2];
+            const NodeId a = nodes[i / 2], b = nodes[(i / 2 + 1) % nodes.size()];
+            if (part >= 0) sums[{part, unordered(a, b)}] += (a < b) == (i % 2 == 0) ? 1 : -1;
+        }
+    }
+    return std::ranges::all_of(sums, [](const auto& sum) { return sum.second == 0; });
+}
+
+bool RoundedParts::are_apart() const {
+    std::vector<NodeId> nodes = pieces.polygons.nodes;
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    Positions found;
+    return std::ranges::all_of(nodes, [&](NodeId node) { return found.insert(at(node)); });
+}
+
+void RoundedParts::update() {
+    const std::size_t nodes = vertices.size() + new_positions.size();
+    for (auto* of_nodes : {&on_base, &on_wall, &is_near})
+        of_nodes->assign(nodes, 0);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        // of joined models whole cells, too, get new polygons where they meet a structure
+        const bool changed = (are_joined && (!is_whole_face(p) || pieces[p].is_level)) ||
+                             std::ranges::any_of(pieces[p].parts, [this](std::int32_t part) {
+                                 return part >= 0 && is_changed(part);
+                             });
+        const std::int32_t surface = surface_of(p, kCutFace);
+        for (const NodeId node : pieces.polygons[p]) {
+            if (changed) is_near[index(node)] = 1;
+            if (surface == kBase) on_base[index(node)] = 1;
+            if (surface == kWall) on_wall[index(node)] = 1;
+        }
+    }
+    pieces_of = bucketize<std::int32_t>(half_cells.size(), [this](const auto& visit) {
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            for (const std::int32_t part : pieces[p].parts) {
+                if (part >= 0) visit(index(part), static_cast<std::int32_t>(p));
+            }
+        }
+    });
+}
+
+}  // namespace realmodel::cutting

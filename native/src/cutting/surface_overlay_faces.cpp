@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which faces of a model come near a surface, and what of them does.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "base/ulp.hpp"
+#include "cutting/surface_overlay.hpp"
+#include "exact/orient2d.hpp"
+
+namespace realmodel::cutting {
+
+using spatial::Box;
+using spatial::BoxTree;
+
+/// The faces that come near the surface: near the box of one of its triangles, and not all to one
+/// side of the triangle's plane.
+void SurfaceOverlay::find_active_faces() {
+    margin_ = std::max(margin_, rounding_of(surface_.vertices));
+    for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
+        for (const double x : model_.vertex(static_cast<NodeId>(v)))
+            margin_ = std::max(margin_, 4 * kComputedUlps * ulp(x));
+        model_box_.include(model_.vertex(static_cast<NodeId>(v)));
+    }
+    model_box_.widen(margin_);
+    std::vector<Box> boxes;
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        Box& box = boxes.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            box.include(corner(t, i));
+        box.widen(margin_);
+    }
+    tree_ = std::make_unique<BoxTree>(std::move(boxes));
+    active_.assign(model_.face_count(), 0);
+    parallel_ranges(active_.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            if (first_passed(model_.face(f)) >= 0) active_[f] = 1;
+        }
+    });
+    for (std::size_t f = 0; f < active_.size(); ++f) {
+        if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
+    }
+}
+
+/// Whether all corners of a polygon are on one side of the plane of a triangle, farther from it
+/// than rounding may put them.
+bool SurfaceOverlay::is_beside(std::span<const NodeId> polygon, std::int32_t t) const {
+    constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
+    const Position a = corner(t, 0);
+    const Position normal = polygon_normal(std::array{a, corner(t, 1), corner(t, 2)});
+    int above = 0, below = 0;
+    for (const NodeId v : polygon) {
+        const Position p = model_.vertex(v);
+        double distance = 0, allowed = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            distance += normal[k] * (p[k] - a[k]);
+            allowed += std::abs(normal[k]) * (margin_ + kRounding * std::abs(p[k] - a[k]));
+        }
+        above += distance > allowed;
+        below += distance < -allowed;
+        if (above > 0 && below > 0) return false;
+    }
+    return index(above) == polygon.size() || index(below) == polygon.size();
+}
+
+/// The first triangle of the surface that a polygon may pass, -1 none.
+std::int32_t SurfaceOverlay::first_passed(std::span<const NodeId> polygon) const {
+    Box box;
+    for (const NodeId v : polygon)
+        box.include(model_.vertex(v));
+    std::int32_t first = INT32_MAX;
+    tree_->find(box, [&](std::int32_t t) {
+        if (t < first && !is_beside(polygon, t)) first = t;
+    });
+    return first == INT32_MAX ? -1 : first;
+}
+
+void SurfaceOverlay::FaceParts::add(std::int32_t face, std::span<const LoopTriangle> more) {
+    for (const auto& t : more) {
+        triangles.push_back({t[0].node, t[1].node, t[2].node});
+        face_of_triangle.push_back(face);
+    }
+}
+
+void SurfaceOverlay::FaceParts::add_beside(std::int32_t face, std::span<const NodeId> polygon) {
+    beside.add(polygon);
+    face_of_beside.push_back(face);
+}
+
+void SurfaceOverlay::FaceParts::add(const FaceParts& other) {
+    triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
+    face_of_triangle.insert(face_of_triangle.end(), other.face_of_triangle.begin(),
+                            other.face_of_triangle.end());
+    for (std::size_t i = 0; i < other.beside.size(); ++i)
+        add_beside(other.face_of_beside[i], other.beside[i]);
+}
+
+/// Divides a polygon of a face: of a convex one that passes a triangle of the surface once, what is
+/// on either side of that is cut off by one edge, and a strip of two triangles is left.
+void SurfaceOverlay::divide(std::int32_t face, std::span<const NodeId> polygon,
+                            FaceParts& parts) const {
+    const std::int32_t passed = first_passed(polygon);
+    if (passed < 0) {
+        parts.add_beside(face, polygon);
+        return;
+    }
+    auto [loop, rounding] = loop_of(model_, polygon);
+    std::vector<LoopTriangle> triangles;
+    if (loop.size() == 3) {
+        const LoopTriangle own{loop[0], loop[1], loop[2]};
+        parts.add(face, std::span(&own, 1));
+        return;
+    }
+    const Position a = corner(passed, 0);
+    const Position normal = polygon_normal(std::array{a, corner(passed, 1), corner(passed, 2)});
+    std::vector<std::int8_t> sides;
+    for (const NodeId v : polygon)
+        sides.push_back(dot(normal, minus(model_.vertex(v), a)) > 0 ? kAbove : kBelow);
+    std::vector<std::size_t> changes;  // the first corners on another side
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        if (sides[i] != sides[i == 0 ? sides.size() - 1 : i - 1]) changes.push_back(i);
+    }
+    if (changes.size() != 2 || !is_convex(loop, rounding)) {
+        triangulate_beside(loop, sides, rounding, triangles);
+        parts.add(face, triangles);
+        return;
+    }
+    std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(changes[0]), loop.end());
+    const std::size_t half = changes[1] - changes[0];
+    Loop strip{loop[0]};
+    if (half > 1) strip.push_back(loop[half - 1]);
+    strip.push_back(loop[half]);
+    if (half + 1 < loop.size()) strip.push_back(loop.back());
+    triangulate(std::span(&strip, 1), rounding, triangles);
+    parts.add(face, triangles);
+    std::vector<NodeId> nodes;
+    for (const LoopCorner& c : loop)
+        nodes.push_back(c.node);
+    for (const auto& side : {std::span(nodes).first(half), std::span(nodes).subspan(half)}) {
+        if (side.size() > 2) divide(face, side, parts);
+    }
+}
+
+/// Divides some polygons beside the surface into triangles, as polygons of their own.
+template <class Which>
+void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) const {
+    const Polygons beside = std::exchange(parts.beside, {});
+    const std::vector<std::int32_t> faces = std::exchange(parts.face_of_beside, {});
+    for (std::size_t i = 0; i < beside.size(); ++i) {
+        if (!which(beside[i])) {
+            parts.add_beside(faces[i], beside[i]);
+            continue;
+        }
+        const auto [loop, rounding] = loop_of(model_, beside[i]);
+        std::vector<LoopTriangle> triangles;
+        triangulate(std::span(&loop, 1), rounding, triangles);
+        parts.add(faces[i], triangles);
+    }
+}
+
+std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face) const {
+    FaceParts parts;
+    if (is_active(face)) {
+        divide(static_cast<std::int32_t>(face), model_.face(face), parts);
+    } else {
+        parts.add_beside(static_cast<std::int32_t>(face), model_.face(face));
+    }
+    triangulate_parts(parts, [](std::span<const NodeId>) { return true; });
+    return std::move(parts.triangles);
+}
+
+/// Divides more faces, on all threads.
+void SurfaceOverlay::divide_all(std::span<const std::int32_t> faces) {
+    constexpr std::size_t kFaces = 1 << 9;  // at a time
+    std::vector<FaceParts> found((faces.size() + kFaces - 1) / kFaces);
+    parallel_ranges(
+        faces.size(), kFaces, execution_,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                divide(faces[i], model_.face(index(faces[i])), found[begin / kFaces]);
+        },
+        0.02);
+    for (const FaceParts& parts : found)
+        parts_.add(parts);
+}
+
+/// The edges of the divided faces' triangles without area, from one on, in order; the vertices have
+/// exact points.
+std::vector<std::array<NodeId, 2>> SurfaceOverlay::edges_of_flat_triangles(
+    std::size_t first) const {
+    constexpr std::size_t kTriangles = 1 << 11;  // at a time
+    const std::size_t count = parts_.triangles.size() - first;
+    std::vector<std::vector<std::array<NodeId, 2>>> found((count + kTriangles - 1) / kTriangles);
+    parallel_ranges(count, kTriangles, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& t = parts_.triangles[first + i];
+            bool flat = true;
+            for (std::size_t axis = 0; axis < 3 && flat; ++axis) {
+                flat = exact::orient2d(points_, axis, vertex_point_[index(t[0])],
+                                       vertex_point_[index(t[1])], vertex_point_[index(t[2])]) == 0;
+            }
+            for (std::size_t k = 0; flat && k < 3; ++k)
+                found[begin / kTriangles].push_back(unordered(t[k], t[(k + 1) % 3]));
+        }
+    });
+    std::vector<std::array<NodeId, 2>> edges;
+    for (const auto& chunk : found)
+        edges.insert(edges.end(), chunk.begin(), chunk.end());
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+/// Divides active faces. A triangle without area has no region in the overlay: the corner in its
+/// middle comes to lie on its long edge, and so on an edge of the face, or the polygon, beyond,
+/// which must know it.
+void SurfaceOverlay::divide_active_faces() {
+    vertex_point_.assign(model_.vertex_count(), kNone);
+    name_vertices_of(active_faces_);
+    divide_all(active_faces_);
+    for (std::size_t first = 0; first < parts_.triangles.size();) {
+        const auto edges = edges_of_flat_triangles(first);
+        first = parts_.triangles.size();
+        if (edges.empty()) break;
+        const auto has_edge = [&edges](std::span<const NodeId> polygon) {
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                const NodeId a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+                if (std::ranges::binary_search(edges, unordered(a, b))) return true;
+            }
+            return false;
+        };
+        std::vector<std::int32_t> fresh;
+        for (std::size_t f = 0; f < model_.face_count(); ++f) {
+            if (active_[f] != 0 || !has_edge(model_.face(f))) continue;
+            active_[f] = 1;
+            fresh.push_back(static_cast<std::int32_t>(f));
+        }
+        name_vertices_of(fresh);
+        divide_all(fresh);
+        active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
+        triangulate_parts(parts_, has_edge);
+    }
+    std::sort(active_faces_.begin(), active_faces_.end());
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The polygons around parts of cells.
+#include <algorithm>
+#include <cassert>
+
+#include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
+#include "cutting/surface_parts.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+/// Orientations of nodes where they are exactly.
+class ExactTurns : public CornerTurns {
+public:
+    ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
+    int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
+        return view_.sign() * exact::orient2d(overlay_.points(), view_.axis(),
+                                              overlay_.exact(a.node), overlay_.exact(b.node),
+                                              overlay_.exact(c.node));
+    }
+
+private:
+    SurfaceOverlay& overlay_;
+    const View& view_;
+};
+
+/// Each polygon in triangles round a node of its own.
+Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
+    Polygons divided;
+    for (std::size_t p = 0; p < polygons.size(); ++p) {
+        const auto nodes = polygons[p];
+        Position middle{0, 0, 0};
+        for (const NodeId node : nodes) {
+            for (std::size_t k = 0; k < 3; ++k)
+                middle[k] += overlay.position(node)[k] / static_cast<double>(nodes.size());
+        }
+        const NodeId center = overlay.add_node(middle);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center});
+    }
+    return divided;
+}
+
+/// Many things in polygons, which are found on several threads.
+class DividedInChunks {
+public:
+    /// @param divide  divide(i, polygons) adds those of the i-th
+    template <class Divide>
+    DividedInChunks(std::size_t count, const Divide& divide, const Execution& execution)
+        : chunks_((count + kChunk - 1) / kChunk) {
+        parallel_ranges(count, kChunk, execution, [&](std::size_t begin, std::size_t end) {
+            Chunk& own = chunks_[begin / kChunk];
+            for (std::size_t i = begin; i < end; ++i) {
+                divide(i, own.polygons);
+                own.ends.push_back(own.polygons.size());
+            }
+        });
+    }
+    /// Calls visit(polygons, first, end) for those of the i-th.
+    template <class Visit>
+    void visit(std::size_t i, const Visit& visit) const {
+        const Chunk& own = chunks_[i / kChunk];
+        visit(own.polygons, i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1], own.ends[i % kChunk]);
+    }
+
+private:
+    static constexpr std::size_t kChunk = 1 << 10;
+    struct Chunk {
+        Polygons polygons;
+        std::vector<std::size_t> ends;  ///< of the polygons of each
+    };
+    std::vector<Chunk> chunks_;
+};
+
+}  // namespace
+
+bool divide_loops(SurfaceOverlay& overlay, const Position& normal, const Loops<NodeId>& loops,
+                  bool is_wall, Polygons& polygons) {
+    const View view(normal);
+    std::vector<Loop> corners;
+    std::vector<Position> positions;
+    for (const auto loop : loops) {
+        Loop& own = corners.emplace_back();
+        for (const NodeId p : loop) {
+            positions.push_back(overlay.position(p));
+            own.push_back({p, view(positions.back())});
+        }
+        // the same polygons wherever the loop begins
+        std::rotate(own.begin(), std::ranges::min_element(own, {}, &LoopCorner::node), own.end());
+    }
+    std::vector<NodeId> sorted(loops[0].begin(), loops[0].end());
+    std::sort(sorted.begin(), sorted.end());
+    const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    if (is_wall && loops.size() == 1 && simple) {
+        polygons.add(loops[0]);
+        return true;
+    }
+    return divide_convex(corners, view.rounding(positions), {}, polygons,
+                         ExactTurns(overlay, view));
+}
+
+/// Parts in the order of the model's cells, those of one cell in that of what bounds them.
+void SurfaceParts::number_parts() {
+    std::vector<std::int32_t> roots;
+    for (std::size_t s = 0; s < slots_.size(); ++s) {
+        if (joined_->find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
+            roots.push_back(static_cast<std::int32_t>(s));
+    }
+    std::stable_sort(roots.begin(), roots.end(), [this](std::int32_t a, std::int32_t b) {
+        return slots_[index(a)].cell < slots_[index(b)].cell;
+    });
+    part_.assign(slots_.size(), -1);
+    for (const std::int32_t root : roots) {
+        part_[index(root)] = static_cast<std::int32_t>(half_cells.size());
+        const Slot& own = slots_[index(root)];
+        half_cells.push_back({own.cell, own.half, loses_[index(own.cell)] != 0});
+    }
+    for (std::size_t s = 0; s < slots_.size(); ++s) {
+        part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
+        assert(half_cells[index(part_[s])].side == slots_[s].half);
+    }
+}
+
+/// Adds some of the polygons between two slots: they turn counter-clockwise, the other
+/// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
+void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
+                         bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
+                         bool level) {
+    Piece origin{face, {-1, -1}, {kOn, kOn}, level};
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (slots[k] < 0) continue;
+        const Slot& slot = slots_[index(slots[k])];
+        origin.cells[k] = slot.cell;
+        origin.sides[k] = slot.half;
+        origin.parts[k] = part_[index(slots[k])];
+    }
+    assert(origin.parts[0] >= 0 || origin.parts[1] >= 0);
+    if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
+    for (std::size_t p = first; p < end; ++p) {
+        if (reversed) {
+            pieces.add_reversed(polygons[p], origin);
+        } else {
+            pieces.add(polygons[p], origin);
+        }
+    }
+}
+
+/// A patch in polygons, which are added.
+void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
+    const ComplexView& model = overlay_.model();
+    const auto face = index(patch.face);
+    if (patch.divided == nullptr) {
+        polygons.add(model.face(face));
+        return;
+    }
+    std::vector<Position> corners;
+    for (const NodeId v : model.face(face))
+        corners.push_back(model.vertex(v));
+    const bool is_wall = model.face_surface[face] == kWall;
+    Polygons whole;
+    if (!divide_loops(overlay_, polygon_normal(corners), patch.loops(), is_wall, whole)) {
+        whole.clear();
+        for (const std::int32_t region : patch.regions()) {
+            const auto [axis, facing] = overlay_.view_of(index(region));
+            Position normal{0, 0, 0};
+            normal[axis] = facing;
+            divide_loops(overlay_, normal, overlay_.loops(index(region)), false, whole);
+        }
+    }
+    for (std::size_t p = 0; p < whole.size(); ++p)
+        polygons.add(whole[p]);
+}
+
+/// Patches are divided on all threads and written in their order.
+void SurfaceParts::write_patches(Progress* progress) {
+    const DividedInChunks divided(
+        patches_.size(),
+        [this](std::size_t i, Polygons& polygons) { divide(patches_[i], polygons); },
+        {overlay_.threads(), progress});
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+        divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
+            write(polygons, first, end, false, patches_[i].face, patches_[i].slots, false);
+        });
+    }
+}
+
+/// Between what is on either side of the surface; where on one side two cells overlap, or one is
+/// inside out, the polygon is between these two.
+void SurfaceParts::write_caps(Progress* progress) {
+    const ComplexView& model = overlay_.model();
+    std::vector<std::int32_t> outer_face(overlay_.size(), -1);
+    for (std::size_t r = 0; r < overlay_.size(); ++r) {
+        if (overlay_.of_cutter(r) || winding_.level(r) < 0) continue;
+        const std::size_t face = overlay_.face_of(r);
+        if (model.cell(face, 1) < 0)
+            outer_face[index(winding_.level(r))] = static_cast<std::int32_t>(face);
+    }
+    const DividedInChunks in_polygons(caps_.size(),
+                                      [this](std::size_t i, Polygons& polygons) {
+                                          const std::size_t region = index(caps_[i].region);
+                                          const auto& triangle = overlay_.corners(region);
+                                          std::array<Position, 3> corners;
+                                          for (std::size_t k = 0; k < 3; ++k)
+                                              corners[k] = overlay_.points().rounded(triangle[k]);
+                                          divide_loops(overlay_, polygon_normal(corners),
+                                                       overlay_.loops(region), false, polygons);
+                                      },
+                                      {overlay_.threads(), progress});
+    Polygons polygons;
+    for (std::size_t i = 0; i < caps_.size(); ++i) {
+        const Caps& caps = caps_[i];
+        polygons.clear();
+        in_polygons.visit(i, [&](const Polygons& all, std::size_t first, std::size_t end) {
+            for (std::size_t p = first; p < end; ++p)
+                polygons.add(all[p]);
+        });
+        // no two polygons of a half may be the same; between two parts of a half there is one
+        std::array<bool, 2> written{false, false};
+        const auto add = [&](bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
+                             bool level) {
+            const auto half_of = [this](std::int32_t slot) -> std::size_t {
+                return slots_[index(slot)].half == kAbove ? 1 : 0;
+            };
+            bool again = false;
+            for (const std::int32_t slot : slots)
+                again = again || (slot >= 0 && written[half_of(slot)]);
+            for (const std::int32_t slot : slots) {
+                if (slot >= 0) written[half_of(slot)] = true;
+            }
+            if (again) {
+                const Polygons divided = from_middle(overlay_, polygons);
+                write(divided, 0, divided.size(), reversed, face, slots, level);
+            } else {
+                write(polygons, 0, polygons.size(), reversed, face, slots, level);
+            }
+        };
+        const std::int32_t outer = outer_face[index(caps.region)];
+        const auto cap = [&](const std::array<std::int32_t, 2>& slots) {
+            const auto cell = [&](std::int32_t slot) {
+                return slot < 0 ? -1 : slots_[index(slot)].cell;
+            };
+            return sides_.cap_face(index(caps.region), cell(slots[0]), cell(slots[1]));
+        };
+        for (const auto& pair : caps.across) {
+            const bool reversed = pair[1] < 0 && slots_[index(pair[0])].sign < 0;
+            const bool is_outer =
+                pair[1] < 0 && outer >= 0 &&
+                sides_.ends_at_outer_face(index(caps.region), slots_[index(pair[0])].cell);
+            add(reversed, is_outer ? outer : cap(pair), pair, true);
+        }
+        for (const auto& pair : caps.beside)
+            add(false, cap(pair), pair, false);
+    }
+}
+
+void SurfaceParts::find_touches(Progress* progress) {
+    // part and ends; of parts within one cell, two uses of an edge side by side are not too many
+    std::vector<std::array<std::int32_t, 3>> edges;
+    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
+        const SlotUse& first = uses_[begin];
+        for (; end < uses_.size() && uses_[end].cell == first.cell &&
+               uses_[end].half == first.half && uses_[end].use.edge == first.use.edge;)
+            ++end;
+        if (!has_joined_across_ && end - begin <= 2) continue;
+        for (std::size_t i = begin; i < end; ++i)
+            edges.push_back({part_[index(uses_[i].slot)], first.use.edge[0], first.use.edge[1]});
+    }
+    parallel_sort(edges, std::less<>(), {overlay_.threads(), progress});
+    for (std::size_t i = 2; i < edges.size(); ++i) {
+        if (edges[i] == edges[i - 2])
+            touches[half_cells[index(edges[i][0])].side == kAbove ? 1 : 0] = true;
+    }
+}
+
+}  // namespace realmodel::cutting

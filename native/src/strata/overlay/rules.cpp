@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/rules.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <memory>
+
+#include "base/parallel.hpp"
+#include "strata/overlay/pieces.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+constexpr std::size_t kChunk = 256;
+
+/// Convex facets found by one chunk, in its own ids or shared ones.
+struct FoundFacets {
+    explicit FoundFacets(const PlanArrangement& geometry) : scope(geometry) {}
+
+    void add(PolygonView outline, PlaneId in_plane, std::int32_t of_polygon) {
+        outlines.add(outline);
+        plane.push_back(in_plane);
+        polygon.push_back(of_polygon);
+    }
+
+    LocalArrangement scope;
+    PolygonPool outlines;
+    std::vector<PlaneId> plane;
+    std::vector<std::int32_t>
+        polygon;  ///< of the surface that was laid over, -1 for the older tiling
+};
+
+void append(FoundFacets& found, std::size_t i, SurfaceTiling& tiling) {
+    Polygon outline(found.outlines[i].begin(), found.outlines[i].end());
+    for (Corner& corner : outline) {
+        corner = {found.scope.shared_point(corner.point), found.scope.shared_directed(corner.line)};
+    }
+    tiling.polygons.add(outline);
+    tiling.plane.push_back(found.plane[i]);
+}
+
+/// Calls work(facet of `older`, finder, found) for every facet, in parallel; results in order.
+template <class Work>
+std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
+                                                      const SurfaceTiling& older,
+                                                      const SurfaceTiling& surface,
+                                                      const Execution& execution,
+                                                      const Work& work) {
+    const std::size_t count = older.plane.size(), chunks = (count + kChunk - 1) / kChunk;
+    std::vector<std::unique_ptr<FoundFacets>> found(chunks);
+    parallel_chunks(chunks, execution, [&](std::size_t c) {
+        found[c] = std::make_unique<FoundFacets>(geometry);
+        PieceFinder finder(found[c]->scope, surface);
+        for (std::size_t f = c * kChunk; f < std::min(count, (c + 1) * kChunk); ++f) {
+            work(f, finder, *found[c]);
+        }
+    });
+    for (auto& chunk : found)
+        chunk->scope.commit(geometry);
+    return found;
+}
+
+}  // namespace
+
+SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surface,
+                           const SurfaceTiling& bound, std::span<const std::uint8_t> given,
+                           const Execution& execution) {
+    assert(given.empty() || given.size() == surface.plane.size());
+    const auto is_given = [&](std::size_t p) { return !given.empty() && given[p] != 0; };
+    std::vector<std::uint8_t> whole(surface.plane.size(), 1);
+    const auto found = over_facets(
+        geometry, bound, surface, execution,
+        [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+            const PlaneId plane = bound.plane[f];
+            const Pieces& pieces = finder.find(bound.polygons[f], plane);
+            const bool all_below =
+                plane.has_value() &&
+                std::all_of(pieces.list.begin(), pieces.list.end(),
+                            [](const Piece& p) { return p.side == Side::kBelow; });
+            if (all_below) out.add(bound.polygons[f], plane, -1);
+            for (const Piece& piece : pieces.list) {
+                const auto polygon = static_cast<std::size_t>(piece.polygon);
+                if (piece.side == Side::kBelow) {
+                    // threads may say so at once; they all write the same
+                    std::atomic_ref<std::uint8_t>(whole[polygon])
+                        .store(0, std::memory_order_relaxed);
+                    if (!all_below) out.add(pieces.outline(piece), plane, -1);
+                } else if (piece.side == Side::kNotBelow) {
+                    out.add(pieces.outline(piece), surface.plane[polygon], piece.polygon);
+                }
+            }
+        });
+    SurfaceTiling raised;
+    for (std::size_t p = 0; p < surface.plane.size(); ++p) {
+        if (is_given(p) || (surface.plane[p].has_value() && whole[p] == 0)) continue;
+        raised.polygons.add(surface.polygons[p]);
+        raised.plane.push_back(surface.plane[p]);
+    }
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
+            const auto of = static_cast<std::size_t>(chunk->polygon[i]);
+            if (chunk->polygon[i] < 0 || (whole[of] == 0 && !is_given(of)))
+                append(*chunk, i, raised);
+        }
+    }
+    return raised;
+}
+
+SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
+                             const SurfaceTiling& surface, const Execution& execution) {
+    const auto found = over_facets(geometry, older, surface, execution,
+                                   [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+                                       // as a void, so that heights are not asked for
+                                       const Pieces& pieces = finder.find(older.polygons[f], kVoid);
+                                       const bool all_absent = std::all_of(
+                                           pieces.list.begin(), pieces.list.end(),
+                                           [](const Piece& p) { return p.side == Side::kAbsent; });
+                                       if (all_absent) {
+                                           out.add(older.polygons[f], older.plane[f], -1);
+                                           return;
+                                       }
+                                       for (const Piece& piece : pieces.list) {
+                                           if (piece.side == Side::kAbsent)
+                                               out.add(pieces.outline(piece), older.plane[f], -1);
+                                       }
+                                   });
+    SurfaceTiling uncovered;
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
+            append(*chunk, i, uncovered);
+    }
+    return uncovered;
+}
+
+SurfaceTiling lower_tiling(PlanArrangement& geometry, const SurfaceTiling& one, SurfaceTiling other,
+                           const Execution& execution) {
+    other.index(geometry, execution);
+    const auto found = over_facets(
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+            const PlaneId plane = one.plane[f];
+            if (!plane.has_value()) {
+                out.add(one.polygons[f], kVoid, -1);
+                return;
+            }
+            const Pieces& pieces = finder.find(one.polygons[f], plane);
+            for (const Piece& piece : pieces.list) {
+                const PlaneId below = other.plane[static_cast<std::size_t>(piece.polygon)];
+                out.add(pieces.outline(piece), piece.side == Side::kNotBelow ? plane : below, -1);
+            }
+        });
+    SurfaceTiling lower;
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
+            append(*chunk, i, lower);
+    }
+    return lower;
+}
+
+SurfaceTiling lowest_tiling(PlanArrangement& geometry, const SurfaceTiling& one,
+                            const SurfaceTiling& other, bool fills, const Execution& execution) {
+    const auto found = over_facets(
+        geometry, one, other, execution, [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
+            const PlaneId plane = one.plane[f];
+            if (plane == kSky || (plane.has_value() && fills)) {
+                out.add(one.polygons[f], plane, -1);
+                return;
+            }
+            // beneath a void nothing is below: what there is lies where `one` is not
+            const Pieces& pieces = finder.find(one.polygons[f], plane);
+            const Side changed = plane.has_value() ? Side::kBelow : Side::kNotBelow;
+            if (std::none_of(pieces.list.begin(), pieces.list.end(),
+                             [&](const Piece& p) { return p.side == changed; })) {
+                out.add(one.polygons[f], plane, -1);
+                return;
+            }
+            for (const Piece& piece : pieces.list) {
+                const PlaneId in_other = other.plane[static_cast<std::size_t>(piece.polygon)];
+                out.add(pieces.outline(piece),
+                        piece.side != changed ? plane : (fills ? kSky : in_other), -1);
+            }
+        });
+    SurfaceTiling lowest;
+    for (const auto& chunk : found) {
+        for (std::size_t i = 0; i < chunk->plane.size(); ++i)
+            append(*chunk, i, lowest);
+    }
+    return lowest;
+}
+
+SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
+    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, execution_);
+    raised.index(geometry_, execution_);
+    return raised;
+}
+
+SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTiling& newer,
+                                   const SurfaceTiling& surface) const {
+    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, execution_);
+    SurfaceTiling covered;
+    for (const SurfaceTiling* part : {&newer, &rest}) {
+        for (std::size_t p = 0; p < part->plane.size(); ++p) {
+            if (part == &newer && !part->plane[p].has_value()) continue;
+            covered.polygons.add(part->polygons[p]);
+            covered.plane.push_back(part->plane[p]);
+        }
+    }
+    return covered;
+}
+
+SurfaceTiling TilingRaising::lowest(const std::optional<SurfaceTiling>& so_far,
+                                    const SurfaceTiling& e, bool fills) const {
+    if (so_far) return lowest_tiling(geometry_, *so_far, e, fills, execution_);
+    SurfaceTiling lowest = e;
+    if (fills) std::ranges::replace_if(lowest.plane, &PlaneId::has_value, kSky);
+    return lowest;
+}
+
+SurfaceTiling TilingRaising::stays(SurfaceTiling lowest) const {
+    std::ranges::replace(lowest.plane, kSky, kVoid);
+    lowest.index(geometry_, execution_);
+    return lowest;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/tiling/plan_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Worked on at a time. Polygons around a border are few, and each lies in many cells.
+constexpr std::size_t kBoxes = 4096, kPolygons = 128;
+
+bool is_narrow(const TileSpan& span) {
+    return span.right - span.left <= 1 || span.high - span.low <= 1;
+}
+
+}  // namespace
+
+PlanBox box_of(const LocalArrangement& scope, PolygonView polygon) {
+    PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (const Corner& corner : polygon) {
+        const auto& p = scope.point(corner.point);
+        box.low_x = std::min(box.low_x, p.x);
+        box.high_x = std::max(box.high_x, p.x);
+        box.low_y = std::min(box.low_y, p.y);
+        box.high_y = std::max(box.high_y, p.y);
+    }
+    return box;
+}
+
+void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
+                        const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
+                        std::size_t cells, const Execution& execution) {
+    if (chosen.empty()) return;
+    cells_ = PlanTiles(spatial::box_around(boxes, chosen), cells);
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const LocalArrangement scope(geometry);
+        for (std::size_t c = chunk * kPolygons, end = std::min(chosen.size(), c + kPolygons);
+             c < end; ++c) {
+            const auto i = index(chosen[c]);
+            const TileSpan span = cells_.span(boxes[i]);
+            const bool whole = is_inside(boxes[i]) && is_narrow(span);
+            const Item item{chosen[c], whole ? span.left : kScattered,
+                            whole ? span.low : kScattered};
+            for_each_cell(scope, polygons[i], boxes[i], [&](std::size_t cell) { put(cell, item); });
+        }
+    };
+    items_ = bucketize_in_any_order<Item>(
+        cells_.size(), (chosen.size() + kPolygons - 1) / kPolygons, produce, execution);
+}
+
+bool PolygonCells::is_inside(const PlanBox& box) const {
+    const PlanBox& frame = cells_.frame();
+    return box.low_x >= frame.low_x && box.high_x <= frame.high_x && box.low_y >= frame.low_y &&
+           box.high_y <= frame.high_y;
+}
+
+template <class Visit>
+void PolygonCells::for_each_cell(const LocalArrangement& scope, PolygonView polygon,
+                                 const PlanBox& box, const Visit& visit) const {
+    const TileSpan span = cells_.span(box);
+    if (is_inside(box) && is_narrow(span)) {
+        cells_.for_each(span, visit);
+        return;
+    }
+    const PlanBox& frame = cells_.frame();
+    // The stretch of x that the polygon covers in each row, a little too long rather than too
+    // short.
+    const double slack_x = 0x1p-46 * (std::abs(box.low_x) + std::abs(box.high_x));
+    const double slack_y = 0x1p-46 * (std::abs(frame.low_y) + std::abs(frame.high_y));
+    std::vector<std::array<double, 2>> reach(index(span.high - span.low + 1),
+                                             {HUGE_VAL, -HUGE_VAL});
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto& p = scope.point(polygon[i].point);
+        const auto& q = scope.point(polygon[i + 1 < polygon.size() ? i + 1 : 0].point);
+        const double low = std::min(p.y, q.y) - slack_y, high = std::max(p.y, q.y) + slack_y;
+        const std::int32_t last = std::min(span.high, cells_.row(high));
+        for (std::int32_t r = std::max(span.low, cells_.row(low)); r <= last; ++r) {
+            const double bottom = frame.low_y + r * cells_.step_y() - slack_y;
+            const double top = frame.low_y + (r + 1.0) * cells_.step_y() + slack_y;
+            auto& [from, to] = reach[index(r - span.low)];
+            const auto include = [&least = from, &most = to](double x) {
+                least = std::min(least, x);
+                most = std::max(most, x);
+            };
+            const auto at = [&](double y) {
+                const double t = std::clamp((y - p.y) / (q.y - p.y), 0.0, 1.0);
+                return p.x + t * (q.x - p.x);
+            };
+            if (p.y >= bottom && p.y <= top) include(p.x);
+            if (q.y >= bottom && q.y <= top) include(q.x);
+            if (p.y != q.y) {
+                if ((p.y < bottom) != (q.y < bottom)) include(at(bottom));
+                if ((p.y > top) != (q.y > top)) include(at(top));
+            }
+        }
+    }
+    for (std::int32_t r = span.low; r <= span.high; ++r) {
+        const auto& [from, to] = reach[index(r - span.low)];
+        if (from > to || to + slack_x < frame.low_x || from - slack_x > frame.high_x) continue;
+        const std::int32_t last = cells_.column(to + slack_x);
+        for (std::int32_t c = cells_.column(from - slack_x); c <= last; ++c)
+            visit(cells_.tile(c, r));
+    }
+}
+
+bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
+                          const std::vector<PlanBox>& boxes, Array<std::int32_t>& found) const {
+    if (items_.values.empty() || !box.meets(cells_.frame())) return true;
+    const TileSpan span = cells_.span(box);
+    bool is_once = true;
+    const auto visit = [&](std::size_t cell, const auto& is_first) {
+        for (const Item& item : items_[cell]) {
+            if (!is_first(item)) continue;
+            if (!boxes[index(item.polygon)].meets(box)) continue;
+            is_once &= item.left != kScattered;
+            found.push_back(item.polygon);
+        }
+    };
+    if (is_inside(box) && is_narrow(span)) {
+        for (std::int32_t r = span.low; r <= span.high; ++r) {
+            for (std::int32_t c = span.left; c <= span.right; ++c) {
+                visit(cells_.tile(c, r), [&](const Item& item) {
+                    return item.left == kScattered || (c == std::max(span.left, item.left) &&
+                                                       r == std::max(span.low, item.low));
+                });
+            }
+        }
+        return is_once;
+    }
+    for_each_cell(scope, polygon, box,
+                  [&](std::size_t cell) { visit(cell, [](const Item&) { return true; }); });
+    return false;
+}
+
+PlanGrid::PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
+                   const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+                   const Execution& execution) {
+    std::vector<std::int32_t> inner, outer;
+    for (std::size_t i = 0; i < polygons.size(); ++i)
+        (is_inner[i] != 0 ? inner : outer).push_back(static_cast<std::int32_t>(i));
+    boxes_.resize(polygons.size());
+    parallel_ranges(polygons.size(), kBoxes, execution, [&](std::size_t begin, std::size_t end) {
+        const LocalArrangement scope(geometry);
+        for (std::size_t i = begin; i < end; ++i)
+            boxes_[i] = box_of(scope, polygons[i]);
+    });
+    cells = std::max(cells, polygons.size());
+    // of two polygons for a cell, all but the largest are small
+    const std::vector<std::int32_t> large = small_.fill(boxes_, inner, cells / 2, execution);
+    large_.fill(geometry, polygons, boxes_, large, std::min(cells, 8 * large.size()), execution);
+    // fans of needles around the border: finer cells keep them apart, but each is in many
+    outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), execution);
+}
+
+void PlanGrid::candidates(const LocalArrangement& scope, PolygonView polygon,
+                          Array<std::int32_t>& found) const {
+    found.clear();
+    const PlanBox box = box_of(scope, polygon);
+    small_.append(box, found);
+    bool is_once = large_.append(scope, polygon, box, boxes_, found);
+    is_once &= outer_.append(scope, polygon, box, boxes_, found);
+    std::sort(found.begin(), found.end());
+    if (!is_once)
+        found.resize(
+            static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin()));
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/ulp.hpp"
+#include "cutting/rounding/contraction.hpp"
+#include "structures/joined_rounding.hpp"
+
+namespace realmodel::structures {
+
+using cutting::Contraction;
+using cutting::NodeId;
+using cutting::Position;
+using cutting::RoundedParts;
+
+namespace {
+
+using Edge = std::array<NodeId, 2>;
+
+/// Contracts edges one after another. What a contraction does to a part is known from the polygons
+/// around it: of parts with many polygons only those are looked at that share nodes with one at
+/// either end. The others stay as they are.
+class ShortEdges {
+public:
+    ShortEdges(RoundedParts& parts, double allowed, const std::set<Edge>& edges)
+        : parts_(parts), allowed_(allowed), contraction_(parts, true) {
+        pieces_at_ =
+            bucketize<std::int32_t>(contraction_.becomes.size(), [&parts](const auto& put) {
+                for (std::size_t p = 0; p < parts.pieces.size(); ++p) {
+                    for (const NodeId node : parts.pieces.polygons[p])
+                        put(index(node), static_cast<std::int32_t>(p));
+                }
+            });
+        find_rounds(edges);
+    }
+
+    void contract_all() {
+        std::atomic<bool> any = false;
+        for (const std::vector<Edge>& round : rounds_) {
+            constexpr std::size_t kAtOnce = 1 << 3;
+            parallel_workers((round.size() + kAtOnce - 1) / kAtOnce, parts_.execution,
+                             [&] {
+                                 return [&, scratch = Scratch()](std::size_t chunk) mutable {
+                                     const std::size_t begin = chunk * kAtOnce;
+                                     for (const Edge& edge : std::span(round).subspan(
+                                              begin, std::min(kAtOnce, round.size() - begin))) {
+                                         if (contract(edge, scratch)) any = true;
+                                     }
+                                 };
+                             },
+                             0.01);
+        }
+        if (any) contraction_.apply();
+    }
+
+private:
+    using Scratch = Contraction::Scratch;
+    using Shape = Contraction::Shape;
+    static constexpr std::size_t kMany = 200;
+
+    template <class Visit>
+    void each_part_at(NodeId node, const Visit& visit) const {
+        for (const std::int32_t p : pieces_at_[index(node)]) {
+            for (const std::int32_t part : parts_.pieces[index(p)].parts) {
+                if (part >= 0) visit(part);
+            }
+        }
+    }
+
+    /// Divides the edges into rounds. Two of one round have no part in common around them, nor
+    /// around what their nodes may become one with; of others the first comes in an earlier round.
+    void find_rounds(const std::set<Edge>& edges) {
+        std::vector<NodeId> nodes;
+        for (const Edge& edge : edges)
+            nodes.insert(nodes.end(), edge.begin(), edge.end());
+        std::ranges::sort(nodes);
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        const auto number = [&nodes](NodeId node) {
+            return static_cast<std::int32_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
+        };
+        DisjointSets clusters(nodes.size());
+        for (const Edge& edge : edges)
+            clusters.join(number(edge[0]), number(edge[1]));
+        std::vector<std::vector<std::int32_t>> around(nodes.size());  // each cluster: parts
+        for (const NodeId node : nodes) {
+            auto& own = around[index(clusters.find(number(node)))];
+            each_part_at(node, [&own](std::int32_t part) { own.push_back(part); });
+            nodes_[node] = {node};
+        }
+        for (auto& own : around) {
+            std::ranges::sort(own);
+            own.erase(std::unique(own.begin(), own.end()), own.end());
+            for (const std::int32_t part : own)
+                now_.try_emplace(part);
+        }
+        std::vector<std::size_t> rounds(parts_.half_cells.size(), 0);  // of a part's edges
+        for (const Edge& edge : edges) {
+            const auto& own = around[index(clusters.find(number(edge[0])))];
+            std::size_t round = 0;
+            for (const std::int32_t part : own)
+                round = std::max(round, rounds[index(part)]);
+            for (const std::int32_t part : own)
+                rounds[index(part)] = round + 1;
+            assert(round <= rounds_.size());  // one after another
+            if (rounds_.size() == round) rounds_.emplace_back();
+            rounds_[round].push_back(edge);
+        }
+    }
+
+    /// Makes the greater of the nodes that its ends became the lesser one where no part comes to
+    /// touch itself for it.
+    bool contract(const Edge& edge, Scratch& scratch) {
+        const NodeId a = contraction_.becomes[index(edge[0])];
+        const NodeId b = contraction_.becomes[index(edge[1])];
+        const NodeId to = std::min(a, b), from = std::max(a, b);
+        if (a == b || !parts_.is_new(from) || leaves_wall(from, to)) return false;
+        std::map<std::int32_t, std::optional<Shape>> after;
+        for (const NodeId node : nodes_of(from))
+            each_part_at(node, [&after](std::int32_t part) { after[part]; });
+        if (std::ranges::any_of(after, [&](const auto& own) { return !now(own.first, scratch); }))
+            return false;
+        for (auto& [part, found] : after) {
+            found = contracted(part, to, from, scratch);
+            if (!found || found->touches > now(part, scratch)->touches) return false;
+        }
+        assert(contraction_.becomes[index(to)] == to && !nodes_.at(from).empty());
+        become(from, to);
+        auto& nodes = nodes_.at(to);
+        auto& added = nodes_.at(from);
+        nodes.insert(nodes.end(), added.begin(), added.end());
+        added.clear();
+        for (auto& [part, found] : after)
+            now_.at(part) = found;
+        parts_.on_wall[index(to)] |= parts_.on_wall[index(from)];
+        return true;
+    }
+
+    /// Whether a node on a wall would go off it, if it moved to another one: near 0 on an axis
+    /// walls are as precise as their small coordinates.
+    bool leaves_wall(NodeId from, NodeId to) const {
+        if (parts_.on_wall[index(from)] == 0) return false;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const double x = parts_.at(from)[axis], y = parts_.at(to)[axis];
+            if (std::abs(x - y) > 4 * ulp(std::max(std::abs(x), std::abs(y)))) return true;
+        }
+        return false;
+    }
+
+    /// The nodes that became one.
+    std::vector<NodeId> nodes_of(NodeId node) const {
+        const auto found = nodes_.find(node);
+        return found == nodes_.end() ? std::vector{node} : found->second;
+    }
+    void become(NodeId from, NodeId to) {
+        for (const NodeId node : nodes_of(from))
+            contraction_.becomes[index(node)] = to;
+    }
+    /// What a part is like now.
+    const std::optional<Shape>& now(std::int32_t part, Scratch& scratch) {
+        auto& known = now_.at(part);
+        if (!known) known.emplace(contraction_.shape(part, scratch));
+        return *known;
+    }
+    /// What a part, which is sound, would be like.
+    std::optional<Shape> contracted(std::int32_t part, NodeId to, NodeId from, Scratch& scratch) {
+        if (parts_.pieces_of[index(part)].size() > kMany) {
+            const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
+            const auto before = contraction_.shape(pieces, part, scratch);
+            become(from, to);
+            const auto found = contraction_.shape(pieces, part, scratch);
+            become(from, from);
+            if (!before || !found) return std::nullopt;
+            Shape known = *now(part, scratch);
+            known.touches += found->touches - before->touches;
+            known.count += found->count - before->count;
+            if (keeps_extent(known.box, found->box))
+                return known.count < 4 ? std::nullopt : std::optional(known);
+        }
+        become(from, to);
+        auto found = contraction_.shape(part, scratch);
+        become(from, from);
+        return found;
+    }
+    /// Whether a part surely has an extent in all directions: it is large, or what is near has one.
+    bool keeps_extent(const spatial::Box& part, const spatial::Box& near) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (part.high[k] - part.low[k] <= 1000 * allowed_ && near.high[k] <= near.low[k])
+                return false;
+        }
+        return true;
+    }
+    /// The polygons of a part that share nodes with those at one of two nodes.
+    std::vector<std::int32_t> pieces_near(std::int32_t part, NodeId to, NodeId from) const {
+        std::set<std::int32_t> found;
+        std::set<NodeId> around;
+        const auto visit = [&](NodeId node, const auto& visit_piece) {
+            for (const NodeId own : nodes_of(node)) {
+                for (const std::int32_t p : pieces_at_[index(own)]) {
+                    if (std::ranges::count(parts_.pieces[index(p)].parts, part) > 0) visit_piece(p);
+                }
+            }
+        };
+        for (const NodeId end : {to, from}) {
+            visit(end, [&](std::int32_t p) {
+                for (const NodeId node : parts_.pieces.polygons[index(p)])
+                    around.insert(contraction_.becomes[index(node)]);
+            });
+        }
+        for (const NodeId node : around)
+            visit(node, [&found](std::int32_t p) { found.insert(p); });
+        std::vector<std::int32_t> pieces;
+        for (const std::int32_t p : found) {
+            pieces.insert(pieces.end(),
+                          index(std::ranges::count(parts_.pieces[index(p)].parts, part)), p);
+        }
+        return pieces;
+    }
+
+    RoundedParts& parts_;
+    double allowed_;
+    Contraction contraction_;
+    Buckets<std::int32_t> pieces_at_;  ///< of nodes
+    std::vector<std::vector<Edge>> rounds_;
+    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;  ///< that became one, of ends of edges
+    /// What the parts around are like: nothing where nobody has asked yet.
+    std::unordered_map<std::int32_t, std::optional<std::optional<Shape>>> now_;
+};
+
+}  // namespace
+
+void join_short_edges(RoundedParts& parts, double least_rounding) {
+    const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
+    const cutting::Pieces& pieces = parts.pieces;
+    constexpr std::size_t kPieces = 1 << 12;  // at a time
+    std::vector<std::vector<Edge>> found((pieces.size() + kPieces - 1) / kPieces);
+    parallel_ranges(
+        pieces.size(), kPieces, parts.execution,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto nodes = pieces.polygons[p];
+                for (std::size_t i = 0; i < nodes.size(); ++i) {
+                    const Edge edge = unordered(nodes[i], nodes[i + 1 < nodes.size() ? i + 1 : 0]);
+                    if (!parts.is_new(edge[1])) continue;
+                    const Position away = minus(parts.at(edge[0]), parts.at(edge[1]));
+                    if (std::ranges::all_of(away,
+                                            [allowed](double x) { return std::abs(x) <= allowed; }))
+                        found[begin / kPieces].push_back(edge);
+                }
+            }
+        },
+        0.05);
+    std::set<Edge> edges;
+    for (const auto& chunk : found)
+        edges.insert(chunk.begin(), chunk.end());
+    if (!edges.empty()) ShortEdges(parts, allowed, edges).contract_all();
+}
+
+}  // namespace realmodel::structures

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrangement/dump.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "../base/read_text.hpp"
+
+namespace realmodel::arrangement {
+namespace {
+
+class ArrangementDump : public testing::Test {
+protected:
+    void TearDown() override { std::filesystem::remove(path_); }
+    SpacePointId at(double x, double y, double z) { return points_.add(Position{x, y, z}); }
+
+    // One for each test: CTest runs them side by side.
+    std::string path_ =
+        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj";
+    exact::SpacePoints points_;
+};
+
+TEST_F(ArrangementDump, RegionsAreFacesInAGroupForEachTriangle) {
+    TriangleArrangement arrangement(points_);
+    arrangement.add({at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)});
+    arrangement.add({at(1, -1, -1), at(1, 9, -1), at(1, 1, 9)});  // passes through it
+    arrangement.insert(*arrangement.intersection(0, 1));
+    arrangement.divide({1});
+    dump_regions(points_, arrangement, path_.c_str());
+    const std::string text = read_text(path_);
+    EXPECT_EQ(count(text, "\nf "), 3);  // two parts of the first; the other is not parted
+    EXPECT_EQ(count(text, "g triangle_"), 2);
+    EXPECT_EQ(count(text, "\nl "), 1);  // the slit in it
+}
+
+TEST_F(ArrangementDump, AFanIsATriangleForEachHalfPlane) {
+    const std::vector<HalfPlane> items{{at(1, 0, 0), -1, 1}, {at(0, 1, 0), -1, 1}};
+    dump_fan(points_, at(0, 0, 0), at(0, 0, 1), items, path_.c_str());
+    EXPECT_EQ(read_text(path_),
+              "g item_0\nv 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n"
+              "g item_1\nv 0 0 0\nv 0 0 1\nv 0 1 0\nf 4 5 6\n");
+}
+
+TEST_F(ArrangementDump, AFileThatCannotBeWrittenIsAnError) {
+    EXPECT_THROW(dump_fan(points_, at(0, 0, 0), at(0, 0, 1), {}, "/no/such/folder/fan.obj"),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace realmodel::arrangement

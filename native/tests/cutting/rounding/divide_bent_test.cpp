@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "../halved_box.hpp"
+
+namespace realmodel::cutting {
+namespace {
+
+class DivideBent : public AHalvedBox {
+protected:
+    DivideBent() { cut_at(0.5); }
+    std::size_t pieces_after(std::vector<std::size_t> doubled = {},
+                             bool (*is_bent_too)(std::span<const Position>) = nullptr) {
+        RoundedParts parts = rounded_parts();
+        std::vector<std::uint8_t> is_doubled(pieces_.size(), 0);
+        for (const std::size_t p : doubled)
+            is_doubled[p] = 1;
+        divide_bent(parts, is_doubled, is_bent_too);
+        return pieces_.size();
+    }
+};
+
+TEST_F(DivideBent, ACapThatIsNoLongerConvexIsDividedRoundANodeInItsMiddle) {
+    new_[3] = {0.25, 0.25, 0.5};  // beyond the diagonal of the others
+    EXPECT_EQ(pieces_after(), 14U);
+    EXPECT_EQ(nodes(kCap), loop_of({8, 9, 12}));
+    EXPECT_EQ(new_.at(4), (Position{0.3125, 0.3125, 0.5}));
+}
+
+TEST_F(DivideBent, ACapBentByNoMoreThanRoundingStaysWhole) {
+    new_[3] = {0.5 - 0x1p-53, 0.5, 0.5};
+    EXPECT_EQ(pieces_after(), 11U);
+}
+
+TEST_F(DivideBent, DoubledPolygonsAreDivided) {
+    EXPECT_EQ(pieces_after({0, kCap}), 17U);
+    EXPECT_EQ(new_.size(), 6U);
+}
+
+TEST_F(DivideBent, TheMiddleOfAPolygonIsWhereNoOtherNodeIs) {
+    RoundedParts parts = rounded_parts();
+    parts.taken.insert({0.5, 0.5, 0.5});
+    std::vector<std::uint8_t> is_doubled(pieces_.size(), 0);
+    is_doubled[kCap] = 1;
+    divide_bent(parts, is_doubled);
+    ASSERT_EQ(new_.size(), 5U);
+    EXPECT_NE(new_[4], (Position{0.5, 0.5, 0.5}));
+}
+
+TEST_F(DivideBent, WhatIsAskedForToo) {
+    EXPECT_EQ(pieces_after({}, [](auto corners) { return corners[0][2] == 0.5; }), 14U);
+}
+
+TEST_F(DivideBent, AWallWithoutExtentInPlanIsDividedInThoseThatHaveOne) {
+    new_[1] = {0, 0, 0.25};
+    add(2, kBelow, {8, 9, 0});
+    const std::size_t wall = pieces_.size() - 1;
+    EXPECT_EQ(pieces_after(), wall + 3);
+    const RoundedParts parts = rounded_parts();
+    for (std::size_t p = wall; p < pieces_.size(); ++p)
+        EXPECT_FALSE(parts.is_upright(p));
+}
+
+}  // namespace
+}  // namespace realmodel::cutting
