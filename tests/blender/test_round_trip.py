@@ -13,7 +13,7 @@ from realmodel.core import InputRefused, load_project
 from realmodel.core.base.work import run
 from realmodel.core.settings.schema import BODY, FAULT, READING, ROCK, SURFACE
 from realmodel.core.structures.shapes.reading import read_structures
-from realmodel.core.surfaces.rock_input import read_rocks
+from realmodel.core.surfaces.prepare import read_rocks
 
 EVERY_KEY = """
 format = 1

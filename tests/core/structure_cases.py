@@ -6,7 +6,7 @@ from realmodel.core.base.work import run
 from realmodel.core.proof.closed_form import ClosedForm
 from realmodel.core.structures.setup import make_structures
 from realmodel.core.structures.shapes.reading import read_structures
-from realmodel.core.surfaces.rock_input import mesh_rock, read_rocks
+from realmodel.core.surfaces.prepare import mesh_rock, read_rocks
 
 
 def plane_fault(x=5.0, lean=0.0, y=(-5.0, 15.0), z=(-20.0, 20.0), turn=0.0):

@@ -170,7 +170,7 @@ def test_enough_points_are_taken_as_they_are():
     (entry,) = prepared(project([Surface("S", points=np.concatenate([many, few]))], [fault("F", 500.0)]))
     (alone,) = prepared(project([Surface("S", points=few)], [fault("F", 500.0)]))
     at = compartment(entry, 800, 500, 0)
-    assert np.array_equal(entry.structure.sheets[at][0][0], alone.structure.sheets[at][0][0])
+    assert np.array_equal(entry.structure.sheets[at][0].vertices, alone.structure.sheets[at][0].vertices)
     assert texts_of(entry, "S") == []
 
 
@@ -281,8 +281,8 @@ def test_a_borrowed_sheet_keeps_its_minimum_thickness():
     surfaces[0] = replace(surfaces[0], points=low)
     (entry,) = prepared(project(surfaces, [fault("F", 500.0)]))
     older, own, _ = entry.structure.sheets[compartment(entry, 600, 500, 0)]
-    assert (own[0][:, 2] - older[0][:, 2]).min() >= 20 - 1e-9
-    assert (own[0][:, 2] - older[0][:, 2]).max() > 50
+    assert (own.vertices[:, 2] - older.vertices[:, 2]).min() >= 20 - 1e-9
+    assert (own.vertices[:, 2] - older.vertices[:, 2]).max() > 50
 
 
 def test_bounds_hold_for_a_borrowed_sheet():
@@ -324,7 +324,7 @@ def test_ready_meshes():
     region = Rock("r", surfaces, region=SQUARE, edge_length=60.0, base_elevation=-2000.0)
     (entry,) = prepared(Project("p", [region], faults=[fault("F", 500.0)]))
     sheet = entry.structure.sheets[compartment(entry, 800, 500, 0)][1]
-    assert np.abs(sheet[0][:, 2] - (0.02 * sheet[0][:, 1] - 70)).max() < 0.5
+    assert np.abs(sheet.vertices[:, 2] - (0.02 * sheet.vertices[:, 1] - 70)).max() < 0.5
     (text,) = texts_of(entry, "S1")
     assert text.startswith("it has no triangles in") and "shifted down by 70, " in text
 
@@ -340,7 +340,7 @@ def test_a_stage_has_the_sheets_of_the_whole():
     for one, other in zip(
         whole.rock_inputs[0].structure.sheets, stage.rock_inputs[0].structure.sheets, strict=True
     ):
-        assert len(other) == 1 and np.array_equal(one[0][0], other[0][0])
+        assert len(other) == 1 and np.array_equal(one[0].vertices, other[0].vertices)
     assert all(warning.surface != "S1" for warning in stage.warnings)
 
 
@@ -349,7 +349,7 @@ def test_one_sheet_whatever_the_number_of_threads():
     first, second = (prepared(given, threads)[0] for threads in (1, 2))
     assert len(texts_of(first, "S1")) == 2
     for one, other in zip(first.surfaces, second.surfaces, strict=True):
-        assert one[0].tobytes() == other[0].tobytes() and one[1].tobytes() == other[1].tobytes()
+        assert all(a.tobytes() == b.tobytes() for a, b in zip(one, other, strict=True))
 
 
 def test_beside_a_fault_that_dies_out():
@@ -393,8 +393,8 @@ def test_realizations_shift_what_they_draw():
     assert np.array_equal(found.volumes, again.volumes)
     deviation = found.surface_deviation[1]
     sheets = entry.structure.distinct(1)
-    assert len(sheets) == 2 and len(deviation) == sum(len(sheet[0]) for sheet in sheets)
-    first, second = np.split(deviation, [len(sheets[0][0])])
+    assert len(sheets) == 2 and len(deviation) == sum(len(sheet.vertices) for sheet in sheets)
+    first, second = np.split(deviation, [len(sheets[0].vertices)])
     assert np.isfinite(second).all() and 1 < second.mean() < 10 and 1 < first.mean() < 10
     assert len(entry.attributes[1]["variance"]) == len(deviation)
 

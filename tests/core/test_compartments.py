@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
 from realmodel.core.base.work import native_module, run
-from realmodel.core.cells.joining import acts
+from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import Reach
 from realmodel.core.proof.closed_form import winding_numbers
 from realmodel.core.structures.parts.parts import divide, structures_of
@@ -143,7 +143,7 @@ def test_what_acts():
     bodies = [Body("late", *ball([5, 5, 0], 2), after="S2"), Body("early", *ball([5, 5, 0], 2), after="S0")]
     project = Project("p", [Rock("r", surfaces)], faults=faults, bodies=bodies)
     inputs = prepared(project)
-    found = acts(inputs, structures_of(project, faults, bodies))
+    found = blocks_divided(inputs, structures_of(project, faults, bodies))
     #                             S0 S1 S2 S3  F  G  late early
     assert found[0].tolist() == [1, 1, 0, 0, 0, 0, 0, 1]
     assert found[1].tolist() == [1, 1, 1, 1, 0, 0, 1, 1]

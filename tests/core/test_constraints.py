@@ -57,14 +57,14 @@ def test_constraints_of_the_project_file(write, tmp_path):
     for a, b in (((1, 3), (3, 3.5)), ((5, 3), (7, 0.5)), ((1, 0.5), (4, 0.25)), ((0.5, 2), (0.5, 3))):
         assert contains(mesh, a, b)
     for point in ((6.1, 3.3), (3.3, 1.1)):
-        assert (mesh[0] == point).all(axis=1).any()
+        assert (mesh.vertices == point).all(axis=1).any()
     assert model.volume == pytest.approx(32)
 
     again = build(model.project)  # from the arrays that were read
-    assert np.array_equal(again.rock_inputs[0].region[0], mesh[0])
+    assert np.array_equal(again.rock_inputs[0].region.vertices, mesh.vertices)
     save_project(model.project, tmp_path / "saved.toml")
     saved = build(load_project(tmp_path / "saved.toml"))
-    assert np.array_equal(saved.rock_inputs[0].region[0], mesh[0])
+    assert np.array_equal(saved.rock_inputs[0].region.vertices, mesh.vertices)
 
 
 def test_edges_are_shorter_at_constraints(write):
@@ -117,7 +117,7 @@ def test_edges_are_shorter_at_what_files_hold(write, tmp_path):
     save_project(model.project, tmp_path / "saved.toml")
     saved = build(load_project(tmp_path / "saved.toml"))
     for mesh in (again.rock_inputs[0].region, saved.rock_inputs[0].region):
-        assert np.array_equal(mesh[0], vertices)
+        assert np.array_equal(mesh.vertices, vertices)
 
 
 @pytest.mark.parametrize(
@@ -179,4 +179,4 @@ def test_constraints_from_python(write):
     rock.constraints = [[[1, 1], [7, 3]], [4.4, 0.6]]
     mesh = build(Project("x", [rock])).rock_inputs[0].region
     assert contains(mesh, (1, 1), (7, 3))
-    assert (mesh[0] == (4.4, 0.6)).all(axis=1).any()
+    assert (mesh.vertices == (4.4, 0.6)).all(axis=1).any()

@@ -146,7 +146,7 @@ def test_data_are_honored(method):
     given = project(method=method, options=METHODS[method])
     rock = replace(given.rocks[0], constraints=POINTS[:, :2].tolist())
     base = build(replace(given, rocks=[rock]), cells="blocks")
-    nodes = base.rock_inputs[0].region[0]
+    nodes = base.rock_inputs[0].region.vertices
     at = [int(np.flatnonzero((nodes == point).all(axis=1))[0]) for point in POINTS[:, :2]]
     found = errors(base, 3)
     assert np.abs(found[:, at]).max() < 1e-6
@@ -185,7 +185,7 @@ def test_a_surface_parallel_to_a_drawn_one_follows_it():
 def test_thicknesses_are_drawn_where_points_have_them():
     points = POINTS + np.array([0, 0, 3.0]) + np.random.default_rng(5).uniform(0, 1, (12, 1)) * [[0, 0, 1]]
     base = parallel(points, thickness_method="kriging")
-    realizer, nodes = Realizer(base), base.rock_inputs[0].region[0]
+    realizer, nodes = Realizer(base), base.rock_inputs[0].region.vertices
     at = [int(np.flatnonzero((nodes == point).all(axis=1))[0]) for point in POINTS[:, :2]]
     thicknesses = []
     for number in (0, 1):

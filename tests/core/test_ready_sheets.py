@@ -89,7 +89,7 @@ def test_no_fault_near_leaves_the_mesh_as_it_is():
     mesh = strip(range(11), lambda x, y: 0.1 * x)
     entry = made(mesh, Fault("F", *plane_fault(x=14.0)))
     sheet = entry.structure.sheets[0][0]
-    assert np.array_equal(sheet[0], mesh[0]) and np.array_equal(sheet[1], mesh[1])
+    assert np.array_equal(sheet.vertices, mesh[0]) and np.array_equal(sheet.triangles, mesh[1])
 
 
 @pytest.mark.parametrize("lean", [0.0, 0.8, -0.8])
@@ -100,7 +100,7 @@ def test_a_mesh_that_goes_through_the_fault(lean):
     entry = made(mesh, Fault("F", *shape))
     left, right = sheets_by_place(entry, [-9, 5, 0], [19, 5, 0])
     for sheet in (left, right):
-        assert np.array_equal(sheet[1], mesh[1])
+        assert np.array_equal(sheet.triangles, mesh[1])
         assert_single_valued(sheet, 100.0)
     plan = grid_of(0.0, 3.9)
     assert np.abs(heights_at(plan, *left) - 0.1 * plan[:, 1]).max() < 1e-9
@@ -117,10 +117,12 @@ def test_parts_that_meet_at_a_vertical_fault():
     left, right = sheets_by_place(entry, [0, 5, 0], [9, 5, 0])
     for sheet, shift in ((left, 0.0), (right, 3.0)):
         assert_single_valued(sheet, 100.0)
-        at = sheet[0][:, 0] == 5.0
-        assert at.sum() == 22 and (sheet[0][at, 2] == 1.0 + shift).all()
-    assert np.abs(left[0][left[0][:, 0] > 5, 2] - 1.0).max() < 1e-9  # nearest: level from the fault on
-    assert np.abs(right[0][right[0][:, 0] < 5, 2] - 4.0).max() < 1e-9
+        at = sheet.vertices[:, 0] == 5.0
+        assert at.sum() == 22 and (sheet.vertices[at, 2] == 1.0 + shift).all()
+    assert (
+        np.abs(left.vertices[left.vertices[:, 0] > 5, 2] - 1.0).max() < 1e-9
+    )  # nearest: level from the fault on
+    assert np.abs(right.vertices[right.vertices[:, 0] < 5, 2] - 4.0).max() < 1e-9
 
 
 def test_a_gap_at_a_normal_fault_is_covered():
@@ -135,7 +137,7 @@ def test_a_gap_at_a_normal_fault_is_covered():
     left, right = sheets_by_place(entry, [-9, 5, 0], [19, 5, 0])
     for sheet, height in ((left, 1.0), (right, -2.0)):
         assert_single_valued(sheet, 100.0)
-        assert np.abs(sheet[0][:, 2] - height).max() < 1e-9
+        assert np.abs(sheet.vertices[:, 2] - height).max() < 1e-9
     closed = closed_form_of(entry)
     assert closed.compartments_of(np.array([[5.2, 5, 0.9]])) == closed.compartments_of(
         np.array([[9.0, 5, 0]])
@@ -150,7 +152,7 @@ def test_parts_that_do_not_reach_the_fault():
     left, right = sheets_by_place(entry, [0, 5, 0], [9, 5, 0])
     for sheet, height in ((left, 0.0), (right, 2.0)):
         assert_single_valued(sheet, 100.0)
-        assert np.abs(sheet[0][:, 2] - height).max() < 1e-9
+        assert np.abs(sheet.vertices[:, 2] - height).max() < 1e-9
 
 
 def test_parts_that_overlap_at_a_reverse_fault():
@@ -169,7 +171,7 @@ def test_parts_that_overlap_at_a_reverse_fault():
     assert np.abs(heights_at(grid_of(4.05, 9.95), *right) + 2).max() < 1e-9
     plan = grid_of(5.55, 9.95)
     assert np.abs(heights_at(plan, *left) - 1 - 0.01 * plan[:, 1]).max() < 0.02
-    corners = {tuple(map(tuple, left[0][triangle])) for triangle in left[1]}
+    corners = {tuple(map(tuple, left.vertices[triangle])) for triangle in left.triangles}
     assert {tuple(map(tuple, mesh[0][triangle])) for triangle in mesh[1][: 6 * 20]} <= corners
 
 
@@ -187,8 +189,8 @@ def test_a_scissor_fault():
     entry = made(together(left, right), Fault("F", *shape))
     for sheet, shift in zip(sheets_by_place(entry, [-9, 5, 0], [19, 5, 0]), (-1.0, 1.0), strict=True):
         assert_single_valued(sheet, 100.0)
-        plan = sheet[0][:, :2]
-        assert np.abs(sheet[0][:, 2] - height(shift)(*plan.T)).max() < 0.25  # the nearest vertex
+        plan = sheet.vertices[:, :2]
+        assert np.abs(sheet.vertices[:, 2] - height(shift)(*plan.T)).max() < 0.25  # the nearest vertex
 
 
 def test_a_mesh_on_one_side_only():
@@ -226,8 +228,8 @@ def test_the_method_of_the_surface_continues_it():
     )
     entry = made(mesh, Fault("F", *plane_fault()), method="plane")
     left, right = sheets_by_place(entry, [0, 5, 0], [9, 5, 0])
-    assert np.abs(left[0][:, 2] - 0.2 * left[0][:, 0]).max() < 1e-9
-    assert np.abs(right[0][:, 2] - 3 - 0.2 * right[0][:, 0]).max() < 1e-9
+    assert np.abs(left.vertices[:, 2] - 0.2 * left.vertices[:, 0]).max() < 1e-9
+    assert np.abs(right.vertices[:, 2] - 3 - 0.2 * right.vertices[:, 0]).max() < 1e-9
 
 
 def test_a_slit_that_dies_out():
@@ -252,8 +254,8 @@ def test_a_slit_that_dies_out():
     left, right = sheets_by_place(entry, [0, 5, 0], [9, 5, 0])
     for sheet in (left, right):
         assert_single_valued(sheet, 100.0)
-    beyond = (left[0][:, 1] >= 6) & (np.abs(left[0][:, 0] - 5) <= 1)
-    assert beyond.sum() == 15 and np.array_equal(left[0][beyond, 2], right[0][beyond, 2])
+    beyond = (left.vertices[:, 1] >= 6) & (np.abs(left.vertices[:, 0] - 5) <= 1)
+    assert beyond.sum() == 15 and np.array_equal(left.vertices[beyond, 2], right.vertices[beyond, 2])
     plan = grid_of(0.2, 3.9)
     assert np.abs(heights_at(plan, *left) - heights_at(plan, vertices, triangles)).max() < 1e-9
     plan = np.array([[5.0, y] for y in range(6)])

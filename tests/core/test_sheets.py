@@ -45,10 +45,10 @@ def test_points_count_in_their_compartment(lean):
     left = int(side_of(entry.structure.faults.shapes[0], [-9, 5, 0])[0])
     for side, shift in ((left, -1.0), (-left, 1.0)):
         vertices, triangles = sheets[side]
-        assert np.array_equal(triangles, entry.region[1])
+        assert np.array_equal(triangles, entry.region.triangles)
         assert np.abs(vertices[:, 2] - 0.1 * vertices[:, 0] - shift).max() < 1e-6
-    assert np.array_equal(entry.surfaces[0][0], joined(entry.structure.distinct(0))[0])
-    assert len(entry.attributes[0]["distance"]) == len(entry.surfaces[0][0])
+    assert np.array_equal(entry.surfaces[0].vertices, joined(entry.structure.distinct(0)).vertices)
+    assert len(entry.attributes[0]["distance"]) == len(entry.surfaces[0].vertices)
     assert entry.interpolations[0].method == "universal_kriging"
 
 
@@ -102,7 +102,7 @@ def test_a_method_without_points_needs_none():
     surfaces.append(Surface("P", method="parallel", options={"to": "S", "thickness": 1.5}))
     (entry,) = prepared(Project("p", [rock(*surfaces)], faults=[Fault("F", *plane_fault())]))
     for sheets in entry.structure.sheets:
-        assert (sheets[0][0][:, 2] == 2.0).all() and (sheets[1][0][:, 2] == 3.5).all()
+        assert (sheets[0].vertices[:, 2] == 2.0).all() and (sheets[1].vertices[:, 2] == 3.5).all()
 
 
 def test_surfaces_made_from_others_in_their_compartment():
@@ -112,7 +112,7 @@ def test_surfaces_made_from_others_in_their_compartment():
     thick = Surface("S2", points=points_of(lambda x, y: np.full(len(x), 0.5)), minimum_thickness=0.25)
     (entry,) = prepared(Project("p", [rock(lower, parallel, thick)], faults=[Fault("F", *plane_fault())]))
     for sheets in entry.structure.sheets:
-        bottom, middle, top = (sheet[0][:, 2] for sheet in sheets)
+        bottom, middle, top = (sheet.vertices[:, 2] for sheet in sheets)
         assert np.allclose(middle, bottom + 1.0)
         assert np.allclose(top, np.maximum(0.5, middle + 0.25))
     assert any("stay 0.25 above 'S1'" in warning.text for _, warning in entry.structure.warnings)
@@ -132,7 +132,7 @@ def test_same_sheets_for_any_number_of_threads():
     surface = Surface("S", points=points_of(lambda x, y: np.where(x < 5, np.sin(x), 3 + y / 9)))
     project = Project("p", [rock(surface)], faults=[Fault("F", *plane_fault(lean=0.3))])
     first, second = (prepared(project, threads)[0] for threads in (1, 2))
-    assert np.array_equal(first.surfaces[0][0], second.surfaces[0][0])
+    assert np.array_equal(first.surfaces[0].vertices, second.surfaces[0].vertices)
 
 
 # ---- faults that die out
@@ -165,7 +165,7 @@ def test_a_fault_that_dies_out(method):
     sheets = by_side(entry, 0)
     equal = beyond(sheets[1], 6.0)
     assert len(equal) > 10
-    assert np.array_equal(sheets[-1][0][equal, 2], sheets[1][0][equal, 2])
+    assert np.array_equal(sheets[-1].vertices[equal, 2], sheets[1].vertices[equal, 2])
     shape = entry.structure.faults.shapes[0]
     left = int(side_of(shape, [0, 1, 0])[0])
     plan = np.array([[4.95, y] for y in (0.5, 1.0, 2.0, 3.0)])
@@ -209,9 +209,9 @@ def test_a_fault_that_dies_out_between_others():
     one, other = (sheets[n] for n in np.flatnonzero(rows[:, 1]))
     plan = np.array([[2.1, 5.0], [3.0, 5.0]])
     assert (np.abs(heights_at(plan, *one) - heights_at(plan, *other)) > 1.2).all()
-    nodes = one[0]
+    nodes = one.vertices
     far = (nodes[:, 0] > 7.5) & (np.abs(nodes[:, 1] - 5) < 0.3)
-    assert far.sum() > 3 and np.array_equal(nodes[far, 2], other[0][far, 2])
+    assert far.sum() > 3 and np.array_equal(nodes[far, 2], other.vertices[far, 2])
 
 
 def test_points_on_both_sides_of_a_fault_that_dies_out_at_one_position_in_plan():
@@ -232,9 +232,10 @@ def test_points_on_both_sides_of_a_fault_that_dies_out_at_one_position_in_plan()
     low, high = entry.structure.sheets[0][0], entry.structure.sheets[1][0]
     apart = np.abs(heights_at(np.array([[5.0, 1.0]]), *high) - heights_at(np.array([[5.0, 1.0]]), *low))
     assert 1.4 < apart[0] < 2.2
-    far = low[0][:, 1] > 7.0
+    far = low.vertices[:, 1] > 7.0
     assert np.array_equal(
-        low[0][far & (np.abs(low[0][:, 0] - 5) < 0.2), 2], high[0][far & (np.abs(low[0][:, 0] - 5) < 0.2), 2]
+        low.vertices[far & (np.abs(low.vertices[:, 0] - 5) < 0.2), 2],
+        high.vertices[far & (np.abs(low.vertices[:, 0] - 5) < 0.2), 2],
     )
 
 
@@ -248,7 +249,7 @@ def test_picks_that_reach_beyond_a_fault_contradict_those_of_the_other_side():
     surface = Surface("S", points=np.concatenate([points, wrong]))
     (entry,) = prepared(Project("p", [rock(surface)], faults=[Fault("F", *shape)]))
     for sheet in by_side(entry, 0).values():
-        assert np.ptp(sheet[0][:, 2]) < 1e-6
+        assert np.ptp(sheet.vertices[:, 2]) < 1e-6
     texts = [warning.text for _, warning in entry.structure.warnings]
     (left_out,) = (int(text.split()[0]) for text in texts if "left out" in text)
     (placed,) = (int(text.split()[0]) for text in texts if "just beyond" in text)  # so near the fault
@@ -264,4 +265,4 @@ def test_many_faults_that_die_out_take_no_sheet_for_each_combination_of_sides():
     surface = Surface("S", points=points_of(lambda x, y: 0.1 * x), method="plane")
     (entry,) = prepared(Project("p", [rock(surface)], faults=faults))
     assert 12 < len(entry.structure.compartments) < 100
-    assert np.abs(joined(entry.structure.distinct(0))[0] @ [0.1, 0, -1.0]).max() < 1e-9
+    assert np.abs(joined(entry.structure.distinct(0)).vertices @ [0.1, 0, -1.0]).max() < 1e-9

@@ -39,7 +39,7 @@ def test_objects_come_back_with_their_types_and_identities(tmp_path):
 
 
 def test_errors_of_surfaces_come_back(tmp_path):
-    """RockInput.torn."""
+    """RockInput.overlapping."""
     error = InputRefused("it folds", file=tmp_path / "s.csv", advice="smooth it", place=(1.0, 2.0))
     found = stored({3: error}, tmp_path)[3]
     assert type(found) is InputRefused

@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from realmodel.core.base.exact import orient2d, orient3d
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.triangles import distances_of_pairs
 from realmodel.core.proof import closed_form as form
 from realmodel.core.settings.rules import RULES
@@ -21,12 +22,13 @@ BOX_TRIANGLES = np.array(
 
 def box(low, high):
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
-    return np.asarray(low) + corners * (np.asarray(high, float) - low), BOX_TRIANGLES
+    return Sheet(np.asarray(low) + corners * (np.asarray(high, float) - low), BOX_TRIANGLES)
 
 
 def level(z, low=-10.0, high=10.0):
     plan = np.array([[low, low], [high, low], [high, high], [low, high]])
-    return np.column_stack([plan, np.full(4, float(z))]), np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    vertices = np.column_stack([plan, np.full(4, float(z))])
+    return Sheet(vertices, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
 
 
 NO_FAULTS = RockFaults([], [], [])

@@ -94,7 +94,7 @@ def test_a_branch_that_passes_between_two_sheets_beyond_a_tip_ends_in_nothing(ne
     low, high = np.full(2, -1, np.int8), np.full(2, 1, np.int8)
     seen = {(-1, -1): np.array([True, True]), (-1, 1): np.array([near, near])}
     drawn = _Drawn(plan, [0.0, 0.0], [[], [0]], seen, {(-1, -1): {1: low}, (-1, 1): {1: high}})
-    drawn.let_be_equal(0, np.array([[0, 1]]))
+    drawn.require_equal(0, np.array([[0, 1]]))
     assert drawn.equal[0].tolist() == [True, True]
     assert drawn.equal[1].tolist() == [near, near]
 
@@ -261,7 +261,7 @@ def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatc
     heights, asked = interpolated_sheets.give_heights, []
 
     def counted(work, entry, number, threads, *trend):
-        asked.append(len(entry.region[0]))
+        asked.append(len(entry.region.vertices))
         heights(work, entry, number, threads, *trend)
 
     monkeypatch.setattr(interpolated_sheets, "give_heights", counted)
@@ -271,7 +271,7 @@ def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatc
         (entry,) = prepared(overlapping(count, method))
         found.append((len(entry.structure.compartments), sum(asked)))
     (few, of_few), (many, of_many) = found
-    assert many >= 3 * few and of_many < 2 * of_few < many * len(entry.region[0])
+    assert many >= 3 * few and of_many < 2 * of_few < many * len(entry.region.vertices)
     monkeypatch.setattr(InterpolatedSurface, "_counts_by_node", lambda self, surface: False)
     (whole,) = prepared(overlapping(6, method))
     faults, count = whole.structure.faults, 0
@@ -279,8 +279,8 @@ def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatc
     for row, own, other in zip(
         whole.structure.compartments, entry.structure.sheets, whole.structure.sheets, strict=True
     ):
-        sides = run(lambda work, sheet=other[0]: sides_of(work, sheet[0], faults))
+        sides = run(lambda work, sheet=other[0]: sides_of(work, sheet.vertices, faults))
         is_there = (sides == row).all(axis=1)
-        assert np.array_equal(own[0][0][is_there], other[0][0][is_there])
+        assert np.array_equal(own[0].vertices[is_there], other[0].vertices[is_there])
         count += is_there.sum()
-    assert count > 0.9 * len(whole.region[0])
+    assert count > 0.9 * len(whole.region.vertices)

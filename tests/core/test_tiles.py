@@ -25,6 +25,7 @@ from realmodel.core import (
     load_project,
     open_tiles,
 )
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module
 from realmodel.core.surfaces.local_heights import LocalHeights, local_surfaces
 from realmodel.core.tiles import grid as tile_grids
@@ -824,12 +825,12 @@ def test_lines_keep_off_vertices():
 @pytest.mark.parametrize("at_once", [7, 1000])
 def test_each_triangle_is_in_the_tiles_that_it_meets(monkeypatch, at_once):
     monkeypatch.setattr(tile_grids, "_TRIANGLES_AT_ONCE", at_once)
-    mesh = hilly(10, 0.0, 1)
-    grid = tile_grid([mesh[0]], (35, 30))
+    mesh = Sheet(*hilly(10, 0.0, 1))
+    grid = tile_grid([mesh.vertices], (35, 30))
     listed = {}
     for name, numbers in triangles_by_tile(mesh, grid):
         listed.setdefault(name, []).extend(numbers.tolist())
-    corners = mesh[0][mesh[1]][:, :, :2]
+    corners = mesh.corners[:, :, :2]
     for column, row in grid:
         low_x, low_y, high_x, high_y = grid.box(column, row)
         part = part_of(mesh, np.array(listed[column, row]))
@@ -840,13 +841,13 @@ def test_each_triangle_is_in_the_tiles_that_it_meets(monkeypatch, at_once):
             | (corners[:, :, 1].min(1) > high_y)
         )
         assert np.array_equal(part.numbers, np.flatnonzero(~away))
-        assert np.array_equal(part.vertices[part.triangles], mesh[0][mesh[1][part.numbers]])
+        assert np.array_equal(part.vertices[part.triangles], mesh.corners[part.numbers])
 
 
 def test_a_clipped_region_has_its_area():
     vertices, triangles = hilly(7, 0.0, 1)
     box = (11.3, -20.0, 64.9, 33.3)
-    vertices, triangles = clipped_region((vertices[:, :2], triangles), box)
+    vertices, triangles = clipped_region(Sheet(vertices[:, :2], triangles), box)
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     doubled = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     assert (doubled > 0).all()

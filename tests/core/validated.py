@@ -5,6 +5,7 @@ import io
 
 import numpy as np
 from realmodel.core import Block, Model, Project, Rock, Surface
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.cells.cell_complex import CellComplex
 from realmodel.core.exporters.npz import write_npz
 from realmodel.core.surfaces.rock_input import RockInput
@@ -24,7 +25,8 @@ def as_model(case, cells="columns"):
             for k, ((v, t), rule) in enumerate(zip(stack.surfaces, stack.all_rules(), strict=True))
         ]
         rock = Rock(f"rock {number}", surfaces, base_elevation=stack.base_elevation)
-        inputs.append(RockInput(rock, list(stack.surfaces), stack.region))
+        region = None if stack.region is None else Sheet(*stack.region)
+        inputs.append(RockInput(rock, [Sheet(*shape) for shape in stack.surfaces], region))
     counts = np.bincount(arrays["cell_block"], minlength=len(arrays["block_surface"]))
     blocks = [
         Block(f"block {b}", int(rock), int(s), 0, float(result["volumes"][s]), int(counts[b]), 0)

@@ -24,7 +24,7 @@ from ..core.exporters.mesh_request import MeshRequest, cleaned_line
 from ..core.exporters.report import model_report, write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
-from ..core.surfaces.rock_input import with_arrays
+from ..core.surfaces.prepare import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
 from .probabilities import ProbabilityRequests

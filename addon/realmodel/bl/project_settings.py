@@ -18,7 +18,7 @@ from ..core.results.automatic_library import with_library
 from ..core.settings.methods import CONTINUATION
 from ..core.settings.schema import MESH_READING, READING, ROCK, SURFACE
 from ..core.structures.shapes.reading import read_structures
-from ..core.surfaces.rock_input import read_rocks
+from ..core.surfaces.prepare import read_rocks
 from . import (
     borehole_picks,
     built_models,

@@ -173,7 +173,6 @@ def _window(path: Path) -> Window:
     window = read_object(path)
     if not isinstance(window, Window):
         raise BuildFailed(f"{path}: is not a window of a tile; delete it and start again")
-    window.number_sheets()
     return window
 
 

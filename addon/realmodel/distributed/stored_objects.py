@@ -13,6 +13,7 @@ import numpy as np
 
 from ..core import Body, BuildFailed, BuildWarning, Fault, InputRefused, Rock, Surface
 from ..core.base.mapped_arrays import read_mapped, write_mapped
+from ..core.base.sheet import Sheet
 from ..core.cells.reach import Reach
 from ..core.structures.parts.parts import Structures
 from ..core.surfaces.rock_input import RockInput
@@ -22,7 +23,7 @@ from ..core.tiles.faulted_windows import Window
 
 _STORED: tuple[type, ...] = (
     *(Window, RockInput, Rock, Surface, RockStructure, RockFaults, FaultShape, Structures, Fault, Body),
-    *(Reach, BuildWarning, InputRefused),
+    *(Reach, Sheet, BuildWarning, InputRefused),
 )
 _CLASSES = {kind.__name__: kind for kind in _STORED}
 _OBJECTS = "objects"  # the table of objects, as JSON; arrays have numbers for names

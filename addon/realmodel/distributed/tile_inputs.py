@@ -16,6 +16,7 @@ import numpy as np
 
 from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
 from ..core.base.mapped_arrays import MappedArrays
+from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
 from ..core.project.project import surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
@@ -255,9 +256,9 @@ def _have_one_mesh(inputs: list[RockInput]) -> bool:
     """Whether all surfaces are interpolated on the whole mesh of one region."""
     if len(inputs) > 1 or inputs[0].region is None:
         return False
-    rock, nodes = inputs[0].rock, len(inputs[0].region[0])
+    rock, nodes = inputs[0].rock, len(inputs[0].region.vertices)
     return all(surface.interpolated for surface in rock.surfaces) and all(
-        len(inputs[0].surface(number)[0]) == nodes for number in range(len(rock.surfaces))
+        len(inputs[0].surface(number).vertices) == nodes for number in range(len(rock.surfaces))
     )
 
 
@@ -313,7 +314,7 @@ def _divide(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) 
     folder, grid, folder_of = shared
     rock, surface, places = task
     vertices, triangles = map(MappedArrays(folder).opened, places)
-    return write_parts((vertices, triangles), rock, surface, grid, folder_of)
+    return write_parts(Sheet(vertices, triangles), rock, surface, grid, folder_of)
 
 
 def _divide_points(shared: tuple[Path, TileGrid, Callable[[Name], Path]], task: tuple) -> None:

@@ -25,7 +25,7 @@ from ..bl.display import cuts
 from ..bl.origin import KEY as ORIGIN_KEY
 from ..core import BuildFailed, load_project
 from ..core.project.project_writer import save_project
-from ..core.surfaces.rock_input import with_arrays
+from ..core.surfaces.prepare import with_arrays
 from .reporting import Reporting, any_surface, chosen_path, not_building, selected_meshes
 
 

@@ -19,7 +19,6 @@ from ..structures.parts.part_models import (
 )
 from ..structures.parts.parts import Structures, compartment_of
 from ..structures.parts.refusals import refused_structure
-from ..surfaces.rock_structure import Triangulation
 from .built_cells import BuiltCells, CellParts, NativeWarning
 from .cell_complex import CellComplex
 from .reach import Reach
@@ -68,7 +67,7 @@ def build_joined(
     if not models:
         return _nothing(inputs, structures, cells)
     native = native_module()
-    divides = acts(inputs, structures)
+    divides = blocks_divided(inputs, structures)
     with work.phase(begin, end, "joining the compartments"):
         try:
             joined = work.native(
@@ -113,7 +112,7 @@ def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: i
 def _with_parts(
     built: BuiltCells, part: np.ndarray, inputs: list, structures: Structures, divides: np.ndarray
 ) -> BuiltCells:
-    """The cells with each body as one block of all rock masses, and their parts. divides: as `acts`
+    """The cells with each body as one block of all rock masses, and their parts. divides: as `blocks_divided`
     has it."""
     first, count = _first_surfaces(inputs), len(structures)
     own, surfaces = built.complex.cell_block, first[-1]
@@ -158,14 +157,14 @@ def _part_model(
     if structures.continued is not None and columns.any():
         # around a tile: sheets that ended here would be divided by lines that depend on what is far away
         columns = np.ones_like(columns)
-    kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
-    stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
+    kept = {sheet: reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
+    stacks = [stack.without([not kept[sheet].any() for sheet in stack.sheets]) for stack in stacks]
     taken = [n for n, stack in enumerate(stacks) if stack.sheets]
     if not taken:
         return None
-    rows = [reach.numbers_of(sheet)[kept[id(sheet)]] for n in taken for sheet in stacks[n].sheets]
     for n in taken:
-        stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
+        stacks[n].sheets = [sheet.some(kept[sheet]) for sheet in stacks[n].sheets]
+    rows = [sheet.of_surface for n in taken for sheet in stacks[n].sheets]
     more = _voids([(stacks[n], inputs[n].rock.base_elevation is None) for n in taken])
     built_as = "columns" if more else cells
     # blocks end at one border: those that each sheet ends at by itself leave many small ones between
@@ -176,7 +175,12 @@ def _part_model(
         more["is_local"] = True
     regions = [around if inputs[n].region is None else inputs[n].region for n in taken]
     rocks = [
-        (stacks[n].sheets, region, stacks[n].base_elevation, stacks[n].rules)
+        (
+            [sheet.arrays for sheet in stacks[n].sheets],
+            None if region is None else region.arrays,
+            stacks[n].base_elevation,
+            stacks[n].rules,
+        )
         for n, region in zip(taken, regions, strict=True)
     ]
     named = [(n, FILLER if own == DEEP else own) for n in taken for own in stacks[n].surfaces]
@@ -231,17 +235,6 @@ def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
     return {"emptied": [list(stack.emptied) for stack, _ in stacks], "fills": tops}
 
 
-def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
-    """Some triangles of a sheet, with only their own vertices."""
-    vertices, triangles = sheet
-    if kept.all():
-        return sheet
-    used = np.zeros(len(vertices), bool)
-    used[triangles[kept]] = True
-    number = np.cumsum(used, dtype=np.int64) - 1
-    return np.ascontiguousarray(vertices[used]), number[triangles[kept]].astype(np.int32)
-
-
 def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:
     """The stack of one rock mass in one part. surfaces: of all rock masses."""
     entry = inputs[number]
@@ -282,7 +275,7 @@ def beyond_all(sheets, structures: Structures) -> tuple[float, float]:
     return float(low - away), float(high + away)
 
 
-def acts(inputs: list, structures: Structures) -> np.ndarray:
+def blocks_divided(inputs: list, structures: Structures) -> np.ndarray:
     """(S, B) uint8: whether a structure divides a block, those of bodies as body_block numbers them. A fault
     divides what it displaces and the bodies that were there by then; a body what was there before it, and is
     hidden in later ones."""

@@ -15,7 +15,8 @@ def native_rocks(model, stage: int | None = None) -> list[tuple]:
         kept = count if stage is None else min(count, stage + 1)
         surfaces = [model.surface(first + k) for k in range(kept)]
         if model.rock_inputs:
-            region = model.rock_inputs[number].region
+            meshed = model.rock_inputs[number].region
+            region = None if meshed is None else meshed.arrays
         else:
             region = triangulate_rings(rock.rings()) if rock.region is not None else None
         rules = [surface.rule for surface in rock.surfaces[:kept]]

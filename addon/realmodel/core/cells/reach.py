@@ -8,11 +8,11 @@ import itertools
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from ..base.triangles import border_loops, extents
 from ..base.work import Work, native_module
 from ..structures.parts.parts import Structures
 from ..surfaces.planar_mesh import triangulate_rings
-from ..surfaces.rock_structure import Triangulation
 from ..surfaces.sides import FaultShape, fault_sides
 
 _CELLS = (64, 64, 16)  # of the grid, at most
@@ -35,24 +35,19 @@ class Reach:
         step = self.size[:2].max() / _CELLS[0]
         self.count = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(np.int64)
         self.step = self.size / self.count
-        # of the triangles of sheets: sheets in several places that have them, first and last cells
-        self.ranges: dict[int, list[tuple]] = {}
+        # of the triangles of sheets, which may differ in heights: first and last cells
+        self.ranges: list[tuple[Sheet, np.ndarray, np.ndarray]] = []
         self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
         self.asked = np.ones(self.count, bool)
-        self.numbers: dict[int, np.ndarray] = {}  # as numbers_of gives them, by the id of the sheet
 
     def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
         """The reach of the parts that meet a box in plan (low x, low y, high x, high y), for some of the
         faults, by their numbers. structures: these faults, and some bodies."""
         few = copy.copy(self)
-        few.structures, few.ranges, few.numbers = structures, {}, {}
+        few.structures, few.ranges = structures, []
         few.masks = [self.masks[fault] for fault in faults]
         few.asked = self._cells_in(np.array(box[:2]), np.array(box[2:]))
         return few
-
-    def numbers_of(self, sheet: Triangulation) -> np.ndarray:
-        """(T,) the numbers of the triangles of a sheet in the whole surface, of which there may be a part."""
-        return self.numbers.get(id(sheet), np.arange(len(sheet[1])))
 
     def cells_of(self, part: int) -> np.ndarray:
         """(nx, ny, nz) bool: in which cells a part may have points."""
@@ -64,7 +59,7 @@ class Reach:
         found = possible & self._cells_in(low[part], high[part])
         return found if (found & self.asked).any() else np.zeros_like(found)
 
-    def around(self, columns: np.ndarray) -> Triangulation:
+    def around(self, columns: np.ndarray) -> Sheet:
         """A region in plan: these columns, a small margin around them, and everything beyond the last
         ones."""
         lines = []
@@ -83,9 +78,9 @@ class Reach:
         squares = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
         plan = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
         vertices, triangles = triangulate_rings([_corners(plan[ring]) for ring in border_loops(squares)])
-        return np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32)
+        return Sheet(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32))
 
-    def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
+    def over(self, columns: np.ndarray, sheet: Sheet) -> np.ndarray:
         """(T,) bool: the triangles of a sheet whose boxes in plan meet what `around` gives."""
         first, last = self._ranges_of(sheet)
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
@@ -93,16 +88,15 @@ class Reach:
         (x0, y0), (x1, y1) = first.T, last.T + 1
         return total[x1, y1] - total[x0, y1] - total[x1, y0] + total[x0, y0] > 0
 
-    def _ranges_of(self, sheet: Triangulation) -> tuple[np.ndarray, np.ndarray]:
+    def _ranges_of(self, sheet: Sheet) -> tuple[np.ndarray, np.ndarray]:
         """The first and the last cells of the triangles of a sheet; those of a surface differ in heights."""
-        known = self.ranges.setdefault(id(sheet[1]), [])
-        for other, first, last in known:
-            if np.array_equal(sheet[0][:, :2], other[0][:, :2]):
+        for other, first, last in self.ranges:
+            if sheet.triangles is other.triangles and sheet.has_plan_of(other):
                 return first, last
-        low, high = extents(sheet[0][sheet[1], :2])
+        low, high = extents(sheet.corners[..., :2])
         margin = _MARGIN * self.step[:2]
         first, last = self._range(low - margin, high + margin)
-        known.append((sheet, first, last))
+        self.ranges.append((sheet, first, last))
         return first, last
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

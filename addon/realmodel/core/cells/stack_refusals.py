@@ -52,8 +52,8 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
             f"{named} {verb} vertical{near}",
             f"{_ONE_HEIGHT}: tilt or remove the vertical triangles",
         )
-    elif error.kind == "double_valued" and number in entry.torn:
-        return entry.torn[number].within(surface_item(rock, surface), file=file, line=line)
+    elif error.kind == "double_valued" and number in entry.overlapping:
+        return entry.overlapping[number].within(surface_item(rock, surface), file=file, line=line)
     elif error.kind == "double_valued":
         what, advice = (
             f"{named} overlap in plan{near}",
@@ -83,7 +83,7 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
 def _beyond_its_points(entry, lowest: float) -> str:
     """The advice where the lowest position is not at a point, but extrapolated by a method."""
     for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
-        if shape is None or shape[0][:, 2].min() > lowest or not surface.interpolated:
+        if shape is None or shape.vertices[:, 2].min() > lowest or not surface.interpolated:
             continue
         if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
             least = surface.points[:, 2].min()

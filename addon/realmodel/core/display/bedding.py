@@ -78,7 +78,10 @@ def bedding_of(
             of_corners = np.zeros(corner_begin[-1], np.int32)
         compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own], threads)
         of_corners[_runs(corner_begin, own)] = len(histories) + compartments
-        histories += [(sheets, base_elevation, rules) for sheets in structure.sheets]
+        histories += [
+            ([structure.sheet(c, k).arrays for k in range(len(surfaces))], base_elevation, rules)
+            for c in range(len(structure.sheets))
+        ]
     if of_corners is not None:
         plain = [n for n, entry in enumerate(model.rock_inputs) if entry.structure is None]
         own = np.flatnonzero(np.isin(rock[block], plain))

@@ -38,8 +38,9 @@ def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
         if base is not None:
             own[points[:, 2] < base] = AIR
         if entry.region is not None:
-            flat = np.column_stack([entry.region[0][:, :2], np.zeros(len(entry.region[0]))])
-            own[np.isnan(_heights((flat, entry.region[1]), plan, threads))] = AIR
+            nodes, triangles = entry.region
+            flat = np.column_stack([nodes, np.zeros(len(nodes))])
+            own[np.isnan(_heights((flat, triangles), plan, threads))] = AIR
         found = np.where(own != AIR, own, found)
     return found
 

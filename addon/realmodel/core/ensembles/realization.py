@@ -15,7 +15,8 @@ from ..heights.draws import Draw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
 from ..structures.setup import make_structures
-from ..surfaces.rock_input import RockInput, interpolate_rock
+from ..surfaces.prepare import interpolate_rock
+from ..surfaces.rock_input import RockInput
 
 _INTERPOLATED = 0.5  # of the time
 
@@ -35,7 +36,7 @@ class Realizer:
     _known: dict[tuple[int, int], dict] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
-        places = [entry.region[0] for entry in self.model.rock_inputs if entry.region is not None]
+        places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
             places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]
         places = [each for each in places if len(each)] or [np.zeros((1, 2))]

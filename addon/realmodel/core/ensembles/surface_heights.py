@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from ..base.work import native_module, on_threads
 from ..model.model import Model
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import Triangulation
 
 
 def heights(model: Model) -> list[np.ndarray | None]:
@@ -56,11 +56,11 @@ def _difference(entry: RockInput, drawn: RockInput, number: int, threads: int) -
     return np.concatenate(found)
 
 
-def _sheets(entry: RockInput, number: int) -> list[tuple[int, Triangulation]]:
+def _sheets(entry: RockInput, number: int) -> list[tuple[int, Sheet]]:
     """The different sheets of a surface, as of RockStructure.distinct, each with its first compartment."""
-    first: dict[int, tuple[int, Triangulation]] = {}
+    first: dict[Sheet, int] = {}
     structure = entry.divided()
     for compartment in range(len(structure.sheets)):
         sheet = structure.sheet(compartment, number)
-        first.setdefault(id(sheet), (compartment, sheet))
-    return list(first.values())
+        first.setdefault(sheet, compartment)
+    return [(compartment, sheet) for sheet, compartment in first.items()]

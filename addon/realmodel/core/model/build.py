@@ -17,7 +17,8 @@ from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
 from ..structures.setup import make_structures
 from ..structures.shapes.reading import read_structures
-from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput
 from .estimate import require_memory
 from .model import Model
 

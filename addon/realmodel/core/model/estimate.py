@@ -6,15 +6,14 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..base.errors import NotEnoughMemory
+from ..base.sheet import Sheet
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
-from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
-from ..surfaces.surface_heights import Triangulation
+from ..surfaces.prepare import mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput
 
 # Bytes for each triangle of the surfaces: a little more than the dearest benchmark took, by cells
 # and by whether all surfaces stand on one plan mesh.
@@ -98,7 +97,7 @@ def estimate(
         nodes = 0
         for entry in inputs:
             if entry.region is not None:
-                nodes += len(entry.region[0]) * sum(surface is None for surface in entry.surfaces)
+                nodes += len(entry.region.vertices) * sum(surface is None for surface in entry.surfaces)
         structures = len(project.faults) + len(project.bodies)
         seconds = _SECONDS_PER_TRIANGLE[cells] * triangles + _SECONDS_PER_NODE * nodes
         seconds = read + seconds * _times(structures)
@@ -148,7 +147,7 @@ def require_memory(inputs: list[RockInput], cells: str, limit: int | None, struc
     )
 
 
-def _plans(entry: RockInput) -> list[Triangulation]:
+def _plans(entry: RockInput) -> list[Sheet]:
     """The triangulation of each surface; of one that is not interpolated yet, the region's."""
     return [entry.planar_mesh() if surface is None else surface for surface in entry.surfaces]
 
@@ -159,12 +158,8 @@ def _triangles(entry: RockInput) -> int:
 
 def _on_one_plan(entry: RockInput) -> bool:
     """Whether all surfaces have the same triangles in plan."""
-    (vertices, triangles), *others = _plans(entry)
-    return all(
-        (other[1] is triangles or np.array_equal(other[1], triangles))
-        and np.array_equal(other[0][:, :2], vertices[:, :2])
-        for other in others
-    )
+    first, *others = _plans(entry)
+    return all(other.has_plan_of(first) for other in others)
 
 
 def memory_text(size: float) -> str:

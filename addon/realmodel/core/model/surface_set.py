@@ -21,7 +21,8 @@ from ..settings.method_options import check_threads
 from ..structures.parts.parts import Structures, structures_of
 from ..structures.setup import make_structures
 from ..structures.shapes.reading import read_structures
-from ..surfaces.rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks, settle_methods
+from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
+from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
 from ..surfaces.surface_input import Reader, read_each
 
@@ -52,7 +53,7 @@ class SurfaceSet:
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
         interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
-        return [*interfaces, *self.structures.shapes][number]
+        return [*interfaces, *self.structures.shapes][number].arrays
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:

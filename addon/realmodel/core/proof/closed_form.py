@@ -13,11 +13,11 @@ import numpy as np
 
 from ..base.algebra import dot
 from ..base.exact import orient2d, orient3d
+from ..base.sheet import Sheet
 from ..base.triangles import distances_of_pairs, open_edges
 from ..base.work import native_module
 from ..settings.rules import RULES
 from ..surfaces.sides import FaultShape, RockFaults
-from ..surfaces.wrong_sides import Triangulation
 
 AIR = -1
 _BASEMENT = -2  # below the first surface: no block, but there to be cut
@@ -30,7 +30,7 @@ class BodyOfRock:
     """A closed body with triangles facing outward. after: the surface of the rock mass after which it came.
     block: its number; AIR for a void."""
 
-    shape: Triangulation
+    shape: Sheet
     after: int
     block: int
 
@@ -44,20 +44,18 @@ class ClosedForm:
     rules: Sequence[str]
     faults: RockFaults
     compartments: np.ndarray
-    sheets: Sequence[Sequence[Triangulation]]
+    sheets: Sequence[Sequence[Sheet]]
     blocks: Sequence[int]
     base_elevation: float | None = None
     bodies: Sequence[BodyOfRock] = ()
-    region: Triangulation | None = None
-    grids: dict[tuple[int, int], PlanGrid] = field(default_factory=dict, compare=False)
+    region: Sheet | None = None
+    grids: dict[Sheet, PlanGrid] = field(default_factory=dict, compare=False)
 
-    def _grid(self, shape: Triangulation) -> PlanGrid:
+    def _grid(self, shape: Sheet) -> PlanGrid:
         """The grid of a shape, cached."""
-        vertices, triangles = shape
-        key = id(vertices), id(triangles)
-        if key not in self.grids:
-            self.grids[key] = PlanGrid(vertices[triangles])
-        return self.grids[key]
+        if shape not in self.grids:
+            self.grids[shape] = PlanGrid(shape.corners)
+        return self.grids[shape]
 
     def compartments_of(self, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point lies in; -1 for none."""
@@ -85,14 +83,14 @@ class ClosedForm:
         return sides
 
     @staticmethod
-    def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
+    def _continued(shape: FaultShape, points: np.ndarray) -> Sheet:
         """A fault with its continuation beyond its border."""
         if not len(points):
-            return shape.vertices, shape.triangles
+            return Sheet(shape.vertices, shape.triangles)
         box = np.array([points.min(axis=0), points.max(axis=0)])
         beyond = native_module().structure_continuation(shape.native(), box).reshape(-1, 3)
         numbers = np.arange(len(shape.vertices), len(shape.vertices) + len(beyond)).reshape(-1, 3)
-        return np.concatenate([shape.vertices, beyond]), np.concatenate([shape.triangles, numbers])
+        return Sheet(np.concatenate([shape.vertices, beyond]), np.concatenate([shape.triangles, numbers]))
 
     def blocks_at(self, points: np.ndarray) -> np.ndarray:
         """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
@@ -100,7 +98,8 @@ class ClosedForm:
         where = self.compartments_of(points)
         blocks = np.full(len(points), AIR, np.int64)
         insides = [
-            winding_numbers(points, *body.shape, self._grid(body.shape)) % 2 != 0 for body in self.bodies
+            winding_numbers(points, *body.shape.arrays, self._grid(body.shape)) % 2 != 0
+            for body in self.bodies
         ]
         for number, sheets in enumerate(self.sheets):
             here = np.flatnonzero(where == number)
@@ -110,15 +109,12 @@ class ClosedForm:
             blocks[points[:, 2] < self.base_elevation] = AIR
         if self.region is not None:
             grid = self._grid(self.region)
-            blocks[np.isnan(heights_at(points[:, :2], *_flat(self.region), grid))] = AIR
+            blocks[np.isnan(heights_at(points[:, :2], *_flat(self.region).arrays, grid))] = AIR
         return blocks
 
-    def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
+    def _history(self, points: np.ndarray, sheets: Sequence[Sheet], insides) -> np.ndarray:
         """The block at points of one compartment."""
-        every = [
-            heights_at(points[:, :2], vertices, triangles, self._grid((vertices, triangles)))
-            for vertices, triangles in sheets
-        ]
+        every = [heights_at(points[:, :2], *sheet.arrays, self._grid(sheet)) for sheet in sheets]
         if self.region is None:  # the rock mass reaches as far as its surfaces
             reached = ~np.isnan(every).all(axis=0)
             insides = [inside & reached for inside in insides]
@@ -162,9 +158,9 @@ def history(
     return state
 
 
-def _flat(region: Triangulation) -> Triangulation:
+def _flat(region: Sheet) -> Sheet:
     vertices, triangles = region
-    return np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles
+    return Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
 
 
 def heights_at(

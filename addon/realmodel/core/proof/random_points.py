@@ -8,6 +8,7 @@ import time
 import numpy as np
 
 from ..base.errors import place_text
+from ..base.sheet import Sheet
 from ..base.triangles import crossing_pairs, distances_of_pairs
 from ..base.work import Work
 from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
@@ -29,7 +30,7 @@ def closed_forms(model) -> list[ClosedForm]:
         own = range(first, first + len(entry.surfaces))
         bodies = [
             BodyOfRock(
-                (body.vertices, body.triangles),
+                Sheet(body.vertices, body.triangles),
                 structures.times[n][rock],
                 number.get(count + len(structures.faults) + n, AIR),
             )

@@ -13,6 +13,7 @@ import numpy as np
 from ..base.algebra import dot, norm, principal_axes
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
+from ..base.sheet import Sheet
 from ..base.triangles import edges_of
 from ..base.work import Work
 from ..project.structure_entries import Fault, fault_item
@@ -178,7 +179,7 @@ class _Around:
         entry, shapes = self.entry, []
         surfaces = entry.surfaces[: self.last + 1]
         if entry.region is not None:
-            shapes = [level(triangulate_rings(entry.rock.rings()), 0.0)]
+            shapes = [level(Sheet(*triangulate_rings(entry.rock.rings())), 0.0)]
         covers = [] if None in surfaces else surfaces
 
         def over(points: np.ndarray) -> np.ndarray:

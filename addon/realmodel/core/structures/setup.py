@@ -12,10 +12,12 @@ from ..base.algebra import norm
 from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed
 from ..base.mapped_arrays import Keep, as_it_is
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project
 from ..project.structure_entries import Body, Fault
-from ..surfaces.rock_input import RockInput, mesh_rock, read_rocks
+from ..surfaces.prepare import mesh_rock, read_rocks
+from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each
@@ -130,8 +132,7 @@ def structured_inputs(
         with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
         if entry.region is not None:
-            nodes, triangles = entry.region
-            entry.region = keep(nodes), keep(triangles)
+            entry.region = Sheet(*map(keep, entry.region))
     structures = make_structures(
         work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False, keep=keep
     )

@@ -11,12 +11,14 @@ import numpy as np
 from ..base.algebra import dot
 from ..base.build_warning import BuildWarning
 from ..base.errors import number_list, place_text
+from ..base.sheet import Sheet
 from ..base.units import number_text
 from ..base.work import Work, native_module, on_threads
 from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
 from ..settings.methods import SURFACE_OPTIONS
 from ..settings.rules import RULES
+from .rock_input import RockInput
 from .wrong_sides import heights_at
 
 _MOST = 20_000  # points or nodes at most at which other surfaces are looked at
@@ -35,7 +37,7 @@ class Compartment:
 
 
 def doubtful_heights(
-    work: Work, entry, numbers: Iterable[int], threads: int, compartment: Compartment | None = None
+    work: Work, entry: RockInput, numbers: Iterable[int], threads: int, compartment: Compartment | None = None
 ) -> list[BuildWarning]:
     """Warnings about surfaces of a RockInput, by their numbers in ascending order, once all that are built
     have heights. compartment: that the heights are of, with one surface asked for, whose points are those in
@@ -54,7 +56,7 @@ def doubtful_heights(
 
 
 def _missed(
-    work: Work, entry, number: int, points: np.ndarray, threads: int, are_all: bool
+    work: Work, entry: RockInput, number: int, points: np.ndarray, threads: int, are_all: bool
 ) -> BuildWarning | None:
     """The warning about the point that a surface misses by most. are_all: the points are all that it has, and
     have the numbers that users know.
@@ -63,7 +65,7 @@ def _missed(
     the surfaces before and after it; or larger than a quarter of this, if it is an outlier: larger than any
     that as many normally distributed residuals with the deviation of the other ones would have.
     """
-    rock, shape = entry.rock, entry.surfaces[number]
+    rock, shape = entry.rock, entry.surface(number)
     z = heights_at(work, shape, points[:, :2], threads)
     known = np.isfinite(z)
     sizes = np.where(known, np.abs(points[:, 2] - z), 0.0)
@@ -88,10 +90,10 @@ def _missed(
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
 
 
-def _unresolved(work: Work, entry, shape, points: np.ndarray, threads: int) -> np.ndarray:
+def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray, threads: int) -> np.ndarray:
     """(N,) what the mesh may not show of a surface at points: half of its second difference over an edge,
     about twice the error of linear interpolation at a peak between nodes."""
-    nodes, triangles = entry.region
+    nodes, triangles = entry.planar_mesh()
     plan = np.ascontiguousarray(points[:, :2])
     # edges of equilateral triangles as large as the mean one
     edge = np.sqrt(float(np.prod(np.ptp(nodes, axis=0))) / len(triangles) * 4.0 / np.sqrt(3.0))
@@ -111,16 +113,17 @@ def _is_outlier(sizes: np.ndarray, largest: float) -> bool:
 
 
 def _distance_to_neighbors(
-    work: Work, entry, number: int, points: np.ndarray, z: np.ndarray, threads: int
+    work: Work, entry: RockInput, number: int, points: np.ndarray, z: np.ndarray, threads: int
 ) -> float | None:
     """The median of the vertical distances, at its points, to the surfaces before and after one, and to the
     base; None where there is none."""
     step = -(-len(points) // _MOST)
     plan, z = np.ascontiguousarray(points[::step, :2]), z[::step]
     found = [
-        heights_at(work, entry.surfaces[other], plan, threads)
+        heights_at(work, shape, plan, threads)
         for other in (number - 1, number + 1)
-        if 0 <= other < len(entry.surfaces) and entry.surfaces[other] is not None
+        for shape in entry.surfaces[max(0, other) : other + 1]
+        if shape is not None
     ]
     if number == 0 and entry.rock.base_elevation is not None:
         found.append(np.full(len(plan), entry.rock.base_elevation))
@@ -147,7 +150,7 @@ def _remedy(result) -> str:
 class _Reach:
     """What the surfaces of a rock mass cut, one after another, at nodes of its region, _MOST at most."""
 
-    def __init__(self, work: Work, entry, threads: int):
+    def __init__(self, work: Work, entry: RockInput, threads: int):
         self.work, self.entry, self.threads = work, entry, threads
         if entry.region is None:
             return
@@ -199,9 +202,9 @@ class _Reach:
         return BuildWarning(text, "extrapolation", rock.name, surface.name)
 
     def _heights(self, number: int) -> np.ndarray:
-        vertices, _ = shape = self.entry.surfaces[number]
+        vertices, _ = shape = self.entry.surface(number)
         own = vertices[:: self.step]
-        if len(vertices) == len(self.entry.region[0]) and np.array_equal(own[:, :2], self.plan):
+        if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(own[:, :2], self.plan):
             return np.array(own[:, 2])
         return heights_at(self.work, shape, self.plan, self.threads)
 

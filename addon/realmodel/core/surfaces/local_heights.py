@@ -22,7 +22,8 @@ from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_no
 from ..heights.run import elsewhere, few_points, runs_away
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
-from .surface_heights import named_surfaces, needed_surfaces, no_triangle_known, raised_above
+from .rock_input import named_surfaces
+from .surface_heights import needed_surfaces, no_triangle_known, raised_above
 
 Box = tuple[float, float, float, float]  # low x, low y, high x, high y
 _MOST = 1e150  # as data_points.cpp

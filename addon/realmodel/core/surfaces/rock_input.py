@@ -1,84 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Prepares a rock mass for the stack builder: reads its files, meshes its region, interpolates its
-surfaces."""
+"""A rock mass, read and interpolated: what the cells are made of."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, number_list
-from ..base.mapped_arrays import Keep, as_it_is
-from ..base.text import no_step
-from ..base.work import Work, run
+from ..base.errors import InputRefused
+from ..base.sheet import Sheet
 from ..heights import Interpolation
 from ..heights.draws import Draw
-from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
-from ..project.project import Project, Rock, rock_item
-from ..readers import Picks, read_boreholes
-from ..settings.mesh_sizes import AUTO
-from .distant_points import require_points_near
-from .doubtful_heights import doubtful_heights
-from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
+from ..project.project import Rock
+from ..settings.methods import SURFACE_OPTIONS
 from .rock_structure import RockStructure
-from .surface_heights import (
-    Triangulation,
-    give_heights,
-    interpolation_order,
-    named_surfaces,
-    settle_method,
-)
-from .surface_input import Reader, SurfaceInput, read_each
-from .wrong_order import points_above_younger
-from .wrong_sides import points_too_low
-
-_EDGE_LENGTH_KINDS = (
-    "edge_length",
-    "triangles",
-    "size",
-    "density",
-    "too_large",
-)  # kinds of errors of native meshing that the edge length causes
 
 
 @dataclass
 class RockInput:
     """A rock mass, read and interpolated.
 
-    rock: as given, with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles (T, 3)
-    int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None. interpolations:
+    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its
+    triangulation in plan, or None. interpolations:
     the result for each surface, None for ready meshes. file_faces: for each surface None, or the face of its
     file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
     number (`variance`, `distance`). warnings: of reading and interpolating. whole: for a stage, the entry
     with all surfaces: those of a stage may depend on younger ones. structure: the compartments of a rock mass
-    with faults, and their sheets; a surface is all its sheets. torn: by number, the error of a surface whose
-    triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization of an
-    ensemble; else None.
+    with faults, and their sheets; a surface is all its sheets. overlapping: by number, the error of a surface
+    whose triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization
+    of an ensemble; else None.
     """
 
     rock: Rock
-    surfaces: list[Triangulation | None]
-    region: Triangulation | None = None
+    surfaces: list[Sheet | None]
+    region: Sheet | None = None
     interpolations: list[Interpolation | None] = field(default_factory=list)
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
     whole: RockInput | None = None
     attributes: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
-    torn: dict[int, InputRefused] = field(default_factory=dict)
+    overlapping: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = None
 
-    def surface(self, number: int) -> Triangulation:
+    def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
         surface = self.surfaces[number]
         assert surface is not None
         return surface
 
-    def planar_mesh(self) -> Triangulation:
+    def planar_mesh(self) -> Sheet:
         """The triangulation of the region of a rock mass that has one and is meshed."""
         assert self.region is not None
         return self.region
@@ -97,7 +69,9 @@ class RockInput:
     def native(self) -> tuple:
         """The arguments of the native stack builder: surfaces, region, base elevation, rules."""
         rules = [surface.rule for surface in self.rock.surfaces]
-        return self.surfaces, self.region, self.rock.base_elevation, rules
+        surfaces = [self.surface(number).arrays for number in range(len(self.surfaces))]
+        region = None if self.region is None else self.region.arrays
+        return surfaces, region, self.rock.base_elevation, rules
 
     def stage(self, m: int) -> RockInput:
         """The entry with the surfaces up to m only; the region stays the same. A surface that depends on a
@@ -128,192 +102,13 @@ class RockInput:
             self,
             {number: each for number, each in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
-            self.torn,
+            self.overlapping,
         )
 
 
-def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
-    """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
-    in `surfaces` is None. reader: how surfaces are read."""
-    rocks, all_warnings, asked = [], [], []
-    for rock in project.rocks:
-        rock, warnings = _read_region(work, rock, project.units)
-        rock = _read_constraints(rock, project.units)
-        picks = _read_picks(rock, project.units)
-        warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
-        for surface in rock.surfaces:
-            met = picks.points.pop(surface.name, None) if surface.interpolated else None
-            asked.append(SurfaceInput.of(rock, surface, met, project.units))
-        rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes or rock.hole_picks))
-        all_warnings.append((warnings, _unnamed(rock, picks)))
-    found = dict(reader(work, asked))
-    inputs, first = [], 0
-    for rock, (warnings, of_picks) in zip(rocks, all_warnings, strict=True):
-        own = [found[number] for number in range(first, first + len(rock.surfaces))]
-        first += len(own)
-        warnings += [
-            BuildWarning(text, "points", rock.name, each.surface.name)
-            for each in own
-            for text in each.warnings
-        ]
-        warnings += of_picks
-        rock = replace(rock, surfaces=[each.surface for each in own])
-        require_points_near(rock, project.units)
-        shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        inputs.append(RockInput(rock, shapes, None, [None] * len(own), faces, warnings))
-    return inputs
-
-
-def _unnamed(rock: Rock, picks: Picks) -> list[BuildWarning]:
-    """The warning about picks of names that no surface has."""
-    if not picks.points:
-        return []
-    what = f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
-    return [BuildWarning(what, "points", rock.name)]
-
-
-def with_arrays(project: Project) -> Project:
-    """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
-    or of text and boreholes, which are read into arrays. Raises InputRefused."""
-
-    def is_plain(given) -> bool:
-        return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
-
-    def task(work: Work) -> list[Rock]:
-        rocks = []
-        for rock in project.rocks:
-            if not is_plain(rock.region):
-                rock, _ = _read_region(work, rock, project.units)
-            rock = _read_constraints(rock, project.units)
-            picks = _read_picks(rock, project.units)
-            surfaces = []
-            for surface in rock.surfaces:
-                met = picks.points.get(surface.name) if surface.interpolated else None
-                if met is not None:
-                    surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
-                surfaces.append(surface)
-            rocks.append(replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes))
-        return rocks
-
-    return replace(project, rocks=run(task))
-
-
-def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWarning]]:
-    if rock.region is None:
-        return rock, []
-    try:
-        region, holes, left_out = read_rings(rock.region, rock.holes, units, work.native)
-    except InputRefused as error:
-        file, line = rock.region_file, None
-        if file is None and rock.source is not None:
-            document = rock.source.document
-            path = ring_path(rock.region, getattr(error.__cause__, "items", ()))
-            file, line = document.file, document.line((*rock.source.path, *path))
-        raise error.within(rock_item(rock), file=file, line=line) from error
-    rock = replace(rock, region=region, holes=holes, shape_file=rock.region_file or rock.shape_file)
-    return rock, [BuildWarning(text, "left_out", rock.name) for text in left_out]
-
-
-def _read_constraints(rock: Rock, units: str) -> Rock:
-    """The rock mass with its constraints as arrays (N, 2), points with one row, and its mesh sizes read."""
-    key = "constraints"
-    try:
-        lines = read_constraints(rock.constraints, units)
-        key = "size"
-        return replace(rock, constraints=lines, size=read_sizes(rock.size, units))
-    except InputRefused as error:
-        file, line = (rock.source.document.file, rock.source.line(key)) if rock.source else (None, None)
-        raise error.within(rock_item(rock), file=file, line=line) from error
-
-
-def _read_picks(rock: Rock, units: str) -> Picks:
-    """The picks of the boreholes of a rock mass."""
-    if rock.boreholes is None:
-        return Picks()
-    try:
-        return read_boreholes(rock.boreholes, units)
-    except InputRefused as error:
-        raise error.within(rock_item(rock)) from error
-
-
-def mesh_rock(work: Work, entry: RockInput) -> None:
-    """Meshes the region of a rock mass, if it has one, as the present phase of the work."""
-    rock = entry.rock
-    if rock.region is None:
-        return
-    try:
-        if rock.interpolates:
-            options = MeshOptions(
-                rock.edge_length,
-                rock.mesher,
-                rock.triangles,
-                rock.size,
-                rock.constraint_lines(),
-                rock.constraint_points(),
-                _density_points(rock) if rock.edge_length == AUTO else None,
-            )
-            entry.region = mesh_rings(work, rock.rings(), options)
-        else:
-            entry.region = triangulate_rings(rock.rings())
-    except InputRefused as error:
-        kind = getattr(error.__cause__, "kind", "")
-        file, line = rock.edge_length_source() if kind in _EDGE_LENGTH_KINDS else rock.region_source()
-        if kind.startswith("constraint") and rock.source is not None:
-            file, line = rock.source.document.file, rock.source.line("constraints")
-        raise error.within(rock_item(rock), file=file, line=line) from error
-
-
-def _density_points(rock: Rock) -> np.ndarray:
-    """(P, 2) the points of all surfaces of a rock mass, which decide an automatic edge length."""
-    given = [surface.point_array()[:, :2] for surface in rock.surfaces if surface.interpolated]
-    return np.concatenate(given) if given else np.empty((0, 2))
-
-
-def settle_methods(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
-    """Replaces the method "auto" of surfaces by the one that it chooses. Progress goes from `start` to
-    `end`."""
-    waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"choosing the method of {entry.rock.surfaces[number].name}"):
-            settle_method(work, entry, number, threads)
-
-
-def interpolate_rock(
-    work: Work,
-    entry: RockInput,
-    start: float,
-    end: float,
-    threads: int,
-    stage: int | None = None,
-    keep: Keep = as_it_is,
-    flat: Collection[int] = (),
-) -> None:
-    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. Progress goes from
-    `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
-    attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
-    these, and looks for points on wrong sides, too."""
-    if keep is not as_it_is and entry.region is not None:
-        nodes, triangles = entry.region
-        entry.region = keep(nodes), keep(triangles)
-    waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
-    if flat:
-        nodes, triangles = entry.planar_mesh()
-        plan = keep(np.column_stack([nodes, np.zeros(len(nodes))])), triangles
-        for number in flat:
-            entry.surfaces[number] = plan
-    if not flat and entry.draws is None:
-        entry.warnings += points_above_younger(entry.rock, waiting)
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
-            give_heights(work, entry, number, threads)
-        if keep is not as_it_is:
-            vertices, triangles = entry.surface(number)
-            entry.surfaces[number] = keep(vertices), keep(triangles)
-            entry.interpolations[number] = None
-            del entry.attributes[number]
-    if not flat:
-        entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
-        if keep is as_it_is:  # tiles have no such warnings
-            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)
+def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
+    """The surfaces of the rock mass that the options of one of them name: numbers by names."""
+    numbers = {surface.name: n for n, surface in enumerate(rock.surfaces)}
+    options = rock.surfaces[number].options
+    names = [options[option] for option in SURFACE_OPTIONS if isinstance(options.get(option), str)]
+    return {name: numbers[name] for name in names}

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
+from ..base.sheet import Sheet
 from .sides import RockFaults
-from .wrong_sides import Triangulation
 
 
 @dataclass
@@ -23,12 +23,12 @@ class RockStructure:
     faults: RockFaults
     compartments: np.ndarray
     names: list[str]
-    sheets: list[list[Triangulation | None]]
+    sheets: list[list[Sheet | None]]
     warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
     few: list[int] = field(default_factory=list)
     points: dict[int, np.ndarray] = field(default_factory=dict)
 
-    def sheet(self, compartment: int, surface: int) -> Triangulation:
+    def sheet(self, compartment: int, surface: int) -> Sheet:
         """The sheet of a surface in a compartment, once it is made."""
         sheet = self.sheets[compartment][surface]
         assert sheet is not None
@@ -38,11 +38,11 @@ class RockStructure:
         """Whether a surface has all its sheets; no for one younger than the stage."""
         return all(sheets[surface] is not None for sheets in self.sheets)
 
-    def distinct(self, surface: int) -> list[Triangulation]:
+    def distinct(self, surface: int) -> list[Sheet]:
         """The different sheets of a surface that is made, in the order of the compartments that they first
         serve."""
         found = (self.sheet(compartment, surface) for compartment in range(len(self.sheets)))
-        return list({id(sheet): sheet for sheet in found}.values())
+        return list(dict.fromkeys(found))
 
     def warn(self, compartments: list[int], warning: BuildWarning) -> None:
         """Adds a warning about some compartments, unless it is there already."""
@@ -61,12 +61,12 @@ class RockStructure:
         )
 
 
-def joined(sheets: list[Triangulation]) -> Triangulation:
+def joined(sheets: list[Sheet]) -> Sheet:
     """Sheets as one triangulation: their vertices one after another, and their triangles."""
     if len(sheets) == 1:
         return sheets[0]
     begin = np.cumsum([0, *(len(vertices) for vertices, _ in sheets)])
-    return (
+    return Sheet(
         np.concatenate([vertices for vertices, _ in sheets]),
         np.concatenate(
             [triangles + first for (_, triangles), first in zip(sheets, begin, strict=False)]

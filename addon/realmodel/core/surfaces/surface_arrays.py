@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from .rock_input import RockInput
 
 
@@ -23,10 +24,10 @@ class SurfaceArrays:
     triangle_offsets: np.ndarray
 
     @classmethod
-    def of(cls, shapes: Iterable[tuple[np.ndarray, np.ndarray]]) -> SurfaceArrays:
+    def of(cls, shapes: Iterable[Sheet]) -> SurfaceArrays:
         """Of vertices and triangles of each surface."""
         shapes = list(shapes)
-        vertices, triangles = [v for v, _ in shapes], [t for _, t in shapes]
+        vertices, triangles = [each.vertices for each in shapes], [each.triangles for each in shapes]
         return cls(
             np.concatenate([np.empty((0, 3)), *vertices]),
             np.concatenate([np.empty((0, 3), np.int32), *triangles]),
@@ -53,7 +54,7 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     for entry in inputs:
         for number in range(len(entry.surfaces)):
             if entry.structure is None:
-                sizes = [len(entry.surface(number)[1])]
+                sizes = [len(entry.surface(number).triangles)]
             else:
                 sizes = [len(own) for _, own in entry.structure.distinct(number)]
             found.append(np.repeat(np.arange(len(sizes)), sizes))

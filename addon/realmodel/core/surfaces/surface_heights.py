@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module, on_threads
 from ..heights import Interpolation, chosen, heights
 from ..heights.interpolation import Task
@@ -18,8 +19,9 @@ from ..heights.on_mesh import within_bounds
 from ..heights.run import elsewhere
 from ..heights.surface_reference import heights_of
 from ..project.project import Rock, surface_item
-from ..settings.methods import SURFACE_OPTIONS, checked_options
-from .wrong_sides import Triangulation, heights_at, listed
+from ..settings.methods import checked_options
+from .rock_input import RockInput, named_surfaces
+from .wrong_sides import heights_at, listed
 
 
 class Trend(NamedTuple):
@@ -27,7 +29,7 @@ class Trend(NamedTuple):
     nodes of the planar mesh, NaN where it has none. interpolation, attributes: of the points that it was made
     from. method, options: by which what points differ from it is interpolated."""
 
-    sheet: Triangulation
+    sheet: Sheet
     z: np.ndarray
     interpolation: Interpolation
     attributes: dict[str, np.ndarray]
@@ -40,14 +42,6 @@ def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     used = np.zeros(len(vertices), bool)
     used[triangles] = True
     return used
-
-
-def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
-    """The surfaces of the rock mass that the options of one of them name: numbers by names."""
-    numbers = {surface.name: n for n, surface in enumerate(rock.surfaces)}
-    options = rock.surfaces[number].options
-    names = [options[option] for option in SURFACE_OPTIONS if isinstance(options.get(option), str)]
-    return {name: numbers[name] for name in names}
 
 
 def needed_surfaces(rock: Rock, number: int) -> list[int]:
@@ -76,7 +70,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
 
 
 def _vertex_attributes(
-    work: Work, points: np.ndarray, result: Interpolation, region: Triangulation, threads: int
+    work: Work, points: np.ndarray, result: Interpolation, region: Sheet, threads: int
 ) -> dict:
     """Attributes (V,) of the vertices that `where_known` keeps, for points interpolated on a region's mesh:
     `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
@@ -93,11 +87,11 @@ def _vertex_attributes(
     return {"variance": variance[kept], "distance": distance[kept]}
 
 
-def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | None = None) -> None:
+def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend: Trend | None = None) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
     keeps it above the older one where it has a minimum thickness."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
-    nodes, triangles = entry.region
+    nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
@@ -108,10 +102,10 @@ def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | No
             task = Task(work, surface.points, nodes, settings, threads, triangles, surfaces=others)
             result = give(method, task)
         shape = where_known(nodes, triangles, result.z)
-        if trend is not None and not len(surface.points):
+        if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
         else:
-            attributes = _vertex_attributes(work, surface.points, result, entry.region, threads)
+            attributes = _vertex_attributes(work, surface.point_array(), result, region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
             warnings += _older_points_above(work, rock, number, shape, threads)
@@ -126,18 +120,19 @@ def give_heights(work: Work, entry, number: int, threads: int, trend: Trend | No
     entry.warnings += warnings
 
 
-def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, threads: int) -> Interpolation:
+def _on_trend(
+    work: Work, entry: RockInput, number: int, trend: Trend, others: dict, threads: int
+) -> Interpolation:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
-    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.region
-    points, mis_ties = without_mis_ties(surface.points)
+    surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
+    points, mis_ties = without_mis_ties(surface.point_array())
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2], threads)
     away = away[np.isfinite(away[:, 2])]
     result = replace(trend.interpolation, z=trend.z)
     if len(away):
-        give = heights
-        if entry.draws is not None:  # the trend is drawn, too: nothing is the same in the next realization
-            give = replace(entry.draws[number], known={}).heights
+        # of an ensemble the trend is drawn, too: nothing is the same in the next realization
+        give = heights if entry.draws is None else replace(entry.draws[number], known={}).heights
         settings = checked_options(trend.method, trend.options)
         result = give(trend.method, Task(work, away, nodes, settings, threads, triangles))
         result = replace(result, z=trend.z + result.z)
@@ -151,7 +146,7 @@ def _on_trend(work: Work, entry, number: int, trend: Trend, others: dict, thread
 
 
 def _older_points_above(
-    work: Work, rock: Rock, number: int, shape: Triangulation, threads: int
+    work: Work, rock: Rock, number: int, shape: Sheet, threads: int
 ) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
     points = rock.surfaces[number - 1].point_array()
@@ -161,7 +156,7 @@ def _older_points_above(
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
 
 
-def settle_method(work: Work, entry, number: int, threads: int) -> None:
+def settle_method(work: Work, entry: RockInput, number: int, threads: int) -> None:
     """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     method, settings = surface.method_options()
@@ -175,17 +170,17 @@ def settle_method(work: Work, entry, number: int, threads: int) -> None:
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 
-def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
+def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Sheet:
     """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
     known = np.isfinite(z)
     if known.all():
-        return np.column_stack([nodes, z]), triangles
+        return Sheet(np.column_stack([nodes, z]), triangles)
     kept = triangles[known[triangles].all(axis=1)]
     if not len(kept):
         raise no_triangle_known()
     used = used_vertices(nodes, kept)
     number = np.cumsum(used, dtype=np.int32) - 1
-    return np.column_stack([nodes[used], z[used]]), number[kept]
+    return Sheet(np.column_stack([nodes[used], z[used]]), number[kept])
 
 
 def no_triangle_known() -> InputRefused:
@@ -195,27 +190,26 @@ def no_triangle_known() -> InputRefused:
     )
 
 
-def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
+def _above_older(
+    work: Work, entry: RockInput, number: int, shape: Sheet, threads: int
+) -> tuple[Sheet, list[BuildWarning]]:
     """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
-    surface = rock.surfaces[number]
-    vertices, triangles = shape
-    older_vertices, _ = entry.surfaces[number - 1]
-    if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
-        least = older_vertices[:, 2] + surface.minimum_thickness
+    thickness = rock.surfaces[number].minimum_thickness
+    assert thickness is not None
+    (vertices, triangles), older = shape, entry.surface(number - 1)
+    if np.array_equal(older.vertices[:, :2], vertices[:, :2]):
+        least = older.vertices[:, 2] + thickness
     else:
-        least = heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
-        least += surface.minimum_thickness
+        least = heights_at(work, older, vertices[:, :2], threads) + thickness
     raised, lift = raise_to(vertices[:, 2], least)
     if raised is None:
         return shape, []
     worst = int(lift.argmax())
     place = tuple(vertices[worst, :2].tolist())
-    warning = raised_above(
-        rock, number, int((lift > 0).sum()), len(vertices), surface.minimum_thickness, lift[worst], place
-    )
-    return (np.column_stack([vertices[:, :2], raised]), triangles), [warning]
+    warning = raised_above(rock, number, int((lift > 0).sum()), len(vertices), thickness, lift[worst], place)
+    return Sheet(np.column_stack([vertices[:, :2], raised]), triangles), [warning]
 
 
 def raise_to(z: np.ndarray, least: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:

@@ -12,13 +12,13 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import Gather, MappedArrays, in_memory, in_pieces
+from ..base.sheet import Sheet
 from ..base.text import Step, no_step
 from ..base.triangles import checked_triangulation
 from ..base.work import Work
 from ..heights.interpolate import checked_points
 from ..project.project import Rock, Surface, surface_item
 from ..readers import read_mesh, read_point_file
-from .surface_heights import Triangulation
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ReadSurface:
     sentences."""
 
     surface: Surface
-    shape: Triangulation | None
+    shape: Sheet | None
     faces: np.ndarray | None
     warnings: list[str]
 
@@ -41,7 +41,7 @@ class ReadSurface:
             return replace(self, surface=replace(surface, points=change(surface.points)), faces=faces)
         vertices, triangles = map(change, shape)
         surface = replace(surface, vertices=vertices, triangles=triangles)
-        return replace(self, surface=surface, shape=(vertices, triangles), faces=faces)
+        return replace(self, surface=surface, shape=Sheet(vertices, triangles), faces=faces)
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class SurfaceInput:
         except InputRefused as error:
             raise error.within(surface_item(Rock(self.rock, []), surface)) from error
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
-        return ReadSurface(surface, (vertices, triangles), faces, warnings)
+        return ReadSurface(surface, Sheet(vertices, triangles), faces, warnings)
 
     def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
         surface = self.surface

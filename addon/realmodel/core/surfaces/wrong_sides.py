@@ -10,20 +10,22 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module, on_threads
 from ..project.project import Rock
 from ..settings.rules import RULES
+from .rock_input import RockInput
 
-Triangulation = tuple[np.ndarray, np.ndarray]
 
-
-def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
+def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
     surface_heights = native_module().surface_heights
-    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), execution=on_threads(threads))
+    return work.native(
+        surface_heights, *shape.arrays, np.ascontiguousarray(plan), execution=on_threads(threads)
+    )
 
 
-def points_too_low(work: Work, entry, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
+def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
     where heights of all older ones are known. Each older surface is asked once for the points of all.
 
@@ -50,7 +52,7 @@ def kept_off(rock: Rock) -> frozenset[int]:
 def below_older(
     work: Work,
     rock: Rock,
-    shapes: list[Triangulation | None],
+    shapes: list[Sheet | None],
     points: dict[int, np.ndarray],
     off: Collection[int],
     threads: int,

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from ..base.work import Work
 from ..cells.assembly import assemble
 from ..cells.blocks import Block
 from ..cells.built_cells import BuiltCells, CellParts
 from ..cells.cell_complex import CellComplex
-from ..cells.joining import acts, body_block, build_joined
+from ..cells.joining import blocks_divided, body_block, build_joined
 from ..cells.labels import compartments
 from ..cells.model_data import ModelData
 from ..model.model import Model
@@ -135,7 +136,7 @@ def _labels(built: BuiltCells, whole: Whole, window: Window, mine: np.ndarray):
         window.part[built.parts.part][mine],
         own[built.parts.own_block][mine],
         np.append(np.repeat(rocks, counts), np.repeat(rocks, len(structures))),
-        acts(inputs, structures),
+        blocks_divided(inputs, structures),
     )
     return compartments(inputs, as_whole, structures)
 
@@ -152,7 +153,7 @@ def _model(frame: Frame, whole: Whole, window: Window, own: CellComplex, labels)
         )
         for n, block in enumerate(whole.blocks)
     ]
-    nothing = np.empty((0, 3)), np.empty((0, 3), np.int32)
+    nothing = Sheet(np.empty((0, 3)), np.empty((0, 3), np.int32))
     ends = [nothing] * len(whole.structures)
     for n, shape in zip(window.numbers.tolist(), window.structures.shapes, strict=True):
         ends[n] = shape

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.mapped_arrays import Keep, as_it_is
+from ..base.sheet import Sheet
 from ..base.triangles import extents
 from ..base.work import Work, native_module, on_threads
 from ..cells.joining import beyond_all
@@ -19,7 +20,7 @@ from ..cells.reach import Reach
 from ..project.structure_entries import Body, Fault
 from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
-from ..surfaces.rock_structure import RockStructure, Triangulation, joined
+from ..surfaces.rock_structure import RockStructure, joined
 from ..surfaces.sides import RockFaults, fault_sides
 from .grid import TileGrid, tile_grid, triangles_by_tile
 from .tile_model import without_shape
@@ -33,8 +34,7 @@ _BESIDE = 0.05  # of the extent of the rock around a tile: a structure so near c
 class Window:
     """inputs, structures, reach: as build_joined takes them. Each triangle that meets `safe` is there with
     all that lies over and under it, so a cell in this box is the same as in the whole. numbers: (S,) of the
-    structures in the whole; part: (P,) a part of the whole for each of theirs. sheets: each with the numbers
-    of its triangles in the whole."""
+    structures in the whole; part: (P,) a part of the whole for each of theirs."""
 
     safe: Box
     inputs: list[RockInput]
@@ -42,11 +42,6 @@ class Window:
     reach: Reach
     numbers: np.ndarray
     part: np.ndarray
-    sheets: list[tuple[Triangulation, np.ndarray]]
-
-    def number_sheets(self) -> None:
-        """Sets the numbers of sheets in the process that builds: there the sheets are other objects."""
-        self.reach.numbers = {id(sheet): numbers for sheet, numbers in self.sheets}
 
 
 class _Plan:
@@ -59,7 +54,9 @@ class _Plan:
 
     def sort(self, grid: TileGrid) -> None:
         """Finds the triangles that meet each tile, so that those near a tile are found quickly."""
-        pieces = sorted(triangles_by_tile((self.vertices, self.triangles), grid), key=lambda piece: piece[0])
+        pieces = sorted(
+            triangles_by_tile(Sheet(self.vertices, self.triangles), grid), key=lambda piece: piece[0]
+        )
         count = np.zeros((grid.columns, grid.rows), np.int64)
         for name, numbers in pieces:
             count[name] += len(numbers)
@@ -113,27 +110,25 @@ class Windows:
         self._sides: dict[int, np.ndarray] = {}  # of faults, at the middles of all tiles
 
     def _find_plans(self) -> None:
-        self._plans: dict[int, list[_Plan]] = {}
+        self._all: list[_Plan] = []
+        self._plan_of = {sheet: self._known_plan(sheet) for sheet in self._sheets()}
         regions = [entry.region for entry in self.inputs]
-        self._regions = [None if region is None else _Plan(*region, self._keep) for region in regions]
-        self._plan_of = {id(sheet): self._known_plan(sheet) for sheet in self._sheets()}
-        self._all = [plans for of in self._plans.values() for plans in of]
+        self._regions = [None if region is None else _Plan(*region.arrays, self._keep) for region in regions]
         self._all += [region for region in self._regions if region is not None]
 
-    def _sheets(self) -> Iterator[Triangulation]:
+    def _sheets(self) -> Iterator[Sheet]:
         for entry in self.inputs:
             for number in range(len(entry.surfaces)):
                 yield from entry.divided().distinct(number)
 
-    def _known_plan(self, sheet: Triangulation) -> _Plan:
+    def _known_plan(self, sheet: Sheet) -> _Plan:
         """The plan of a sheet; sheets of one surface differ only in heights."""
         vertices, triangles = sheet
-        known = self._plans.setdefault(id(triangles), [])
-        for plan in known:
-            if np.array_equal(vertices[:, :2], plan.vertices):
+        for plan in self._all:
+            if triangles is plan.triangles and np.array_equal(vertices[:, :2], plan.vertices):
                 return plan
-        known.append(_Plan(vertices, triangles, self._keep))
-        return known[-1]
+        self._all.append(_Plan(vertices, triangles, self._keep))
+        return self._all[-1]
 
     def divide(self, tile_size: tuple[float, float]) -> TileGrid:
         """The grid of the tiles; to be called before any window is asked for. Raises UsageError."""
@@ -179,16 +174,11 @@ class Windows:
         around = self._around(taken)
         present, fixed = self._structures_near(work, tile, around)
         structures, part = self._few(present, fixed, around)
-        sheets: list[tuple[Triangulation, np.ndarray]] = []
-        of_plan: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
-        inputs = [
-            self._rock(rock, taken, present, fixed, sheets, of_plan) for rock in range(len(self.inputs))
-        ]
+        of_plan: dict[_Plan, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+        inputs = [self._rock(rock, taken, present, fixed, of_plan) for rock in range(len(self.inputs))]
         faults = [number for number in present if number < len(self.structures.faults)]
         reach = self._reach.within(structures, faults, around)
-        window = Window(safe, inputs, structures, reach, np.array(present, np.int32), part, sheets)
-        window.number_sheets()
-        return window
+        return Window(safe, inputs, structures, reach, np.array(present, np.int32), part)
 
     def _structures_near(self, work: Work, tile: tuple[int, int], box: Box) -> tuple[list[int], np.ndarray]:
         """The numbers of the structures that come into a box around a tile, and (S,) int8 the side on which
@@ -272,18 +262,15 @@ class Windows:
             return self._continued[number]
         return np.ascontiguousarray(corners[near]), np.ascontiguousarray(is_continuation[near]), kept
 
-    def _rock(
-        self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, numbers: list, of_plan: dict
-    ) -> RockInput:
+    def _rock(self, rock: int, taken: Box, present: list[int], fixed: np.ndarray, of_plan: dict) -> RockInput:
         entry = self.inputs[rock]
-        made: dict[int, Triangulation] = {}
+        made: dict[Sheet, Sheet] = {}
 
-        def sheet_of(sheet: Triangulation) -> Triangulation:
-            if id(sheet) not in made:
-                own, used, triangles = self._part(self._plan_of[id(sheet)], taken, of_plan)
-                made[id(sheet)] = np.ascontiguousarray(sheet[0][used]), triangles
-                numbers.append((made[id(sheet)], own))
-            return made[id(sheet)]
+        def sheet_of(sheet: Sheet) -> Sheet:
+            if sheet not in made:
+                own, used, triangles = self._part(self._plan_of[sheet], taken, of_plan)
+                made[sheet] = Sheet(np.ascontiguousarray(sheet.vertices[used]), triangles, own)
+            return made[sheet]
 
         structure = entry.divided()
         at = [n for n, number in enumerate(structure.faults.numbers) if number in present]
@@ -292,7 +279,7 @@ class Windows:
         kept = structure.compartments[np.ix_(rows, np.array(at, np.int64))]
         compartments, first = np.unique(kept, axis=0, return_index=True)
         of = rows[first].tolist()
-        sheets: list[list[Triangulation | None]] = [
+        sheets: list[list[Sheet | None]] = [
             [sheet_of(structure.sheet(c, k)) for k in range(len(entry.surfaces))] for c in of
         ]
         found = RockStructure(
@@ -309,7 +296,7 @@ class Windows:
         region, plan = None, self._regions[rock]
         if plan is not None:
             _, used, triangles = self._part(plan, taken, of_plan)
-            region = np.ascontiguousarray(plan.vertices[used]), triangles
+            region = Sheet(np.ascontiguousarray(plan.vertices[used]), triangles)
         surfaces = [joined(found.distinct(k)) for k in range(len(entry.surfaces))]
         stub = without_shape(entry.rock)
         for surface, (vertices, triangles) in zip(stub.surfaces, surfaces, strict=True):
@@ -321,17 +308,17 @@ class Windows:
             [None] * len(surfaces),
             [None] * len(surfaces),
             structure=found,
-            torn=entry.torn,
+            overlapping=entry.overlapping,
         )
 
     @staticmethod
     def _part(plan: _Plan, taken: Box, of_plan: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """For a plan: the numbers of triangles in a box, of their vertices, and these triangles."""
-        if id(plan) not in of_plan:
+        if plan not in of_plan:
             own = plan.meeting(taken)
             used, corners = np.unique(plan.triangles[own], return_inverse=True)
-            of_plan[id(plan)] = own, used, corners.reshape(-1, 3).astype(np.int32)
-        return of_plan[id(plan)]
+            of_plan[plan] = own, used, corners.reshape(-1, 3).astype(np.int32)
+        return of_plan[plan]
 
 
 def _are_any_close(work: Work, plans: list[np.ndarray], threads: int) -> bool:
@@ -351,25 +338,27 @@ def _snapped(
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
     and the warning about that, or None."""
     distinct = [
-        {id(sheet): sheet for k in range(len(entry.surfaces)) for sheet in entry.divided().distinct(k)}
+        [sheet for k in range(len(entry.surfaces)) for sheet in entry.divided().distinct(k)]
         for entry in inputs
     ]
     rocks: list[tuple] = [
-        (list(sheets.values()), entry.region, None, [])
+        ([sheet.arrays for sheet in sheets], None if entry.region is None else entry.region.arrays, None, [])
         for sheets, entry in zip(distinct, inputs, strict=True)
     ]
     joins = work.native(native_module().find_joins, rocks, borders=False, execution=on_threads(threads))
     if joins is None:
         return inputs, None
 
-    def snapped(mesh: Triangulation) -> Triangulation:
-        return keep(joins.snapped(mesh[0])), mesh[1]
+    def snapped(mesh: Sheet) -> Sheet:
+        return Sheet(keep(joins.snapped(mesh.vertices)), mesh.triangles)
 
     found = []
     for entry, sheets in zip(inputs, distinct, strict=True):
-        new = {key: snapped(sheet) for key, sheet in sheets.items()}
+        new = {sheet: snapped(sheet) for sheet in sheets}
         structure = entry.divided()
-        of: list[list[Triangulation | None]] = [[new[id(sheet)] for sheet in own] for own in structure.sheets]
+        of: list[list[Sheet | None]] = [
+            [new[structure.sheet(c, k)] for k in range(len(own))] for c, own in enumerate(structure.sheets)
+        ]
         region = None if entry.region is None else snapped(entry.region)
         found.append(replace(entry, region=region, structure=replace(structure, sheets=of)))
     return found, joins.text

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.errors import UsageError
 from ..base.mapped_arrays import in_pieces
-from ..surfaces.surface_heights import Triangulation
+from ..base.sheet import Sheet
 
 _SEARCHED = 1 / 16  # of a tile's side: how far a line may be from where it was asked for
 _IN_GAP = 0.3819660112501051  # the golden section: far from all simple fractions
@@ -127,8 +127,12 @@ class Part:
     numbers: np.ndarray
     of_vertices: np.ndarray
 
+    @property
+    def sheet(self) -> Sheet:
+        return Sheet(self.vertices, self.triangles)
 
-def triangles_by_tile(mesh: Triangulation, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
+
+def triangles_by_tile(mesh: Sheet, grid: TileGrid) -> Iterator[tuple[tuple[int, int], np.ndarray]]:
     """Piece by piece the numbers, ascending, of the triangles whose boxes meet a tile."""
     vertices, triangles = map(np.asarray, mesh)  # a memmap would be slower
     for begin in range(0, len(triangles), _TRIANGLES_AT_ONCE):
@@ -177,26 +181,26 @@ def _grouped(
         yield divmod(tile, grid.rows), which
 
 
-def part_of(mesh: Triangulation, numbers: np.ndarray) -> Part:
+def part_of(mesh: Sheet, numbers: np.ndarray) -> Part:
     """Some triangles of a mesh, (T,) int32."""
     vertices, triangles = mesh
     used, corners = np.unique(triangles[numbers], return_inverse=True)
     return Part(np.ascontiguousarray(vertices[used]), corners.reshape(-1, 3).astype(np.int32), numbers, used)
 
 
-def clipped_region(region: Triangulation, box: tuple[float, float, float, float]) -> Triangulation:
+def clipped_region(region: Sheet, box: tuple[float, float, float, float]) -> Sheet:
     """A triangulation ((V, 2), (T, 3)) of what of a region lies in a box; where an edge meets the box is
     rounded, equally for both triangles at it. For questions about positions, not for building."""
     low_x, low_y, high_x, high_y = box
     vertices: dict[tuple[float, float], int] = {}
     triangles = []
-    for corners in region[0][region[1]].tolist():
+    for corners in region.corners.tolist():
         polygon = [tuple(corner) for corner in corners]
         for axis, line, sign in ((0, low_x, 1), (0, high_x, -1), (1, low_y, 1), (1, high_y, -1)):
             polygon = _half(polygon, axis, line, sign)
         numbers = [vertices.setdefault(corner, len(vertices)) for corner in polygon]
         triangles += [(numbers[0], numbers[k], numbers[k + 1]) for k in range(1, len(numbers) - 1)]
-    return (
+    return Sheet(
         np.array(list(vertices), np.float64).reshape(-1, 2),
         np.array(triangles, np.int32).reshape(-1, 3),
     )
@@ -217,8 +221,8 @@ def _half(polygon: list, axis: int, line: float, sign: int) -> list:
     return kept
 
 
-def box_triangles(box: tuple[float, float, float, float]) -> Triangulation:
+def box_triangles(box: tuple[float, float, float, float]) -> Sheet:
     """A box as two triangles."""
     low_x, low_y, high_x, high_y = box
     corners = [[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]]
-    return np.array(corners), np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    return Sheet(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]], np.int32))

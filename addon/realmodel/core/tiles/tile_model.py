@@ -16,6 +16,7 @@ from ..base.atomic import Outputs, explained
 from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module, on_threads, run
 from ..cells.assembly import assemble
 from ..cells.blocks import Block
@@ -29,7 +30,7 @@ from ..project.structure_entries import Body, Fault
 from ..surfaces.local_heights import LocalHeights, PartHeights
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
-from ..surfaces.surface_heights import Triangulation, raise_to
+from ..surfaces.surface_heights import raise_to
 from ..surfaces.wrong_sides import WrongPoints, below_older, heights_at
 from .grid import (
     Part,
@@ -95,7 +96,7 @@ def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
 
 
 def write_parts(
-    mesh: Triangulation, rock: int, surface: int | str, grid: TileGrid, folder_of: Callable[[Name], Path]
+    mesh: Sheet, rock: int, surface: int | str, grid: TileGrid, folder_of: Callable[[Name], Path]
 ) -> dict[Name, Box]:
     """Writes what each tile needs of a surface, REGION or PLAN of a rock mass: a file for each tile that it
     meets. folder_of: of a tile. Returns these tiles, and the box around the vertices of each.
@@ -265,7 +266,7 @@ def _interpolated(
         found = replace(found, alone=int(beyond.sum()))
     above = None
     if local.least is not None:
-        shape = np.column_stack([nodes, z]), plan.triangles
+        shape = Sheet(np.column_stack([nodes, z]), plan.triangles)
         above = _older_above(work, shape, folder / _part(r, f"{k - 1}-own"), k, threads)
         raised, lift = raise_to(z, others[k - 1] + local.least)
         lift = np.where(own, lift, 0.0)
@@ -286,13 +287,11 @@ def _interpolated(
 def _where_known(part: Part) -> Part:
     """The triangles all of whose vertices have a height."""
     known = np.isfinite(part.vertices[:, 2])[part.triangles].all(axis=1)
-    rest = part_of((part.vertices, part.triangles), np.flatnonzero(known))
+    rest = part_of(part.sheet, np.flatnonzero(known))
     return replace(rest, numbers=part.numbers[known], of_vertices=part.of_vertices[rest.of_vertices])
 
 
-def _older_above(
-    work: Work, shape: Triangulation, file: Path, number: int, threads: int
-) -> WrongPoints | None:
+def _older_above(work: Work, shape: Sheet, file: Path, number: int, threads: int) -> WrongPoints | None:
     """The points of the older surface, in a file if there are some, above one that is to keep off it."""
     if not file.exists():
         return None
@@ -311,7 +310,7 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
             if (r, k) in frame.sought and path.exists():
                 own[k] = read_mapped(path)
         shapes = [parts[r, k] for k in range(len(rock.surfaces))]
-        shapes = [(part.vertices, part.triangles) if len(part.triangles) else None for part in shapes]
+        shapes = [part.sheet if len(part.triangles) else None for part in shapes]
         points = {k: arrays["points"] for k, arrays in own.items()}
         below = below_older(work, rock, shapes, points, frame.off[r] if own else (), threads)
         for k, (beyond, others) in below.items():
@@ -342,7 +341,7 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]
         region, seen = None, box_triangles(box)
         if frame.clips[r]:
-            region = (parts[r, REGION].vertices[:, :2].copy(), parts[r, REGION].triangles)
+            region = Sheet(parts[r, REGION].vertices[:, :2].copy(), parts[r, REGION].triangles)
             seen = clipped_region(region, box)
         given = [
             replace(surface, vertices=part.vertices, triangles=part.triangles)
@@ -350,7 +349,7 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
         ]
         entry = RockInput(
             replace(rock, surfaces=given),
-            [(part.vertices, part.triangles) for part in surfaces],
+            [part.sheet for part in surfaces],
             region,
             [None] * len(surfaces),
             [None] * len(surfaces),
@@ -448,17 +447,19 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     )
     inputs, number = [], 0
     for r, rock in enumerate(project.rocks):
-        shapes = [model.surface(number + k) for k in range(len(rock.surfaces))]
+        shapes = [Sheet(*model.surface(number + k)) for k in range(len(rock.surfaces))]
         number += len(shapes)
         surfaces = [
-            replace(surface, vertices=shape[0], triangles=shape[1])
+            replace(surface, vertices=shape.vertices, triangles=shape.triangles)
             for surface, shape in zip(rock.surfaces, shapes, strict=True)
         ]
         inputs.append(
             RockInput(
                 replace(rock, surfaces=surfaces),
                 list(shapes),
-                None if model.is_cut else (arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
+                None
+                if model.is_cut
+                else Sheet(arrays[f"region_vertices_{r}"], arrays[f"region_triangles_{r}"]),
                 [None] * len(shapes),
                 [None] * len(shapes),
             )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.sheet import Sheet
 from ...settings.rules import RULES
-from ...surfaces.rock_structure import Triangulation
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
@@ -24,7 +24,7 @@ class Stack:
     ascending, before which all that is there becomes air; of those before the last of them stays what they
     protect, and, of a rock mass without a base elevation, what is below the oldest of them."""
 
-    sheets: list[Triangulation]
+    sheets: list[Sheet]
     rules: list[str]
     base_elevation: float | None
     blocks: list[int]
@@ -49,7 +49,7 @@ class Stack:
 _EMPTY = Stack([], [], None, [], [])
 
 
-def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | None, first: int) -> Stack:
+def plain_stack(sheets: list[Sheet], rules: list[str], base: float | None, first: int) -> Stack:
     """first: the number of the oldest surface in the project, which blocks are numbered by."""
     numbers = list(range(len(sheets)))
     blocks = [first + k for k in numbers]
@@ -63,8 +63,8 @@ def inside_body(
     after: int,
     block: int,
     ends: tuple[float, float],
-    plans: list[Triangulation],
-    covered: list[Triangulation],
+    plans: list[Sheet],
+    covered: list[Sheet],
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
     body, block `block`, or NOTHING in a void. ends: heights below and above all. plans: triangulations that
@@ -73,7 +73,7 @@ def inside_body(
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
-        base = float(stack.sheets[stack.surfaces.index(FLOOR)][0][0, 2])
+        base = float(stack.sheets[stack.surfaces.index(FLOOR)].vertices[0, 2])
     if block == NOTHING:
         stack = stack.without([number == DEEP for number in stack.surfaces])
         return _emptied(stack, after, base, ends[0], covered)
@@ -126,7 +126,7 @@ def inside_body(
     )
 
 
-def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangulation, int]]:
+def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Sheet, int]]:
     """Levels below everything, over surfaces that came upon a body: where no surface was before, the body
     was all that there was, and the void reaches as deep."""
     first = stack.emptied[-1] if stack.emptied else 0
@@ -135,9 +135,7 @@ def _below_bodies(stack: Stack, older: int, deep: float) -> list[tuple[Triangula
     return [(level(stack.sheets[k], deep), stack.surfaces[k]) for k in upon]
 
 
-def _emptied(
-    stack: Stack, after: int, base: float | None, deep: float, covered: list[Triangulation]
-) -> Stack:
+def _emptied(stack: Stack, after: int, base: float | None, deep: float, covered: list[Sheet]) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
     of what is below the oldest surface. The older ones only stay for that, and where they protect."""
     older = sum(number <= after for number in stack.surfaces)
@@ -162,22 +160,16 @@ def _emptied(
     )
 
 
-def distinct_plans(sheets: Sequence[Triangulation]) -> list[Triangulation]:
+def distinct_plans(sheets: Sequence[Sheet]) -> list[Sheet]:
     """One of each group of sheets that cover the same triangles in plan."""
-    found: list[Triangulation] = []
+    found: list[Sheet] = []
     for sheet in sheets:
-        if not any(_same_plan(sheet, other) for other in found):
+        if not any(sheet is other or sheet.has_plan_of(other) for other in found):
             found.append(sheet)
     return found
 
 
-def _same_plan(one: Triangulation, other: Triangulation) -> bool:
-    return one is other or (
-        np.array_equal(one[1], other[1]) and np.array_equal(one[0][:, :2], other[0][:, :2])
-    )
-
-
-def level(plan: Triangulation, height: float) -> Triangulation:
+def level(plan: Sheet, height: float) -> Sheet:
     """A level surface over the area of a sheet or a region."""
     vertices, triangles = plan
-    return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles
+    return Sheet(np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles)

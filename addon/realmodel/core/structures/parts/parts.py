@@ -9,10 +9,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...base.sheet import Sheet
 from ...base.work import Work, native_module, on_threads
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import body_times, displaced_surfaces
-from ...surfaces.rock_structure import RockStructure, Triangulation
+from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, RockFaults
 from .refusals import refused_structure
 
@@ -66,9 +67,9 @@ class Structures:
         return [each.name for each in (*self.faults, *self.bodies)]
 
     @property
-    def shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Vertices (V, 3) and triangles (T, 3) of each."""
-        return [each.triangulation() for each in (*self.faults, *self.bodies)]
+    def shapes(self) -> list[Sheet]:
+        """The triangles of each."""
+        return [Sheet(*each.triangulation()) for each in (*self.faults, *self.bodies)]
 
     @property
     def kinds(self) -> list[int]:
@@ -206,13 +207,13 @@ def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -
     is_known = True
     for entry in inputs:
         if entry.region is not None:
-            x.append(entry.region[0][:, 0])
-            y.append(entry.region[0][:, 1])
+            x.append(entry.region.vertices[:, 0])
+            y.append(entry.region.vertices[:, 1])
         for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
             has_made = has_sheets and entry.structure.is_made(number)  # not younger than the stage
             shapes = entry.structure.distinct(number) if has_made else [shape]
             is_known &= None not in shapes
-            for given in (surface.points if shape is None else shape[0] for shape in shapes):
+            for given in (surface.points if shape is None else shape.vertices for shape in shapes):
                 places = np.asarray(given, np.float64).reshape(-1, 3)
                 z.append(places[:, 2])
                 if entry.region is None:
@@ -241,7 +242,7 @@ def add_compartments(structures: Structures, inputs: list) -> None:
     for number, entry in enumerate(inputs):
         faults = structures.of_rock(number)
         rows = np.unique(structures.sides[:, faults.numbers], axis=0)
-        sheets: list[list[Triangulation | None]] = [[None] * len(entry.surfaces) for _ in rows]
+        sheets: list[list[Sheet | None]] = [[None] * len(entry.surfaces) for _ in rows]
         entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
 
 

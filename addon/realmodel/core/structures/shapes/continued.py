@@ -9,8 +9,8 @@ import numpy as np
 
 from ...base.algebra import dot, norm, principal_axes
 from ...base.errors import InputRefused, place_text
+from ...base.sheet import Sheet
 from ...base.triangles import cross, edge_numbers, edges_of, welded
-from ...surfaces.wrong_sides import Triangulation
 from .fitted import plane_axes
 
 _MITRE = 0.5  # a vertex goes on at most by twice the length
@@ -73,7 +73,7 @@ def connected(edges: np.ndarray) -> np.ndarray:
             return np.unique(least[ends[:, 0]], return_inverse=True)[1].ravel()
 
 
-def extended(vertices: np.ndarray, triangles: np.ndarray, by: float, sideways: bool = True) -> Triangulation:
+def extended(vertices: np.ndarray, triangles: np.ndarray, by: float, sideways: bool = True) -> Sheet:
     """A mesh, continued by a length beyond its outer borders; holes stay. With sideways False up and down the
     dip of its mean plane only. Raises InputRefused."""
     border = border_of(vertices, triangles)
@@ -84,12 +84,12 @@ def extended(vertices: np.ndarray, triangles: np.ndarray, by: float, sideways: b
     return continued(vertices, triangles, border.some(chosen), by)
 
 
-def continued(vertices: np.ndarray, triangles: np.ndarray, border: Border, by: float) -> Triangulation:
+def continued(vertices: np.ndarray, triangles: np.ndarray, border: Border, by: float) -> Sheet:
     """A mesh with a strip of a given width beyond some edges of its border, in the planes of their triangles.
     At bays, where it would overlap itself, edges meet at one vertex. Raises InputRefused where the border
     turns back on itself."""
     if not len(border.edges):
-        return vertices, triangles
+        return Sheet(vertices, triangles)
     # where two rings touch, each has a vertex of its own beyond
     keys = np.concatenate([_ranked(border.edges[:, end]) for end in range(2)])
     keys, ends = np.unique(keys, axis=0, return_inverse=True)
@@ -98,7 +98,7 @@ def continued(vertices: np.ndarray, triangles: np.ndarray, border: Border, by: f
     a, b = border.edges.T
     far_a, far_b = len(vertices) + target[ends].T
     strip = [np.column_stack([b, a, far_a]), np.column_stack([b, far_a, far_b])[far_a != far_b]]
-    return np.concatenate([vertices, places]), np.concatenate([triangles, *strip]).astype(np.int32)
+    return Sheet(np.concatenate([vertices, places]), np.concatenate([triangles, *strip]).astype(np.int32))
 
 
 def _ranked(nodes: np.ndarray) -> np.ndarray:

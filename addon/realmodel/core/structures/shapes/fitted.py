@@ -10,12 +10,12 @@ import numpy as np
 from ...base.algebra import dot, norm, principal_axes
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
+from ...base.sheet import Sheet
 from ...base.work import Work
 from ...heights import Task, heights
 from ...settings.mesh_sizes import AUTO
 from ...settings.methods import checked_options
 from ...surfaces.planar_mesh import MeshOptions, mesh_rings
-from ...surfaces.wrong_sides import Triangulation
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
@@ -24,7 +24,7 @@ _NEIGHBORS = 3  # on either side of a stick, for the direction of its extension
 _ROUND = 16  # directions of an outline that is extended
 
 
-def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Triangulation:
+def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Sheet:
     """The surface through fault sticks: their points, and triangles between neighbors.
 
     sticks: arrays (N, 3), each from one end to the other, in any order and either direction. extend: how far
@@ -57,7 +57,7 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
     triangles = np.array(between, np.int32).reshape(-1, 3)
     first, second, third = vertices[triangles].transpose(1, 0, 2)
     has_area = (np.cross(second - first, third - first) != 0).any(axis=1)
-    return vertices, np.ascontiguousarray(triangles[has_area])
+    return Sheet(vertices, np.ascontiguousarray(triangles[has_area]))
 
 
 def _without_repeats(stick: np.ndarray) -> np.ndarray:

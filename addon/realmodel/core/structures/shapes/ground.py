@@ -7,11 +7,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.work import Work, native_module, on_threads
+from ...base.work import Work
 from ...heights import Task, heights
 from ...project.project import Surface, surface_item
 from ...settings.methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
 from ...surfaces.rock_input import RockInput
+from ...surfaces.wrong_sides import heights_at
 
 Top = tuple[RockInput, int | None]  # a rock mass that is read, and the number of a surface
 _MANY = 10_000  # points: these are enough for the elevations of a line
@@ -52,7 +53,7 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> n
     for entry, number in known:
         shape = entry.surfaces[number]
         if shape is not None:
-            own = work.native(native_module().surface_heights, *shape, plan, execution=on_threads(threads))
+            own = heights_at(work, shape, plan, threads)
             found = np.where(np.isnan(found), own, found)
         value = _constant(entry.rock.surfaces[number])
         if value is not None and not len(_data(entry, number)):
@@ -89,9 +90,9 @@ def _data(entry: RockInput, number: int) -> np.ndarray:
     """(P, 3) the points of a surface, or the vertices of its mesh."""
     shape, points = entry.surfaces[number], entry.rock.surfaces[number].points
     if shape is not None:
-        used = np.zeros(len(shape[0]), bool)
-        used[shape[1].ravel()] = True
-        return shape[0][used]
+        used = np.zeros(len(shape.vertices), bool)
+        used[shape.triangles.ravel()] = True
+        return shape.vertices[used]
     return np.empty((0, 3)) if points is None else np.asarray(points, np.float64).reshape(-1, 3)
 
 

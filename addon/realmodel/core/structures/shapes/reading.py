@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused, place_text
+from ...base.sheet import Sheet
 from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
 from ...base.work import Work
 from ...heights.interpolate import checked_points
@@ -16,7 +17,6 @@ from ...project.structure_entries import Body, Fault, body_item, fault_item
 from ...project.structure_history import displaced_surfaces
 from ...readers import read_mesh
 from ...readers.fault_sticks import read_fault_points
-from ...surfaces.wrong_sides import Triangulation
 from .continued import extended
 from .fitted import fit_points, fit_sticks
 from .traces import read_trace, trace_surface
@@ -107,7 +107,7 @@ def _tops(project, inputs, fault: Fault) -> list[tuple]:
     return tops
 
 
-def _fitted(work: Work, fault: Fault, points, threads: int) -> Triangulation:
+def _fitted(work: Work, fault: Fault, points, threads: int) -> Sheet:
     sideways = not fault.dies_out
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
         return fit_points(work, checked_points(points), fault.extend, sideways, threads)
@@ -143,7 +143,7 @@ def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
     return replace(body, vertices=vertices, triangles=triangles, mesh=None, shape_file=shape_file)
 
 
-def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Triangulation:
+def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Sheet:
     if entry.mesh_file is None:
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
@@ -158,7 +158,7 @@ def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Tria
         warnings.append(BuildWarning(text, "left_out"))
     if not len(kept):
         raise InputRefused("its triangles have no area")
-    return vertices, kept
+    return Sheet(vertices, kept)
 
 
 def _within(error: InputRefused, entry, item: str) -> InputRefused:

@@ -14,13 +14,13 @@ from ...base.algebra import dot, norm
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused, number_list, place_text
 from ...base.exact import orient2d
+from ...base.sheet import Sheet
 from ...base.triangles import crossing_pairs
 from ...base.work import Work
 from ...project.structure_entries import Fault
 from ...readers.fault_trace import FaultLines, read_fault_trace
 from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
-from ...surfaces.wrong_sides import Triangulation
-from .ground import heights_on, levels_of, plan_of
+from .ground import Top, heights_on, levels_of, plan_of
 
 VERTICAL = 90.0
 _ALONG = math.sin(math.radians(15.0))  # of the angle between trace and dip direction: less is along the trace
@@ -66,9 +66,7 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     return replace(fault, trace=line, dip=float(dip), dip_direction=direction, elevation=level), warnings
 
 
-def trace_surface(
-    work: Work, fault: Fault, tops: list[tuple], threads: int
-) -> tuple[Triangulation, list[str]]:
+def trace_surface(work: Work, fault: Fault, tops: list[Top], threads: int) -> tuple[Sheet, list[str]]:
     """The surface through the trace of a fault that read_trace returned, vertices (V, 3) float64 and
     triangles (T, 3) int32; and warnings.
 
@@ -109,7 +107,7 @@ def trace_surface(
             np.column_stack([count + first, first + 1, first]),
         ]
     )
-    return (vertices, triangles.astype(np.int32)), warnings
+    return Sheet(vertices, triangles.astype(np.int32)), warnings
 
 
 def _farthest(plan: np.ndarray, place: np.ndarray) -> float:

@@ -9,18 +9,17 @@ from collections.abc import Callable
 import numpy as np
 
 from ...base.algebra import dot, principal_axes
+from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.sides import FaultShape, fault_sides
-from ...surfaces.wrong_sides import Triangulation, heights_at
+from ...surfaces.wrong_sides import heights_at
 from .tips import nearest, trace_of
 
 _FAR = 2.0  # ranges of its heights: a sheet that goes so far beyond them in another compartment is no guide
 _AT_ONCE = 1 << 20  # pairs of a place and a part of a line
 
 
-def as_at_fault(
-    work: Work, sheet: Triangulation, fault: FaultShape, side: int, threads: int
-) -> Triangulation | None:
+def as_at_fault(work: Work, sheet: Sheet, fault: FaultShape, side: int, threads: int) -> Sheet | None:
     """A sheet that has the height of the nearest place of its cutoff line everywhere beyond a fault. side: of
     the fault, on which the sheet is known. None where it does not meet the fault."""
     vertices, triangles = sheet
@@ -29,10 +28,10 @@ def as_at_fault(
         return None
     z, beyond = vertices[:, 2].copy(), fault_sides(work, vertices, fault, threads) != side
     z[beyond] = _nearest_heights(line, vertices[beyond, :2])
-    return np.column_stack([vertices[:, :2], z]), triangles
+    return Sheet(np.column_stack([vertices[:, :2], z]), triangles)
 
 
-def _cutoff(work: Work, sheet: Triangulation, fault: FaultShape, threads: int) -> np.ndarray:
+def _cutoff(work: Work, sheet: Sheet, fault: FaultShape, threads: int) -> np.ndarray:
     """(M, 3) places at which a sheet meets a fault, in the order of its strike."""
     trace = trace_of(work, sheet, fault, lambda points: np.ones(len(points), bool), threads)
     places = np.unique(np.column_stack([trace.points, trace.heights]), axis=0)
@@ -58,12 +57,10 @@ def _nearest_heights(line: np.ndarray, plan: np.ndarray) -> np.ndarray:
     return found
 
 
-def sheet_runs_away(
-    sheet: Triangulation, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]
-) -> bool:
+def sheet_runs_away(sheet: Sheet, known: np.ndarray, within: Callable[[np.ndarray], np.ndarray]) -> bool:
     """Whether a sheet goes far beyond the heights that it has where it is known, (V,) bool, in the
     compartment in which points `within` lie."""
-    vertices = sheet[0]
+    vertices = sheet.vertices
     inside = within(vertices) & ~known
     if not inside.any() or not known.any():
         return False
@@ -74,10 +71,10 @@ def sheet_runs_away(
 
 def between_faults(
     work: Work,
-    sheets: list[Triangulation],
+    sheets: list[Sheet],
     faults: list[tuple[np.ndarray, FaultShape, int]],
     threads: int,
-) -> Triangulation:
+) -> Sheet:
     """Several sheets as one, each with a weight of one over its distance from the fault across which it
     comes: so the throw of each fault is that of its own sheet. faults: of each sheet, places (M, 2) along its
     fault in plan, the fault, and on which side of it the sheet comes from. There no sheet counts from
@@ -99,4 +96,4 @@ def between_faults(
     least = away.min(axis=0)
     share = np.where(away == least, 1.0, least / np.where(away > 0, away, 1.0))
     total = np.where(counts, share * heights, 0.0).sum(axis=0)
-    return np.column_stack([plan, total / np.where(counts, share, 0.0).sum(axis=0)]), triangles
+    return Sheet(np.column_stack([plan, total / np.where(counts, share, 0.0).sum(axis=0)]), triangles)

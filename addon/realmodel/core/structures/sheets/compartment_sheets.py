@@ -13,7 +13,8 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused
 from ...project.project import Rock, surface_item
-from ...surfaces.surface_heights import named_surfaces, needed_surfaces
+from ...surfaces.rock_input import named_surfaces
+from ...surfaces.surface_heights import needed_surfaces
 from .borrowed import between_faults
 from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
@@ -267,6 +268,6 @@ def _drawn_together(surface, family: Family, sheets: Sheets) -> Sheets:
     """Sheets by sides, equal beyond the tips; the same ones where they were."""
     drawn = surface.drawn_together(family, sheets)
     return {
-        sides: sheet if np.array_equal(drawn[sides][0], sheet[0]) else drawn[sides]
+        sides: sheet if np.array_equal(drawn[sides].vertices, sheet.vertices) else drawn[sides]
         for sides, sheet in sheets.items()
     }

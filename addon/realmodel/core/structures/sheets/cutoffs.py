@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.algebra import dot
+from ...base.sheet import Sheet
 from ...base.work import Work
-from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import FaultShape
 from .tips import crossed_edges
 
@@ -22,7 +22,7 @@ class Cutoff(NamedTuple):
     inward: np.ndarray
 
 
-def cutoff_of(work: Work, sheet: Triangulation, fault: FaultShape, side: int, threads: int = 0) -> Cutoff:
+def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int, threads: int = 0) -> Cutoff:
     """The cutoff line of a sheet on one side (-1 or +1) of a fault.
 
     It is the border of what of the sheet's triangles lies on that side. So where the sheet goes on beyond it

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.algebra import dot, norm
+from ...base.sheet import Sheet
 from ...base.triangles import nearest_triangles, unit_normals
 from ...base.work import Work, run
 from ...surfaces.rock_structure import RockStructure
@@ -115,8 +116,8 @@ class _Measured:
         self.others = [other for other in np.flatnonzero(active) if other != fault]
         self.rows = np.where(active, structure.compartments, 0)
         self.sheets = [sheets[surface] for sheets in structure.sheets]
-        self.cutoffs: dict[tuple[int, int], Cutoff] = {}
-        self.lower: dict[int, _Places] = {}
+        self.cutoffs: dict[tuple[Sheet | None, int], Cutoff] = {}
+        self.lower: dict[Sheet | None, _Places] = {}
 
     def everywhere(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """places (N, 3), throw, heave and length (N,)."""
@@ -156,7 +157,7 @@ class _Measured:
 
     def _cutoff(self, compartment: int, side: int) -> Cutoff:
         sheet, shape = self.sheets[compartment], self.structure.faults.shapes[self.fault]
-        key = id(sheet), side
+        key = sheet, side
         if key not in self.cutoffs:
             assert sheet is not None  # displacements are asked for of sheets that are made
             self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side, self.threads)
@@ -164,7 +165,7 @@ class _Measured:
 
     def _places(self, compartment: int) -> _Places:
         """On the cutoff line of a sheet below the fault."""
-        key = id(self.sheets[compartment])
+        key = self.sheets[compartment]
         if key not in self.lower:
             shapes, cutoff = self.structure.faults.shapes, self._cutoff(compartment, -1)
             walls = walls_of([shapes[other] for other in self.others], box_of(cutoff.ends))

@@ -11,14 +11,15 @@ import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
+from ...base.sheet import Sheet
 from ...base.triangles import median_edge
 from ...base.work import Work
+from ...heights import Interpolation
 from ...heights.mis_ties import contradictions, mean_heights
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
-from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ...surfaces.wrong_sides import heights_at
@@ -55,9 +56,8 @@ class InterpolatedSurface:
         self._leave_out_contradictions()
         self.counts = self._that_count()
         self.keys = keys_of(entry.structure, number, self.placed.sides)
-        self.made: dict[
-            int, tuple
-        ] = {}  # the interpolation and the diagnostics of its vertices, by the id of a sheet
+        # of a sheet its interpolation, and the diagnostics of its vertices
+        self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
@@ -86,7 +86,9 @@ class InterpolatedSurface:
         if METHODS[self.surface.method_options()[0]].on_mesh:
             nodes, triangles = self.entry.region
             level = np.column_stack([nodes, np.zeros(len(nodes))])
-            over = np.isfinite(heights_at(self.work, (level, triangles), self.points[:, :2], self.threads))
+            over = np.isfinite(
+                heights_at(self.work, Sheet(level, triangles), self.points[:, :2], self.threads)
+            )
             if over.any():
                 self.data = "points on the mesh"
                 return over
@@ -107,7 +109,9 @@ class InterpolatedSurface:
         if not self.surface.needs_points:
             return False
         points = self.points[self._certain(family)]
-        return len(points) == 0 or are_few(self.surface, points, self.entry.region[0], self._within(family))
+        return len(points) == 0 or are_few(
+            self.surface, points, self.entry.region.vertices, self._within(family)
+        )
 
     def _certain(self, family: Family) -> np.ndarray:
         """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
@@ -129,24 +133,24 @@ class InterpolatedSurface:
         better with that."""
         shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
         within, points = self._within(family), self.points[self._certain(family)]
-        found: dict[int, Triangulation] = {}
+        found: dict[Sheet, Sheet] = {}
         for sheet in sheets.values():
-            if id(sheet) in found:
+            if sheet in found:
                 continue
-            found[id(sheet)] = sheet
+            found[sheet] = sheet
             level = as_at_fault(self.work, sheet, shape, side, self.threads)
             if level is None:
                 continue
             if len(points):
                 is_level = self._spread(points, level) < self._spread(points, sheet)
             else:
-                known = fault_sides(self.work, sheet[0], shape, self.threads) == side
+                known = fault_sides(self.work, sheet.vertices, shape, self.threads) == side
                 is_level = sheet_runs_away(sheet, known, within)
             if is_level:
-                found[id(sheet)] = level
-        return {sides: found[id(sheet)] for sides, sheet in sheets.items()}
+                found[sheet] = level
+        return {sides: found[sheet] for sides, sheet in sheets.items()}
 
-    def _spread(self, points: np.ndarray, sheet: Triangulation) -> float:
+    def _spread(self, points: np.ndarray, sheet: Sheet) -> float:
         """How different the heights of points (P, 3) above a sheet are."""
         off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
         off = off[np.isfinite(off)]
@@ -155,7 +159,7 @@ class InterpolatedSurface:
     def adopt(self, sheets: Sheets, others: Sheets) -> None:
         """Takes sheets that were made of its own, for which what is known of these holds, too."""
         for sides, sheet in sheets.items():
-            self.made[id(sheet)] = (*self.made[id(others[sides])][:2], sheet)
+            self.made[sheet] = self.made[others[sides]]
 
     def sheets(self, family: Family, trends: Sheets | None = None) -> Sheets:
         """The sheet on each side of the faults that die out here, by sides. trends: of each side, where its
@@ -173,10 +177,8 @@ class InterpolatedSurface:
         z = self._on_nodes(common)
         known = np.isfinite(z)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        flat = np.column_stack([nodes, np.where(known, z, 0.0)])
-        traces = [
-            trace_of(self.work, (flat, meshed), fault, self._within(family), self.threads) for fault in faults
-        ]
+        flat = Sheet(np.column_stack([nodes, np.where(known, z, 0.0)]), meshed)
+        traces = [trace_of(self.work, flat, fault, self._within(family), self.threads) for fault in faults]
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
@@ -189,7 +191,7 @@ class InterpolatedSurface:
             for side in (-1, 1)
         }
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
-        settled = _settled(self.surface, self.made[id(common)][0])
+        settled = _settled(self.surface, self.made[common][0])
         counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
@@ -226,7 +228,7 @@ class InterpolatedSurface:
             values_of,
             self.threads,
         )
-        found = self._with_equal_ends(family, met, values, meshed, self.made[id(common)][0])
+        found = self._with_equal_ends(family, met, values, meshed, self.made[common][0])
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
     def _within_bounds(self, family: Family, trends: Sheets) -> Sheets:
@@ -240,13 +242,13 @@ class InterpolatedSurface:
 
     def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
-        if len({id(sheet) for sheet in sheets.values()}) == 1:
+        if len(set(sheets.values())) == 1:
             return sheets
         _, triangles = self.entry.region
         values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
         known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        result = self.made[id(next(iter(sheets.values())))][0]
+        result = self.made[next(iter(sheets.values()))][0]
         return self._with_equal_ends(family, range(len(family.dying)), values, meshed, result)
 
     def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
@@ -270,7 +272,7 @@ class InterpolatedSurface:
         for sides, sheet in found.items():
             known = np.isfinite(equal[sides])[triangles].all(axis=1)
             its = values[sides][used_vertices(nodes, triangles[known])]
-            self.made[id(sheet)] = (result, {"variance": its[:, 1], "distance": its[:, 2]}, sheet)
+            self.made[sheet] = result, {"variance": its[:, 1], "distance": its[:, 2]}
         return found
 
     def _interpolated(
@@ -279,9 +281,9 @@ class InterpolatedSurface:
         sides: tuple[int, ...],
         own: np.ndarray,
         surface=None,
-        trend: Triangulation | None = None,
+        trend: Sheet | None = None,
         lips: Sequence[Lip] = (),
-    ) -> Triangulation:
+    ) -> Sheet:
         """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
         other options. trend: a sheet that was made here, on which the points are interpolated. lips: at
         faults that die out here, of these points."""
@@ -289,8 +291,7 @@ class InterpolatedSurface:
         one = self._from_points(family, sides, points, surface or self.surface, self.entry.region, trend)
         sheet = one.surfaces[self.number]
         result = one.interpolations[self.number]
-        # the sheet itself is kept, too: so no other gets its id
-        self.made[id(sheet)] = (result, one.attributes[self.number], sheet)
+        self.made[sheet] = result, one.attributes[self.number]
         if trend is None and own.sum() > self.most[0]:
             self.most = (int(own.sum()), result)
         for warning in one.warnings:
@@ -311,7 +312,7 @@ class InterpolatedSurface:
         surfaces[self.number] = replace(surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
-        shapes: list[Triangulation | None] = [None] * len(surfaces)
+        shapes: list[Sheet | None] = [None] * len(surfaces)
         for other in needed_surfaces(entry.rock, self.number):
             shapes[other] = self._as_seen(family, sides, other)
         one = replace(
@@ -340,7 +341,7 @@ class InterpolatedSurface:
 
     def _values_at(self, family: Family, points: np.ndarray, surface, nodes: np.ndarray) -> np.ndarray:
         """As _values_on_nodes, at some nodes alone, from points (P, 3), of a surface that counts by node."""
-        region = np.ascontiguousarray(nodes), np.empty((0, 3), np.int32)
+        region = Sheet(np.ascontiguousarray(nodes), np.empty((0, 3), np.int32))
         one = self._from_points(family, (), points, surface, region)
         result = one.interpolations[self.number]
         for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
@@ -348,18 +349,18 @@ class InterpolatedSurface:
             self.entry.structure.warn(list(family.members), warning)
         return np.column_stack([result.z, *one.attributes[self.number].values()])
 
-    def _values_on_nodes(self, sheet: Triangulation) -> np.ndarray:
+    def _values_on_nodes(self, sheet: Sheet) -> np.ndarray:
         """(N, 3) height, variance and distance of a sheet at the nodes of the planar mesh, NaN where it has
         none."""
         z = self._on_nodes(sheet)
         found = np.full((len(z), 3), np.nan)
         found[:, 0] = z
-        attributes = self.made[id(sheet)][1]
+        attributes = self.made[sheet][1]
         found[np.isfinite(z), 1:] = np.column_stack([attributes["variance"], attributes["distance"]])
         return found
 
-    def _trend(self, sheet: Triangulation) -> Trend:
-        interpolation, attributes, _ = self.made[id(sheet)]
+    def _trend(self, sheet: Sheet) -> Trend:
+        interpolation, attributes = self.made[sheet]
         by = of_residuals(self.surface)
         return Trend(sheet, self._on_nodes(sheet), interpolation, attributes, *by)
 
@@ -379,45 +380,45 @@ class InterpolatedSurface:
         placed = point_sides(self.work, points, self.entry, self.number, self.threads)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
 
-    def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
+    def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Sheet:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
         the planar mesh gets the height of the compartment in which the other surface lies there."""
         structure = self.entry.structure
         members = [each for each, its in family.members.items() if its == sides] or list(family.members)
-        different = {id(structure.sheets[each][other]): structure.sheets[each][other] for each in members}
+        different = list(dict.fromkeys(structure.sheets[each][other] for each in members))
         if len(different) == 1:
-            return next(iter(different.values()))
+            return different[0]
         nodes, triangles = self.entry.region
         chosen = np.full(len(nodes), np.nan)
         total, known = np.zeros(len(nodes)), np.zeros(len(nodes))
-        for number, sheet in different.items():
+        for sheet in different:
             z = self._on_nodes(sheet)
             there = np.isfinite(z)
             total[there] += z[there]
             known += there
             at = np.column_stack([nodes, np.where(there, z, 0.0)])
             rows = sides_of(self.work, at, structure.faults, self.threads)
-            its = [each for each in members if id(structure.sheets[each][other]) == number]
+            its = [each for each in members if structure.sheets[each][other] is sheet]
             inside = (rows[:, None] == structure.compartments[its]).all(axis=2).any(axis=1)
             chosen = np.where(there & inside & np.isnan(chosen), z, chosen)
         with np.errstate(invalid="ignore", divide="ignore"):
             heights = np.where(np.isnan(chosen), total / known, chosen)
         return where_known(nodes, triangles, heights)
 
-    def _on_nodes(self, sheet: Triangulation) -> np.ndarray:
+    def _on_nodes(self, sheet: Sheet) -> np.ndarray:
         """(N,) heights of a sheet at the nodes of the planar mesh; NaN where it has none."""
         nodes, _ = self.entry.region
-        if len(sheet[0]) == len(nodes) and np.array_equal(sheet[0][:, :2], nodes):
-            return sheet[0][:, 2]
+        if len(sheet.vertices) == len(nodes) and np.array_equal(sheet.vertices[:, :2], nodes):
+            return sheet.vertices[:, 2]
         return heights_at(self.work, sheet, nodes, self.threads)
 
     def _within(self, family: Family) -> Within:
         return Within(self.work, self.entry.structure, self.number, family, self.threads)
 
-    def finish(self, sheets: list[Triangulation]) -> None:
+    def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex
         attributes, to those of all sheets."""
-        found = [self.made[id(sheet)][1] for sheet in sheets]
+        found = [self.made[sheet][1] for sheet in sheets]
         self.entry.interpolations[self.number] = self.most[1]
         self.entry.attributes[self.number] = {
             name: np.concatenate([each[name] for each in found]) for name in ("variance", "distance")

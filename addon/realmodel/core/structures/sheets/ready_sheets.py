@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.errors import InputRefused, place_text
+from ...base.sheet import Sheet
 from ...base.triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
 from ...base.work import Work
 from ...heights import Task, heights
 from ...settings.methods import CONTINUATION
-from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
@@ -100,8 +100,7 @@ class ReadyMesh:
             return trends
         own = self.own(family)
         if not self.active.any():
-            whole = self.vertices, self.triangles
-            return dict.fromkeys(family.members.values(), whole)
+            return dict.fromkeys(family.members.values(), Sheet(self.vertices, self.triangles))
         if self.tiling is None:
             self.tiling = plan_tiling(
                 self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
@@ -115,24 +114,24 @@ class ReadyMesh:
         faults = [shapes[fault] for fault in family.dying]
         within = self._within(family)
 
-        def traces_on(sheet: Triangulation) -> list:
+        def traces_on(sheet: Sheet) -> list:
             return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
 
-        traces = traces_on((np.column_stack([plan, common]), triangles))
+        sheet = Sheet(np.column_stack([plan, common]), triangles)
+        traces = traces_on(sheet)
         over = [np.zeros(len(own), bool) for _ in faults]
         for number, trace in enumerate(traces):
             if not len(trace.points) and not self.tiling.is_mesh:
                 over[number] = self._over_others(own, family.dying[number])
         met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
         if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
-            sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
         met = family.with_ends(met, self.entry.structure.faults)
-        self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
+        self._require_one_height_beyond(family, met, sheet)
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
             common = self._continued(plan, self.tiling.heights(own), triangles, cut)
-            traces = traces_on((np.column_stack([plan, common]), triangles))
+            traces = traces_on(Sheet(np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
         for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
@@ -169,12 +168,12 @@ class ReadyMesh:
         if is_missed.any():
             first = int(is_missed.argmax())
             place = (begin[first] + end[first]) / 2
-            self.entry.torn[self.number] = _two_heights_beyond(faults.names[fault], place)
+            self.entry.overlapping[self.number] = _two_heights_beyond(faults.names[fault], place)
         else:
             found[left[pairs[:, 0]]] = found[right[pairs[:, 1]]] = True
         return found
 
-    def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Triangulation) -> None:
+    def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Sheet) -> None:
         faults = self.entry.structure.faults
         for number in met:
             fault, within = family.dying[number], self._within(family)
@@ -184,10 +183,10 @@ class ReadyMesh:
 
     def drawn_together(self, family: Family, sheets: dict) -> Sheets:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
-        if len({id(sheet) for sheet in sheets.values()}) == 1:
+        if len(set(sheets.values())) == 1:
             return sheets
         vertices, triangles = next(iter(sheets.values()))
-        heights = {sides: sheet[0][:, 2] for sides, sheet in sheets.items()}
+        heights = {sides: sheet.vertices[:, 2] for sides, sheet in sheets.items()}
         plan = np.ascontiguousarray(vertices[:, :2])
         return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)
 
@@ -199,7 +198,7 @@ class ReadyMesh:
         within = self._within(family)
         ramps = [0.0] * len(faults)
         equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps, self.threads)
-        return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
+        return shared({sides: Sheet(np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family) -> Within:
         return Within(self.work, self.entry.structure, self.number, family, self.threads)
@@ -239,9 +238,9 @@ class ReadyMesh:
             z = np.where(np.isnan(z), of_place[same], z)
         return z
 
-    def finish(self, sheets: list[Triangulation]) -> None:
+    def finish(self, sheets: list[Sheet]) -> None:
         """The triangles of the sheets are no longer those of the file."""
-        if len(sheets) > 1 or sheets[0][1] is not self.triangles:
+        if len(sheets) > 1 or sheets[0].triangles is not self.triangles:
             self.entry.file_faces[self.number] = None
 
 

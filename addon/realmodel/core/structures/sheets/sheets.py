@@ -11,11 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.mapped_arrays import Keep, as_it_is
+from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
 from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
-from ...surfaces.wrong_sides import Triangulation, points_too_low
+from ...surfaces.wrong_sides import points_too_low
 from .compartment_sheets import CompartmentSheets, make_borrowed, named
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
@@ -113,19 +114,20 @@ def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Kee
 
 def _keep(entry, number: int, keep: Keep) -> None:
     """Keeps the arrays of a surface elsewhere. Sheets and arrays that are the same object stay so."""
-    arrays: dict[int, tuple[np.ndarray, np.ndarray]] = {}
-    made: dict[int, tuple[Triangulation, Triangulation]] = {}
+    made: dict[Sheet, Sheet] = {}
 
-    def kept(array: np.ndarray) -> np.ndarray:
-        if id(array) not in arrays:
-            arrays[id(array)] = array, keep(array)
-        return arrays[id(array)][1]
+    def kept(sheet: Sheet, name: str) -> np.ndarray:
+        array = getattr(sheet, name)
+        for old, new in made.items():
+            if getattr(old, name) is array:
+                return getattr(new, name)
+        return keep(array)
 
     for sheets in entry.structure.sheets:
         sheet = sheets[number]
-        if id(sheet) not in made:
-            made[id(sheet)] = sheet, (kept(sheet[0]), kept(sheet[1]))
-        sheets[number] = made[id(sheet)][1]
+        if sheet not in made:
+            made[sheet] = Sheet(kept(sheet, "vertices"), kept(sheet, "triangles"))
+        sheets[number] = made[sheet]
     if number in entry.attributes:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 

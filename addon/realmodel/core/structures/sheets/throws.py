@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...base.algebra import dot, principal_axes
+from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.rock_structure import RockStructure
-from ...surfaces.wrong_sides import Triangulation, heights_at
+from ...surfaces.wrong_sides import heights_at
 from .displacement import throws_between
 from .families import Family
 from .tips import shared
@@ -23,7 +24,7 @@ _STRETCHES = 8  # of a fault along its strike at most, in each of which the medi
 _IN_EACH = 5  # places at least
 _OUTLIERS = 0.05  # of values, at either end, that do not count
 
-Sheets = dict[tuple[int, ...], Triangulation]  # of a family, by the sides of faults that die out
+Sheets = dict[tuple[int, ...], Sheet]  # of a family, by the sides of faults that die out
 
 
 class Profile:
@@ -150,7 +151,7 @@ class Throws:
                     here, there = next((pair for pair in pairs if pair[0] == compartment), pairs[0])
                     laid_on = self._laid(vertices, within(vertices), shift.surfaces, here, there)
                     z = np.where(np.isfinite(laid_on), laid_on, z)
-                laid[sides] = np.column_stack([vertices[:, :2], z]), triangles
+                laid[sides] = Sheet(np.column_stack([vertices[:, :2], z]), triangles)
         return shared(laid)
 
     def _has(self, pair: tuple[int, int], number: int) -> bool:
@@ -206,7 +207,7 @@ class Throws:
         """places (N, 3) and throw (N,) of a surface between compartments; None where there are none."""
         different: dict[tuple[int, ...], tuple[int, int]] = {}
         for pair in pairs:
-            different.setdefault(tuple(id(self.structure.sheets[each][number]) for each in pair), pair)
+            different.setdefault(tuple(self.structure.sheets[each][number] for each in pair), pair)
         parts = [
             throws_between(self.work, self.structure, fault, number, below, above, self.threads)
             for below, above in different.values()

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.algebra import norm
+from ...base.sheet import Sheet
 from ...base.triangles import (
     crossing_pairs,
     distances_of_pairs,
@@ -25,7 +26,6 @@ from ...base.triangles import (
     shares_hit,
 )
 from ...base.work import Work, native_module
-from ...surfaces.rock_structure import Triangulation
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import places_between
 from .near_rows import triangles_met, with_neighbors
@@ -57,7 +57,7 @@ class Trace:
 
 def trace_of(
     work: Work,
-    sheet: Triangulation,
+    sheet: Sheet,
     fault: FaultShape,
     within: Callable[[np.ndarray], np.ndarray],
     threads: int = 0,
@@ -96,7 +96,7 @@ class CrossedEdges(NamedTuple):
     share: np.ndarray
 
 
-def crossed_edges(work: Work, sheet: Triangulation, fault: FaultShape, threads: int = 0) -> CrossedEdges:
+def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape, threads: int = 0) -> CrossedEdges:
     """Where a fault meets the edges of a sheet."""
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault, threads)
@@ -303,14 +303,14 @@ def _draw_where_passed(
     passes = met == _PASSES
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
-    drawn.let_be_equal(number, node[some[passes]])
+    drawn.require_equal(number, node[some[passes]])
     edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
     lie_in = _lie_in(work, fault, places.points[edges], beyond, within, threads)
-    drawn.let_be_equal(number, node[edges[lie_in]])
+    drawn.require_equal(number, node[edges[lie_in]])
     touched = np.unique(some[met > 0])
     touched = touched[inside[node[touched]]]
     on = _met_points(work, fault, places.points[touched], threads)
-    drawn.let_be_equal(number, node[touched[on], None])
+    drawn.require_equal(number, node[touched[on], None])
 
 
 class _Places(NamedTuple):
@@ -360,7 +360,7 @@ class _Drawn:
         self.weights = [np.ones(len(plan)) for _ in ramps]
         self.equal = [np.zeros(len(plan), bool) for _ in ramps]
 
-    def let_be_equal(self, number: int, nodes: np.ndarray) -> None:
+    def require_equal(self, number: int, nodes: np.ndarray) -> None:
         """For the sides of one fault, at the nodes (K, 1 to 3) of triangles or edges. A branch of it that
         passes a sheet there, or between two of them, ends in nothing: its sides are equal, too."""
         self.equal[number][nodes] = True
@@ -417,7 +417,7 @@ def _draw_between(
             for its in (one, other) if len(torn) else ():
                 is_torn = is_torn or not near[its][torn].all()
                 near[its][torn] = True
-            drawn.let_be_equal(number, torn)
+            drawn.require_equal(number, torn)
     return not drawn.is_settled() or is_torn
 
 
@@ -492,14 +492,14 @@ def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.
     return np.column_stack([plan, low]), np.column_stack([plan, high])
 
 
-def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...], Triangulation]:
+def shared(sheets: dict[tuple[int, ...], Sheet]) -> dict[tuple[int, ...], Sheet]:
     """The same, with one object for all sheets that are bitwise equal."""
-    known: dict[bytes, Triangulation] = {}
-    return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
+    known: dict[bytes, Sheet] = {}
+    return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
 def torn_beyond(
-    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+    work: Work, sheet: Sheet, fault: FaultShape, within: Within, threads: int = 0
 ) -> np.ndarray | None:
     """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
     on beyond its ends; None where there is none."""
