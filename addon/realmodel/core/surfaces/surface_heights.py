@@ -93,13 +93,13 @@ def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend:
     rock, surface = entry.rock, entry.rock.surfaces[number]
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
-    others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
+    others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
         if trend is not None:
             result = _on_trend(work, entry, number, trend, others, threads)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            task = Task(work, surface.points, nodes, settings, threads, triangles, surfaces=others)
+            task = Task(work, surface.point_array(), nodes, settings, threads, triangles, surfaces=others)
             result = give(method, task)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
