@@ -32,8 +32,8 @@ def begins_as_landxml(head: bytes) -> bool:
 def read_landxml(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all surfaces; faces that are marked as invisible (i="1") are left out. Raises InputRefused."""
     file = Path(file)
-    vertices: list[list[float]] = []
-    faces: list[list[int]] = []
+    vertices: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
     unit = None
     for element in parse_xml(file, read_bytes(file), step).iter():
         kind = local_name(element)
@@ -48,9 +48,9 @@ def read_landxml(file: str | Path, step: Step = no_step) -> TriangleMesh:
                 if kind == "P" and "id" in part.attrib:
                     north, east, up = map(float, words[:3])
                     index[part.attrib["id"]] = len(vertices)
-                    vertices.append([east, north, up])
+                    vertices.append((east, north, up))
                 elif kind == "F" and part.get("i") != "1":
-                    faces.append([index[word] for word in words[:3]])
+                    faces.append(tuple([index[word] for word in words[:3]]))
             except (ValueError, KeyError) as error:
                 what = f"surface '{element.get('name', '')}': '{' '.join(words):.40}' cannot be read"
                 raise InputRefused(what, file=file) from error

@@ -31,19 +31,19 @@ def begins_as_obj(head: bytes, _size: int = 0) -> bool:
 def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all faces of a Wavefront OBJ. Raises InputRefused naming file and line."""
     file = Path(file)
-    vertices: list[list[float]] = []
-    faces: list[list[int]] = []
+    vertices: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
     lines: list[int] = []  # of the faces
     for number, words in _rows(file, step):
         try:
             if words[0] == "v":
-                vertices.append([float(word) for word in words[1:4]])
+                vertices.append(tuple(map(float, words[1:4])))
                 if len(words) < 4:
                     raise ValueError
             elif words[0] == "f":
                 corners = [int(word.partition("/")[0]) for word in words[1:]]
                 # from 1; below zero from the last vertex so far
-                faces.append([c - 1 if c > 0 else len(vertices) + c if c else -1 for c in corners])
+                faces.append(tuple([c - 1 if c > 0 else len(vertices) + c if c else -1 for c in corners]))
                 lines.append(number)
         except UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
@@ -54,8 +54,8 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights;
     a word says that values at vertices are not read. Raises InputRefused naming file and line."""
     file = Path(file)
-    vertices: list[list[float]] = []
-    faces: list[list[int]] = []
+    vertices: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
     lines: list[int] = []  # of the faces
     index: dict[int, int] = {}  # of the vertices of a surface, by their numbers in the file
     up = 1.0
@@ -78,11 +78,11 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
             elif words[0] in ("VRTX", "PVRTX"):
                 x, y, z = map(float, words[2:5])
                 index[int(words[1])] = len(vertices)
-                vertices.append([x, y, up * z])
+                vertices.append((x, y, up * z))
             elif words[0] in ("ATOM", "PATOM"):
                 index[int(words[1])] = index[int(words[2])]
             elif words[0] == "TRGL":
-                faces.append([index[int(word)] for word in words[1:4]])
+                faces.append(tuple([index[int(word)] for word in words[1:4]]))
                 lines.append(number)
         except UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error

@@ -52,7 +52,7 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
         raw = raw[: found.start()] + b"</VTKFile>"
     root = parse_xml(file, raw, step)
     vertices: list[np.ndarray] = []
-    faces: list[list[int]] = []
+    faces: list[_Faces] = []
     first = 0  # vertex of a piece
     try:
         arrays = _Arrays(root, appended)
@@ -60,7 +60,11 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
             if (points := piece.find("Points/DataArray")) is None:
                 raise ValueError("a piece has no points")
             places = arrays.values(points).reshape(-1, 3)
-            faces += [[corner + first for corner in face] for face in _faces(arrays, piece)]
+            some = _faces(arrays, piece)
+            if isinstance(some, np.ndarray):
+                faces.append(some + float(first))
+            else:
+                faces.append([[corner + first for corner in face] for face in some])
             vertices.append(places)
             first += len(places)
     except (
@@ -74,25 +78,31 @@ def read_vtk_xml(file: str | Path, step: Step = no_step) -> TriangleMesh:
         zlib.error,
     ) as error:
         raise InputRefused(f"not a VTK file that can be read: {error}", file=file) from error
-    if not faces:
+    if not sum(map(len, faces)):
         advice = "save the surface, not the solid (Extract Surface)"
         raise InputRefused("it has no triangles or polygons", file=file, advice=advice)
-    mesh = mesh_of_faces(file, np.concatenate(vertices), faces)
+    listed = faces[0] if len(faces) == 1 else [face for some in faces for face in some]
+    mesh = mesh_of_faces(file, np.concatenate(vertices), listed)
     used, index = np.unique(mesh.triangles, return_inverse=True)
     triangles = index.reshape(-1, 3).astype(np.int32)
     return TriangleMesh(mesh.vertices[used], triangles, mesh.face_of_triangle)
 
 
-def _faces(arrays: _Arrays, piece: ElementTree.Element) -> list[list[int]]:
+_Faces = np.ndarray | list  # corners of faces, (F, K) or of any number
+
+
+def _faces(arrays: _Arrays, piece: ElementTree.Element) -> _Faces:
     """The corners of the faces of a piece."""
     if (cells := piece.find("Cells")) is None:
-        strips = _cells(arrays, piece.find("Strips"))
-        return _cells(arrays, piece.find("Polys")) + [face for row in strips for face in _strip(row)]
-    kinds, rows = arrays.named(cells, "types").tolist(), _cells(arrays, cells)
+        polygons, strips = _cells(arrays, piece.find("Polys")), _cells(arrays, piece.find("Strips"))
+        return [*polygons, *(face for row in strips for face in _strip(row))] if len(strips) else polygons
+    kinds, rows = arrays.named(cells, "types"), _cells(arrays, cells)
     if len(rows) != len(kinds):
         raise ValueError("there are not as many types as cells")
+    if np.isin(kinds, (_TRIANGLE, _POLYGON, _QUAD)).all():
+        return rows
     faces = []
-    for kind, row in zip(kinds, rows, strict=True):
+    for kind, row in zip(kinds.tolist(), rows, strict=True):
         if kind in (_TRIANGLE, _POLYGON, _QUAD):
             faces.append(row)
         elif kind == _PIXEL:
@@ -102,19 +112,23 @@ def _faces(arrays: _Arrays, piece: ElementTree.Element) -> list[list[int]]:
     return faces
 
 
-def _strip(row: list[int]) -> list[list[int]]:
+def _strip(row) -> list:
     return [row[k : k + 3] if k % 2 == 0 else [row[k + 1], row[k], row[k + 2]] for k in range(len(row) - 2)]
 
 
-def _cells(arrays: _Arrays, cells: ElementTree.Element | None) -> list[list[int]]:
+def _cells(arrays: _Arrays, cells: ElementTree.Element | None) -> _Faces:
     """The corners of cells. Raises ValueError."""
     if cells is None or not len(cells):
         return []
-    corners = arrays.named(cells, "connectivity").tolist()
-    ends = [0, *arrays.named(cells, "offsets").astype(np.int64).tolist()]
-    if any(end < begin for begin, end in pairwise(ends)) or ends[-1] > len(corners):
+    corners = arrays.named(cells, "connectivity")
+    ends = np.append(0, arrays.named(cells, "offsets").astype(np.int64))
+    sizes = np.diff(ends)
+    if (sizes < 0).any() or ends[-1] > len(corners):
         raise ValueError("offsets go beyond the corners")
-    return [corners[begin:end] for begin, end in pairwise(ends)]
+    if len(sizes) and (sizes == sizes[0]).all():
+        return corners[: ends[-1]].reshape(len(sizes), int(sizes[0]))
+    listed = corners.tolist()
+    return [listed[begin:end] for begin, end in pairwise(ends.tolist())]
 
 
 class _Body(NamedTuple):
