@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "arrays.hpp"
+#include "complex_arrays.hpp"
 #include "execution.hpp"
 #include "rock_arrays.hpp"
 
@@ -26,20 +26,14 @@ namespace {
 using HistoryArrays =
     std::tuple<std::vector<SurfaceArrays>, std::optional<double>, std::vector<std::string>>;
 
+/// faces, reversed, history and layer, of each polygon.
+using PolygonArrays = std::tuple<Indices, Array<bool>, Indices, Indices>;
+
 std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
-    const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-    const Indices& face_vertices, const Indices& face_cells,
-    const std::vector<HistoryArrays>& given, const Indices& faces, const Array<bool>& reversed,
-    const Indices& history, const Indices& layer, const Indices& histories_of_corners,
-    WatchedExecution* execution) {
-    require_columns(vertices, 3, "vertices");
-    require_columns(face_cells, 2, "face_cells");
-    const ComplexView complex{.vertices = view(vertices),
-                              .face_offsets = view(face_offsets),
-                              .face_vertices = view(face_vertices),
-                              .face_cells = view(face_cells),
-                              .face_surface = {},
-                              .cell_block = {}};
+    const py::dict& model, const std::vector<HistoryArrays>& given, const PolygonArrays& of,
+    const Indices& histories_of_corners, WatchedExecution* execution) {
+    const ComplexArrays arrays(model);
+    const auto& [faces, reversed, history, layer] = of;
     std::vector<bedding::History> histories;
     for (const auto& [sheets, base_elevation, rules] : given) {
         const strata::StackInput rock = view_of(RockArrays{sheets, {}, base_elevation, rules});
@@ -57,7 +51,7 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
     bedding::Bedding made;
     {
         const py::gil_scoped_release unlocked;
-        made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
+        made = bedding::bedding_of(arrays.complex, histories, polygons, view(histories_of_corners),
                                    run(execution));
     }
     return {to_array(std::move(made.height)), to_array(std::move(made.thickness)),
@@ -67,14 +61,13 @@ std::tuple<Array<float>, Array<float>, Array<float>> bedding_arrays(
 }  // namespace
 
 void bind_bedding(py::module_& module) {
-    module.def("bedding", &bedding_arrays, py::arg("vertices"), py::arg("face_offsets"),
-               py::arg("face_vertices"), py::arg("face_cells"), py::arg("histories"),
-               py::arg("faces"), py::arg("reversed"), py::arg("history"), py::arg("layer"),
-               py::arg("histories_of_corners"), py::arg("execution") = py::none(),
+    module.def("bedding", &bedding_arrays, py::arg("model"), py::arg("histories"),
+               py::arg("polygons"), py::arg("histories_of_corners"),
+               py::arg("execution") = py::none(),
                R"(Where the corners of polygons lie in their layers as they were deposited.
 
-The arrays are those of docs/dev/geometry.md. histories: (sheets, base elevation or None, rules) of each rock
-mass or compartment, sheets as (vertices (V, 3), triangles (T, 3)), oldest first. Of each polygon: faces (N,)
+model: the arrays of docs/dev/geometry.md. histories: (sheets, base elevation or None, rules) of each rock
+mass or compartment, sheets as (vertices (V, 3), triangles (T, 3)), oldest first. polygons, of each: faces (N,)
 int32; reversed (N,) bool, seen from its second cell; history (N,) int32; layer (N,) int32, the sheet that its
 block lies beneath, -1: none. histories_of_corners: of each corner in place of its polygon's, or empty.
 

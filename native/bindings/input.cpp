@@ -28,21 +28,18 @@ input::Values values_of(const ValuesTuple& given) {
 }
 
 std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
-    const py::bytes& text, std::size_t begin, std::size_t end, char separator, char decimal,
-    const std::vector<std::size_t>& columns, const std::vector<FilterTuple>& filters,
-    const ValuesTuple& missing, WatchedExecution* execution) {
+    const py::bytes& text, char separator, char decimal, const std::vector<std::size_t>& columns,
+    const std::vector<FilterTuple>& filters, const ValuesTuple& missing,
+    WatchedExecution* execution) {
+    if (columns.empty()) throw InputError("bad_range", "no columns");
     const std::string_view whole = text;
-    if (begin > end || end > whole.size() || columns.empty()) {
-        throw InputError("bad_range", "no columns, or bytes beyond the text");
-    }
     input::TableFormat format{separator, decimal, columns, {}, values_of(missing)};
     for (const auto& [column, values] : filters)
         format.filters.push_back({column, values_of(values)});
     input::NumberTable table;
     {
         const py::gil_scoped_release unlocked;  // bytes do not change
-        table =
-            input::read_numbers(whole.substr(begin, end - begin), format, run(execution).threads);
+        table = input::read_numbers(whole, format, run(execution).threads);
     }
     return {to_array(std::move(table.values), columns.size()), table.lines, table.filtered,
             table.missing};
@@ -62,10 +59,10 @@ py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {
 }  // namespace
 
 void bind_input(py::module_& module) {
-    module.def("read_numbers", &read_numbers, py::arg("text"), py::arg("begin"), py::arg("end"),
-               py::arg("separator"), py::arg("decimal"), py::arg("columns"), py::arg("filters"),
-               py::arg("missing"), py::arg("execution") = py::none(),
-               R"(Numbers of whole lines of a table of text: text[begin:end].
+    module.def("read_numbers", &read_numbers, py::arg("text"), py::arg("separator"),
+               py::arg("decimal"), py::arg("columns"), py::arg("filters"), py::arg("missing"),
+               py::arg("execution") = py::none(),
+               R"(Numbers of whole lines of a table of text.
 
 text       bytes in any encoding that keeps ASCII
 separator  one character between the fields; " ": any number of blanks and tabs

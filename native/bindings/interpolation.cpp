@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -170,16 +171,19 @@ Array<double> line_sums(const Array<double>& nodes, const Array<double>& directi
     return to_array(std::move(sums));
 }
 
-py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
-                       bool finds_anisotropy, const std::string& drift, int neighbours,
-                       bool are_apart, WatchedExecution* execution) {
+py::dict fit_variogram(const Array<double>& points,
+                       const std::optional<std::pair<double, double>>& anisotropy,
+                       const std::string& drift, int neighbours, bool are_apart,
+                       WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours, finds_anisotropy,
-                                            are_apart};
+    const interpolation::FitOptions options{drift_of(drift), neighbours, !anisotropy, are_apart};
+    const interpolation::Anisotropy along =
+        anisotropy ? interpolation::Anisotropy{anisotropy->first, anisotropy->second}
+                   : interpolation::Anisotropy{};
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, options, run(execution));
+        fitted = interpolation::fit_variogram(from, along, options, run(execution));
     }
     const interpolation::Variogram& variogram = fitted.variogram;
     std::vector<NestedTuple> further;
@@ -201,9 +205,7 @@ py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth
     return out;
 }
 
-}  // namespace
-
-void bind_interpolation(py::module_& module) {
+void bind_estimators(py::module_& module) {
     using py::arg;
     module.def("krige", &krige, arg("points"), arg("nodes"), arg("variogram"),
                arg("neighborhood") = kNearest, arg("drift") = "constant",
@@ -258,6 +260,13 @@ neighborhood  as krige
 spacing       the unit of distances, mean_spacing of all points where these are a part; 0: of these
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
+}
+
+}  // namespace
+
+void bind_interpolation(py::module_& module) {
+    using py::arg;
+    bind_estimators(module);
     module.def(
         "mean_spacing", &mean_spacing, arg("points"), arg("are_apart") = false,
         R"(The side of a square as large as each point's (P, 3) share of the box of all in plan.
@@ -281,15 +290,14 @@ values      (L, M) float64: samples at equal steps
 step        between samples
 
 Returns (N,) float64. Raises InputError: kind "option", "not_finite"; Cancelled.)");
-    module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("finds_anisotropy") = false,
-               arg("drift") = "constant", arg("neighbours") = 32, arg("are_apart") = false,
-               arg("execution") = py::none(),
+    module.def("fit_variogram", &fit_variogram, arg("points"),
+               arg("anisotropy") = py::make_tuple(1.0, 0.0), arg("drift") = "constant",
+               arg("neighbours") = 32, arg("are_apart") = false, arg("execution") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
-finds_anisotropy  instead of taking the one that is given
-neighbours        with which points that are left out are told, at most 64
-are_apart         no two points have one place, and all are finite: of many only some are copied
+anisotropy  (ratio, azimuth), as a variogram has them; None: the best is found
+neighbours  with which points that are left out are predicted, at most 64
+are_apart   no two points have one place, and all are finite: of many only some are copied
 
 Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as
 krige takes it, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.

@@ -60,38 +60,37 @@ meshing::Mesher to_mesher(const std::string& name) {
 /// (places or None for the outlines, length, distance)
 using Size = std::tuple<std::optional<Array<double>>, double, double>;
 
-meshing::MeshRequest to_request(double edge_length, const std::string& mesher, double triangles,
-                                const std::vector<Size>& sizes,
-                                const std::vector<Array<double>>& constraints,
-                                const std::optional<Array<double>>& constraint_points,
-                                const std::optional<Array<double>>& density) {
+/// The value of a key, or the default where it is not there.
+template <class T>
+T value_of(const py::dict& of, const char* key, T otherwise) {
+    return of.contains(key) ? py::cast<T>(of[key]) : std::move(otherwise);
+}
+
+meshing::MeshRequest to_request(const py::dict& of) {
     meshing::MeshRequest request;
-    request.mesher = to_mesher(mesher);
-    request.edge_length = edge_length;
-    request.triangles = triangles;
-    for (const auto& [line, length, distance] : sizes) {
+    request.mesher = to_mesher(value_of<std::string>(of, "mesher", "delaunay"));
+    request.edge_length = py::cast<double>(of["edge_length"]);
+    request.triangles = value_of(of, "triangles", 0.0);
+    for (const auto& [line, length, distance] : value_of<std::vector<Size>>(of, "sizes", {})) {
         meshing::LocalLength& size = request.sizes.emplace_back();
         if (line) size.line = to_places(*line, "sizes");
         size.length = length;
         size.distance = distance;
     }
-    request.constraints.lines = to_rings(constraints, "constraints");
-    if (constraint_points) {
-        request.constraints.points = to_places(*constraint_points, "constraint_points");
-    }
-    if (density) request.density = to_places(*density, "density");
+    using Places = std::optional<Array<double>>;
+    request.constraints.lines =
+        to_rings(value_of<std::vector<Array<double>>>(of, "constraints", {}), "constraints");
+    if (const auto points = value_of<Places>(of, "constraint_points", {}))
+        request.constraints.points = to_places(*points, "constraint_points");
+    if (const auto density = value_of<Places>(of, "density", {}))
+        request.density = to_places(*density, "density");
     return request;
 }
 
-PlanarArrays mesh_region(const std::vector<Array<double>>& rings, double edge_length,
-                         const std::string& mesher, double triangles,
-                         const std::vector<Size>& sizes,
-                         const std::vector<Array<double>>& constraints,
-                         const std::optional<Array<double>>& constraint_points,
-                         const std::optional<Array<double>>& density, WatchedExecution* execution) {
+PlanarArrays mesh_region(const std::vector<Array<double>>& rings, const py::dict& asked,
+                         WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
-    const meshing::MeshRequest request =
-        to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
+    const meshing::MeshRequest request = to_request(asked);
     meshing::PlanarMesh mesh;
     {
         const py::gil_scoped_release unlocked;
@@ -100,14 +99,11 @@ PlanarArrays mesh_region(const std::vector<Array<double>>& rings, double edge_le
     return to_tuple(std::move(mesh));
 }
 
-std::tuple<double, double> estimate_region_mesh(
-    const std::vector<Array<double>>& rings, double edge_length, const std::string& mesher,
-    double triangles, const std::vector<Size>& sizes, const std::vector<Array<double>>& constraints,
-    const std::optional<Array<double>>& constraint_points,
-    const std::optional<Array<double>>& density, WatchedExecution* execution) {
+std::tuple<double, double> estimate_region_mesh(const std::vector<Array<double>>& rings,
+                                                const py::dict& asked,
+                                                WatchedExecution* execution) {
     const std::vector<meshing::Ring> region = to_rings(rings);
-    const meshing::MeshRequest request =
-        to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
+    const meshing::MeshRequest request = to_request(asked);
     const py::gil_scoped_release unlocked;
     const meshing::MeshEstimate estimate =
         meshing::estimate_region_mesh(region, request, run(execution).progress);
@@ -138,25 +134,23 @@ Array<std::int32_t> triangulate_polygon(const std::vector<Array<double>>& rings,
 }  // namespace
 
 void bind_meshing(py::module_& module) {
-    module.def("mesh_region", &mesh_region, py::arg("rings"), py::arg("edge_length"),
-               py::arg("mesher") = "delaunay", py::arg("triangles") = 0.0,
-               py::arg("sizes") = std::vector<Size>(),
-               py::arg("constraints") = std::vector<Array<double>>(),
-               py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
+    module.def("mesh_region", &mesh_region, py::arg("rings"), py::arg("request"),
                py::arg("execution") = py::none(),
                R"(Meshes what lies inside an odd number of rings.
 
-rings        list of (N, 2) float64: outlines and holes alike, either way round
-edge_length  length of most edges, model units; not used where triangles is above 0
-mesher       one of the names of kMesherNames (region_mesh.hpp)
-triangles    how many there should be (within 5 %); 0: as edge_length says
-sizes        list of (places (N, 2) or None, length, distance): edges are `length` long within
-             `distance` of the line through the places (None: of the rings), and grow from there on
-constraints  list of (N, 2) float64: lines that the mesh must contain
-constraint_points  (N, 2) float64: points that it must contain
-density      (N, 2) float64: edges become half as long as these points are apart; edge_length may
-             be 0 then, else it is the longest
-execution    Execution, or None
+rings      list of (N, 2) float64: outlines and holes alike, either way round
+request    dict; all but edge_length may be left out:
+  edge_length  length of most edges, model units; not used where triangles is above 0
+  mesher       one of the names of kMesherNames (region_mesh.hpp)
+  triangles    how many there should be (within 5 %); 0: as edge_length says
+  sizes        list of (places (N, 2) or None, length, distance): edges are `length` long within
+               `distance` of the line through the places (None: of the rings), and grow from there
+               on
+  constraints  list of (N, 2) float64: lines that the mesh must contain
+  constraint_points  (N, 2) float64: points that it must contain
+  density      (N, 2) float64: edges become half as long as these points are apart; edge_length
+               may be 0 then, else it is the longest
+execution  Execution, or None
 
 Returns (vertices (V, 2) float64, triangles (T, 3) int32, counter-clockwise). The mesh's border
 is the rings' corners and points added on their edges; the corners come first in `vertices`.
@@ -166,11 +160,7 @@ Raises InputError: kind "no_outline", "not_finite", "outline_degenerate", "outli
 "density", "constraint_not_finite", "constraint_outside", "too_large", "mesher";
 Cancelled.)");
     module.def(
-        "estimate_region_mesh", &estimate_region_mesh, py::arg("rings"), py::arg("edge_length"),
-        py::arg("mesher") = "delaunay", py::arg("triangles") = 0.0,
-        py::arg("sizes") = std::vector<Size>(),
-        py::arg("constraints") = std::vector<Array<double>>(),
-        py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
+        "estimate_region_mesh", &estimate_region_mesh, py::arg("rings"), py::arg("request"),
         py::arg("execution") = py::none(),
         R"(What mesh_region with the same arguments will take: (triangles, bytes at the peak).
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "arrays.hpp"
+#include "complex_arrays.hpp"
 #include "execution.hpp"
 #include "rock_arrays.hpp"
 #include "rows.hpp"
@@ -52,19 +52,11 @@ py::list shell_arrays(std::vector<shells::Shell>&& shells) {
     return arrays;
 }
 
-py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
-                        const Indices& face_vertices, const Indices& face_cells,
-                        const Indices& cell_block, std::size_t blocks, const Position& origin,
+py::list complex_shells(const py::dict& model, std::size_t blocks, const Position& origin,
                         std::optional<double> shrink, WatchedExecution* execution) {
-    require_columns(vertices, 3, "vertices");
-    require_columns(face_cells, 2, "face_cells");
-    const ComplexView complex{.vertices = view(vertices),
-                              .face_offsets = view(face_offsets),
-                              .face_vertices = view(face_vertices),
-                              .face_cells = view(face_cells),
-                              .face_surface = {},
-                              .cell_block = view(cell_block),
-                              .blocks = blocks};
+    ComplexArrays arrays(model);
+    ComplexView& complex = arrays.complex;
+    complex.blocks = blocks;
     std::vector<shells::Shell> found;
     {
         const py::gil_scoped_release unlocked;
@@ -85,13 +77,11 @@ offsets (F + 1,) int32: where the corners of each polygon begin, and where the l
 int32: vertex numbers; vertices: how many there are. Returns edges (E, 2) int32, each once, the lower
 vertex first, and for each corner (C,) int32 the edge from it to the next corner of its polygon.
 Raises InputError kind "bad_index" (items: the polygon).)");
-    module.def("complex_shells", &complex_shells, py::arg("vertices"), py::arg("face_offsets"),
-               py::arg("face_vertices"), py::arg("face_cells"), py::arg("cell_block"),
-               py::arg("blocks"), py::arg("origin"), py::arg("shrink") = py::none(),
-               py::arg("execution") = py::none(),
+    module.def("complex_shells", &complex_shells, py::arg("model"), py::arg("blocks"),
+               py::arg("origin"), py::arg("shrink") = py::none(), py::arg("execution") = py::none(),
                R"(The blocks of a cell complex as closed meshes of polygons.
 
-The arrays are those of docs/dev/geometry.md; blocks: how many there are; origin: three numbers that are
+model: the arrays of docs/dev/geometry.md; blocks: how many there are; origin: three numbers that are
 taken off the coordinates before they are rounded. shrink: None for the boundary of each block; else
 each cell stands by itself, its own vertices drawn towards their mean by this factor.
 

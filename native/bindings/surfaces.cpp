@@ -97,9 +97,11 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
     return to_array(std::move(z));
 }
 
+/// Of each node, or empty: the height that it has, the least and the most.
+using BoundArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
+
 py::dict dsi(const Array<double>& points, const Array<double>& nodes,
-             const Array<std::int32_t>& triangles, const Array<double>& equal,
-             const Array<double>& least, const Array<double>& most, double weight,
+             const Array<std::int32_t>& triangles, const BoundArrays& bounds, double weight,
              WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
@@ -107,6 +109,7 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     const auto heights = [](const Array<double>& array) {
         return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
     };
+    const auto& [equal, least, most] = bounds;
     const interpolation::NodeConstraints constraints{heights(equal), heights(least), heights(most)};
     interpolation::DsiHeights found;
     {
@@ -170,13 +173,12 @@ Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)
 
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
     module.def(
-        "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("equal") = Array<double>(0),
-        arg("least") = Array<double>(0), arg("most") = Array<double>(0), arg("weight") = 0.0,
-        py::arg("execution") = py::none(),
+        "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("bounds"),
+        arg("weight") = 0.0, arg("execution") = py::none(),
         R"(Discrete smooth interpolation of points (P, 3) on a mesh: nodes (N, 2), triangles (T, 3).
 
-equal, least, most  (N,) heights that nodes have, are not below, are not above; NaN: none; empty: none
-weight              of a point's misfit against the roughness of one node; 0: points hold
+bounds  three arrays (N,) of heights that nodes have, are not below, are not above; NaN: none; empty: none
+weight  of a point's misfit against the roughness of one node; 0: points hold
 
 Returns a dict: z (N,); outside, the number of points in no triangle, which did not count; missed, the
 number of points that could not all be met, and misfit, the largest of theirs; iterations;

@@ -63,10 +63,9 @@ def test_cancelled(model):
     native = native_module()
     control = native.Execution()
     control.cancel()
-    arrays = (model.vertices, model.face_offsets, model.face_vertices, model.face_cells, model.cell_block)
     for shrink in (None, 0.5):
         with pytest.raises(native.Cancelled):
-            native.complex_shells(*arrays, len(model.blocks), (0, 0, 0), shrink, execution=control)
+            native.complex_shells(model.native(), len(model.blocks), (0, 0, 0), shrink, execution=control)
 
 
 def expect_edges(shape):

@@ -29,7 +29,7 @@ struct CellCut {
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
-               const EdgeIntersections& cuts, const Pieces& pieces,
+               const EdgeIntersections& cuts, const CutPieces& pieces,
                const exact::OrientedPlane& plane)
         : model_(model), sides_(sides), cuts_(cuts), pieces_(pieces), points_(model, plane, cuts) {}
 
@@ -76,7 +76,7 @@ private:
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
     const EdgeIntersections& cuts_;
-    const Pieces& pieces_;
+    const CutPieces& pieces_;
     PlanePoints points_;
 
     std::vector<Use> uses_;

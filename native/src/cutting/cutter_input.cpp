@@ -274,30 +274,15 @@ void SurfaceInput::orient_upward() {
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
 void SurfaceInput::extend_border() {
-    std::vector<Triangle> border;  // for each border edge, as its triangle runs: ends, third corner
-    for (const auto& [edge, users] : by_edge()) {
-        if (users.size() != 1) continue;
-        const Triangle& t = surface_.triangles[index(users[0])];
-        std::size_t i = 0;
-        while (std::min(t[i], t[(i + 1) % 3]) != edge[0] ||
-               std::max(t[i], t[(i + 1) % 3]) != edge[1])
-            ++i;
-        border.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
-    }
+    const std::vector<CutterBorderEdge> border = border_of(surface_);
     const double width = 256 * rounding_of(surface_.vertices);
     std::map<NodeId, Position> outward;
-    for (const auto& [a, b, c] : border) {
-        const Position o = surface_.vertices[index(a)];
-        const Position along = minus(surface_.vertices[index(b)], o),
-                       inward = minus(surface_.vertices[index(c)], o);
-        const double share = dot(inward, along) / dot(along, along);
-        const Position away = minus(times(share, along), inward);
-        const double size = length(away);
-        if (!(size > 0)) continue;
-        for (const NodeId v : {a, b}) {
+    for (const CutterBorderEdge& edge : border) {
+        const Position away = away_from(surface_, edge);
+        for (const NodeId v : {edge.from, edge.to}) {
             Position& sum = outward.try_emplace(v, Position{0, 0, 0}).first->second;
             for (std::size_t k = 0; k < 3; ++k)
-                sum[k] += away[k] / size;
+                sum[k] += away[k];
         }
     }
     std::map<NodeId, NodeId> beyond;

@@ -2,6 +2,7 @@
 #include "cutting/cutter_surface.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
@@ -37,6 +38,30 @@ void triangulate_face(const ComplexView& model, std::size_t face,
     triangulate(std::span(&loop, 1), rounding, found);
     for (const auto& t : found)
         triangles.push_back({t[0].node, t[1].node, t[2].node});
+}
+
+std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
+    std::map<std::array<NodeId, 2>, std::pair<int, CutterBorderEdge>> users;
+    for (const auto& t : surface.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
+            ++count;
+            edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
+        }
+    }
+    std::vector<CutterBorderEdge> border;
+    for (const auto& [key, use] : users) {
+        if (use.first % 2 == 1) border.push_back(use.second);
+    }
+    return border;
+}
+
+Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge) {
+    const Position o = surface.vertices[index(edge.from)];
+    const Position along = minus(surface.vertices[index(edge.to)], o);
+    const Position inward = minus(surface.vertices[index(edge.corner)], o);
+    const double share = dot(inward, along) / dot(along, along);
+    return unit(minus(times(share, along), inward));
 }
 
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {

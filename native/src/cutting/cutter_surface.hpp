@@ -18,6 +18,15 @@ struct CutterSurface {
     bool is_closed = false;  ///< every edge has an even number of triangles
 };
 
+/// An edge that an odd number of triangles have, as one of them runs, and the third corner of that.
+struct CutterBorderEdge {
+    NodeId from, to, corner;
+};
+std::vector<CutterBorderEdge> border_of(const CutterSurface& surface);
+
+/// Away from an edge, in the plane of its triangle, as long as 1.
+Position away_from(const CutterSurface& surface, const CutterBorderEdge& edge);
+
 /// Whether three points lie in one line, exactly.
 bool in_one_line(const Position& a, const Position& b, const Position& c);
 

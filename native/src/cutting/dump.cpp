@@ -13,22 +13,6 @@ const int realmodel_cutting_dump = 1;
 
 namespace realmodel::cutting {
 
-void dump_overlay(const SurfaceOverlay& overlay, const char* path) {
-    ObjFile file(path);
-    for (const bool of_cutter : {false, true}) {
-        file.begin_group(of_cutter ? "surface" : "faces");
-        for (std::size_t r = 0; r < overlay.size(); ++r) {
-            if (overlay.of_cutter(r) != of_cutter) continue;
-            for (const auto loop : overlay.loops(r)) {
-                std::vector<Position> corners;
-                for (const NodeId node : loop)
-                    corners.push_back(overlay.position(node));
-                file.add('f', corners);
-            }
-        }
-    }
-}
-
 void dump_parts(const RoundedParts& parts, const char* path) {
     ObjFile file(path);
     for (std::size_t n = 0; n < parts.vertices.size() + parts.new_positions.size(); ++n)

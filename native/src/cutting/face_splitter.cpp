@@ -43,11 +43,11 @@ private:
     std::vector<std::array<NodeId, 2>> border_, edges_;
 };
 
-void FaceSplitter::split(std::span<const NodeId> face, FaceParts& parts) {
+void FaceSplitter::split(std::span<const NodeId> face, SplitFace& parts) {
     if (!split_in_two(face, parts)) split_by_triangles(face, parts);
 }
 
-bool FaceSplitter::split_in_two(std::span<const NodeId> face, FaceParts& parts) {
+bool FaceSplitter::split_in_two(std::span<const NodeId> face, SplitFace& parts) {
     cycle_.clear();
     std::array<std::size_t, 2> on{};
     std::size_t found = 0;
@@ -101,7 +101,7 @@ void FaceSplitter::split_triangle(const std::array<LoopCorner, 3>& t, const Cuts
     if (!has_above && !has_below) parts.push_back(std::move(level));
 }
 
-void FaceSplitter::split_by_triangles(std::span<const NodeId> face, FaceParts& parts) {
+void FaceSplitter::split_by_triangles(std::span<const NodeId> face, SplitFace& parts) {
     const auto [loop, rounding] = loop_of(model_, face);
     std::vector<std::array<LoopCorner, 3>> triangles;
     triangulate(std::span(&loop, 1), rounding, triangles);

@@ -10,7 +10,7 @@
 namespace realmodel::cutting {
 
 /// Parts of one face, each on one side of the plane.
-struct FaceParts {
+struct SplitFace {
     Polygons polygons;  ///< turning as the face does
     std::vector<std::int8_t> sides;
 
@@ -32,7 +32,7 @@ public:
                  const EdgeIntersections& cuts)
         : model_(model), sides_(sides), cuts_(cuts) {}
 
-    void split(std::span<const NodeId> face, FaceParts& parts);
+    void split(std::span<const NodeId> face, SplitFace& parts);
 
 private:
     struct TrianglePart;
@@ -40,8 +40,8 @@ private:
 
     void split_triangle(const std::array<LoopCorner, 3>& t, const Cuts& cuts,
                         std::vector<TrianglePart>& parts) const;
-    bool split_in_two(std::span<const NodeId> face, FaceParts& parts);
-    void split_by_triangles(std::span<const NodeId> face, FaceParts& parts);
+    bool split_in_two(std::span<const NodeId> face, SplitFace& parts);
+    void split_by_triangles(std::span<const NodeId> face, SplitFace& parts);
     std::int8_t side(NodeId v) const { return sides_[index(v)]; }
 
     const ComplexView& model_;

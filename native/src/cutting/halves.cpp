@@ -53,8 +53,8 @@ struct Half {
 /// @param pieces  chunks() of them; each_of(chunk, visit) calls visit(polygon, piece)
 template <class Chunks>
 Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_positions,
-                 const Pieces& near, const Chunks& pieces, const std::vector<HalfCell>& half_cells,
-                 const Execution& execution) {
+                 const CutPieces& near, const Chunks& pieces,
+                 const std::vector<HalfCell>& half_cells, const Execution& execution) {
     Cut cut;
     const std::size_t own_nodes = model.vertex_count(), chunks = pieces.chunks();
     std::array<Half, 2> halves{
@@ -72,7 +72,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
     }
     // calls visit(half, nodes, piece, cells in the half) for what the halves have of a chunk
     const auto each_of_half = [&](std::size_t chunk, const auto& visit) {
-        pieces.each_of(chunk, [&](std::span<const NodeId> nodes, const Piece& piece) {
+        pieces.each_of(chunk, [&](std::span<const NodeId> nodes, const CutPiece& piece) {
             std::array<std::array<std::int32_t, 2>, 2> own{{{-1, -1}, {-1, -1}}};
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::int32_t part = piece.parts[k];
@@ -88,7 +88,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
             cut.section = assemble_section(model, new_positions, near);
             return;
         }
-        each_of_half(chunk - 1, [&](Half& half, const auto& nodes, const Piece&, const auto&) {
+        each_of_half(chunk - 1, [&](Half& half, const auto& nodes, const CutPiece&, const auto&) {
             half.chunked.count(chunk - 1, nodes.size());
         });
     });
@@ -98,7 +98,7 @@ Cut assemble_all(const ComplexView& model, const std::vector<Position>& new_posi
         std::array<ChunkedComplex::Writer, 2> writers{
             ChunkedComplex::Writer(halves[0].chunked, chunk),
             ChunkedComplex::Writer(halves[1].chunked, chunk)};
-        each_of_half(chunk, [&](Half& half, std::span<const NodeId> nodes, const Piece& piece,
+        each_of_half(chunk, [&](Half& half, std::span<const NodeId> nodes, const CutPiece& piece,
                                 const std::array<std::int32_t, 2>& own) {
             const bool is_exposed = (own[0] < 0 || own[1] < 0) && piece.cells[1] >= 0;
             writers[static_cast<std::size_t>(&half - halves.data())].write(
@@ -129,13 +129,13 @@ struct ChunkedPieces {
             visit(pieces.polygons[p], pieces[p]);
     }
 
-    const Pieces& pieces;
+    const CutPieces& pieces;
 };
 
 }  // namespace
 
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const CutPieces& pieces, const std::vector<HalfCell>& half_cells,
                     const Execution& execution) {
     return assemble_all(model, new_positions, pieces, ChunkedPieces{pieces}, half_cells, execution);
 }
@@ -147,7 +147,7 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
 }
 
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,
-                         const Pieces& pieces) {
+                         const CutPieces& pieces) {
     Section section;
     Renumbering renumbered(model, new_positions, section.vertices);
     for (std::size_t p = 0; p < pieces.size(); ++p) {

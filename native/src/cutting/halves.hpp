@@ -13,7 +13,7 @@ class WholePieces;
 /// Puts both halves and the section together. `positions` are the model's vertices and the new
 /// nodes after them.
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const std::vector<HalfCell>& half_cells,
+                    const CutPieces& pieces, const std::vector<HalfCell>& half_cells,
                     const Execution& execution);
 
 /// The same of a model of which a part was cut up.
@@ -23,6 +23,6 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
 
 /// The pieces that lie on the cutter, each as it is seen from above.
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,
-                         const Pieces& pieces);
+                         const CutPieces& pieces);
 
 }  // namespace realmodel::cutting

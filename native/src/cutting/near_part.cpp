@@ -260,14 +260,14 @@ std::vector<std::int32_t> NearPart::number_parts(std::vector<HalfCell>& half_cel
     return number;
 }
 
-std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
+std::optional<WholePieces> NearPart::put_back(CutPieces&& pieces, std::vector<HalfCell>& half_cells,
                                               std::span<const std::int8_t> sides) const {
     WholePieces whole;
     whole.model_ = model_;
     whole.sides_ = sides;
     const std::vector<std::int32_t> number = number_parts(half_cells, whole);
     // pieces in the order of the model's faces, then caps
-    const Pieces near = std::move(pieces);
+    const CutPieces near = std::move(pieces);
     std::vector<std::int32_t> of_faces(near.size());
     std::iota(of_faces.begin(), of_faces.end(), 0);
     const auto key = [&](std::int32_t p) {
@@ -284,7 +284,7 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
     whole.near_.polygons.offsets.reserve(near.size() + 1);
     for (const std::int32_t p : of_faces) {
         const auto polygon = near.polygons[index(p)];
-        Piece piece = near[index(p)];
+        CutPiece piece = near[index(p)];
         for (std::int32_t& part : piece.parts) {
             if (part >= 0) part = number[index(part)];
         }
@@ -314,7 +314,7 @@ std::optional<WholePieces> NearPart::put_back(Pieces&& pieces, std::vector<HalfC
     }
     if (beside != 0) return std::nullopt;
     whole.first_cap_ = index(std::ranges::count_if(
-        whole.near_.origins, [](const Piece& piece) { return piece.face >= 0; }));
+        whole.near_.origins, [](const CutPiece& piece) { return piece.face >= 0; }));
     return whole;
 }
 

@@ -21,7 +21,7 @@ public:
     template <class Visit>
     void each_of(std::size_t chunk, const Visit& visit) const;
     /// Those of the part alone.
-    const Pieces& near() const { return near_; }
+    const CutPieces& near() const { return near_; }
 
 private:
     friend class NearPart;
@@ -35,12 +35,12 @@ private:
         const auto begin = near_.origins.begin();
         return static_cast<std::size_t>(
             std::partition_point(begin, begin + static_cast<std::ptrdiff_t>(first_cap_),
-                                 [face](const Piece& p) { return index(p.face) < face; }) -
+                                 [face](const CutPiece& p) { return index(p.face) < face; }) -
             begin);
     }
 
     ComplexView model_;
-    Pieces near_;
+    CutPieces near_;
     std::size_t first_cap_ = 0;           ///< in `near_`
     std::vector<std::int32_t> far_part_;  ///< of cells: -1 left out, kNear of the part
     std::span<const std::int8_t> sides_;
@@ -61,7 +61,7 @@ public:
     /// order of its faces and cells: the other cells are added, and their faces follow from them.
     /// @param sides  of the model's cells that are none of the part's: kOn leaves them out
     /// @return nothing where rounding did not leave a face alone that lies beside another cell
-    std::optional<WholePieces> put_back(Pieces&& pieces, std::vector<HalfCell>& half_cells,
+    std::optional<WholePieces> put_back(CutPieces&& pieces, std::vector<HalfCell>& half_cells,
                                         std::span<const std::int8_t> sides) const;
 
 private:
@@ -113,10 +113,10 @@ void WholePieces::each_of(std::size_t chunk, const Visit& visit) const {
     for (std::size_t f = begin; f < end; ++f) {
         while (next < first_cap_ && index(near_[next].face) <= f)
             visit_near(next++);
-        Piece piece{static_cast<std::int32_t>(f),
-                    {model_.cell(f, 0), model_.cell(f, 1)},
-                    {kOn, kOn},
-                    false};
+        CutPiece piece{static_cast<std::int32_t>(f),
+                       {model_.cell(f, 0), model_.cell(f, 1)},
+                       {kOn, kOn},
+                       false};
         for (std::size_t k = 0; k < 2; ++k) {
             if (piece.cells[k] < 0) continue;
             piece.parts[k] = far_part_[index(piece.cells[k])];

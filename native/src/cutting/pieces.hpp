@@ -17,7 +17,7 @@
 // patch    regions of one face that no edge of the cutter lies between; cap: a region of the
 //          cutter as one of the cells around it sees it; slot: either of them, as one cell sees it
 // part     what is connected of a cell on one side (HalfCell): a cell of a half
-// piece    a polygon between two parts, or around one (Piece): of a patch, a whole face or a cap
+// piece    a polygon between two parts, or around one (CutPiece): of a patch, a whole face or a cap
 // shell    what is connected of the boundary of a part; around a hollow its volume is negative
 // slit     an edge that a cell has the same cap on both sides of (CellCutter)
 // near     of cells: they may meet the cutter; the others are far, and are copied (NearPart)
@@ -35,7 +35,7 @@ namespace realmodel::cutting {
 /// Where a polygon of a cut model comes from, and what is on either side of it. It turns
 /// counter-clockwise seen from outside of the first of its two cells. A cap has one cell twice:
 /// first the part below it, then the part above.
-struct Piece {
+struct CutPiece {
     std::int32_t face;                  ///< the model's face; a cap: below 0 (PartSides::cap_face)
     std::array<std::int32_t, 2> cells;  ///< the model's cells, -1 outside
     std::array<std::int8_t, 2> sides;   ///< of either cell's part; kOn: no cell there
@@ -48,20 +48,20 @@ struct Piece {
 };
 
 /// Faces of a model cut up by a cutter, and the caps: what halves are put together from.
-struct Pieces {
+struct CutPieces {
     Polygons polygons;
-    std::vector<Piece> origins;
+    std::vector<CutPiece> origins;
 
     std::size_t size() const { return origins.size(); }
-    Piece& operator[](std::size_t p) { return origins[p]; }
-    const Piece& operator[](std::size_t p) const { return origins[p]; }
+    CutPiece& operator[](std::size_t p) { return origins[p]; }
+    const CutPiece& operator[](std::size_t p) const { return origins[p]; }
     /// @throws InputError kind too_large
-    void add(std::span<const NodeId> polygon, const Piece& origin) {
+    void add(std::span<const NodeId> polygon, const CutPiece& origin) {
         checked_number(origins.size(), "faces of cut cells");
         polygons.add(polygon);
         origins.push_back(origin);
     }
-    void add_reversed(std::span<const NodeId> polygon, const Piece& origin) {
+    void add_reversed(std::span<const NodeId> polygon, const CutPiece& origin) {
         add(polygon, origin);
         std::reverse(polygons.nodes.end() - static_cast<std::ptrdiff_t>(polygon.size()),
                      polygons.nodes.end());
@@ -72,17 +72,6 @@ struct Pieces {
 struct PieceRef {
     std::int32_t piece = 0;
     std::int32_t which = 0;  ///< 0 or 1: whose outside its polygon turns counter-clockwise from
-};
-
-/// The pieces of each cell that is cut.
-struct CellPieces {
-    std::vector<std::int32_t> cells;  ///< the model's numbers of the cells that are cut, ascending
-    std::vector<std::int64_t> offsets{0};
-    std::vector<PieceRef> refs;
-
-    std::span<const PieceRef> operator[](std::size_t i) const {
-        return {refs.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
-    }
 };
 
 /// A cell of a half: the model's cell that it is or is part of, and the half.

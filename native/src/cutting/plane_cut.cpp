@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
 #include "cutting/cell_cutter.hpp"
 #include "cutting/cutter_surface.hpp"
@@ -16,6 +17,7 @@
 #include "cutting/model_check.hpp"
 #include "cutting/rounding/part_rounding.hpp"
 #include "exact/orient2d.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
@@ -50,10 +52,6 @@ bool crosses_itself(std::span<const Position> corners) {
         }
     }
     return false;
-}
-
-std::size_t chunks(std::size_t count, std::size_t size) {
-    return (count + size - 1) / size;
 }
 
 class PlaneCutter {
@@ -97,7 +95,7 @@ private:
     }
     void mark_sides();
     void find_cuts();
-    Piece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
+    CutPiece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
     void divide_faces(bool all);
     std::int8_t level_side(std::size_t face, std::size_t which, int facing) const;
     void cut_cells(bool parts);
@@ -117,8 +115,9 @@ private:
     std::vector<std::uint8_t> face_sides_, cell_sides_;
     std::unique_ptr<EdgeIntersections> cuts_;
     std::vector<Position> new_positions_;  ///< of cut edges, which settle_part may move
-    Pieces pieces_;
-    CellPieces cell_pieces_;
+    CutPieces pieces_;
+    std::vector<std::int32_t> cut_cells_;  ///< the model's numbers, ascending
+    Buckets<PieceRef> cell_pieces_;        ///< of these
     std::vector<CellCut> cell_cuts_;
     std::size_t first_cap_ = 0;
     std::set<std::pair<std::int32_t, std::size_t>>
@@ -128,16 +127,17 @@ private:
 /// On which sides of the plane faces and cells have corners.
 void PlaneCutter::mark_sides() {
     face_sides_.assign(model_.face_count(), 0);
-    parallel_chunks(chunks(face_sides_.size(), kFaces), execution_, [&](std::size_t c) {
-        for (std::size_t f = c * kFaces; f < std::min(face_sides_.size(), (c + 1) * kFaces); ++f) {
-            std::uint8_t found = 0;
-            for (const NodeId v : model_.face(f)) {
-                const std::int8_t side = sides_[index(v)];
-                found |= side == kAbove ? kHasAbove : side == kBelow ? kHasBelow : 0;
+    parallel_ranges(
+        face_sides_.size(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                std::uint8_t found = 0;
+                for (const NodeId v : model_.face(f)) {
+                    const std::int8_t side = sides_[index(v)];
+                    found |= side == kAbove ? kHasAbove : side == kBelow ? kHasBelow : 0;
+                }
+                face_sides_[f] = found;
             }
-            face_sides_[f] = found;
-        }
-    });
+        });
     cell_sides_.assign(model_.cell_block.size(), 0);
     for (std::size_t f = 0; f < face_sides_.size(); ++f) {
         poll(execution_.progress, f);
@@ -197,10 +197,11 @@ std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int fac
 }
 
 /// A part of a face on one side of the plane, or in it.
-Piece PlaneCutter::origin(std::size_t face, std::int8_t side,
-                          std::span<const NodeId> polygon) const {
+CutPiece PlaneCutter::origin(std::size_t face, std::int8_t side,
+                             std::span<const NodeId> polygon) const {
     const std::array cells{model_.cell(face, 0), model_.cell(face, 1)};
-    Piece piece{static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
+    CutPiece piece{
+        static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
     if (side != kOn) return piece;
     std::vector<Position> corners;
     for (const NodeId node : polygon)
@@ -220,42 +221,43 @@ Piece PlaneCutter::origin(std::size_t face, std::int8_t side,
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
     find_cuts();
-    const std::size_t count = chunks(model_.face_count(), kFaces);
-    std::vector<Pieces> found(count);
+    std::vector<CutPieces> found((model_.face_count() + kFaces - 1) / kFaces);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
-    parallel_chunks(count, execution_, [&](std::size_t c) {
-        FaceSplitter splitter(model_, sides_, *cuts_);
-        FaceParts parts;
-        Pieces& own = found[c];
-        for (std::size_t f = c * kFaces; f < std::min(model_.face_count(), (c + 1) * kFaces); ++f) {
-            const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
-            const auto face = model_.face(f);
-            if (!all && face_sides_[f] != 0 && face_sides_[f] != kCut) {
-                if (!is_cut(cells[0]) && !is_cut(cells[1])) continue;
-                const auto on = std::count_if(face.begin(), face.end(),
-                                              [&](NodeId v) { return sides_[index(v)] == kOn; });
-                if (on < 2) continue;
+    parallel_ranges(
+        model_.face_count(), kFaces, execution_, [&](std::size_t begin, std::size_t end) {
+            FaceSplitter splitter(model_, sides_, *cuts_);
+            SplitFace parts;
+            CutPieces& own = found[begin / kFaces];
+            for (std::size_t f = begin; f < end; ++f) {
+                const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
+                const auto face = model_.face(f);
+                if (!all && face_sides_[f] != 0 && face_sides_[f] != kCut) {
+                    if (!is_cut(cells[0]) && !is_cut(cells[1])) continue;
+                    const auto on = std::count_if(face.begin(), face.end(), [&](NodeId v) {
+                        return sides_[index(v)] == kOn;
+                    });
+                    if (on < 2) continue;
+                }
+                parts.clear();
+                if (face_sides_[f] == kCut) {
+                    splitter.split(face, parts);
+                } else if (face_sides_[f] == 0) {
+                    divide_face(model_, f, parts.polygons);
+                    parts.sides.assign(parts.polygons.size(), kOn);
+                } else {
+                    parts.polygons.add(face);
+                    parts.sides.push_back(face_sides_[f] == kHasAbove ? kAbove : kBelow);
+                }
+                for (std::size_t p = 0; p < parts.sides.size(); ++p) {
+                    if (parts.polygons[p].size() < 3) continue;
+                    own.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
+                }
             }
-            parts.clear();
-            if (face_sides_[f] == kCut) {
-                splitter.split(face, parts);
-            } else if (face_sides_[f] == 0) {
-                divide_face(model_, f, parts.polygons);
-                parts.sides.assign(parts.polygons.size(), kOn);
-            } else {
-                parts.polygons.add(face);
-                parts.sides.push_back(face_sides_[f] == kHasAbove ? kAbove : kBelow);
-            }
-            for (std::size_t p = 0; p < parts.sides.size(); ++p) {
-                if (parts.polygons[p].size() < 3) continue;
-                own.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
-            }
-        }
-    });
+        });
     pieces_ = {};
-    for (const Pieces& own : found) {
+    for (const CutPieces& own : found) {
         for (std::size_t p = 0; p < own.size(); ++p)
             pieces_.add(own.polygons[p], own[p]);
     }
@@ -263,38 +265,27 @@ void PlaneCutter::divide_faces(bool all) {
 }
 
 void PlaneCutter::cut_cells(bool parts) {
-    cell_pieces_ = {};
+    cut_cells_.clear();
     std::vector<std::int32_t> number(cell_sides_.size(), -1);
     for (std::size_t c = 0; c < cell_sides_.size(); ++c) {
         if (cell_sides_[c] != kCut) continue;
-        number[c] = static_cast<std::int32_t>(cell_pieces_.cells.size());
-        cell_pieces_.cells.push_back(static_cast<std::int32_t>(c));
+        number[c] = static_cast<std::int32_t>(cut_cells_.size());
+        cut_cells_.push_back(static_cast<std::int32_t>(c));
     }
-    const std::size_t count = cell_pieces_.cells.size();
-    const auto each = [&](const auto& visit) {
+    const std::size_t count = cut_cells_.size();
+    cell_pieces_ = bucketize<PieceRef>(count, [&](const auto& put) {
         for (std::size_t p = 0; p < first_cap_; ++p) {
             for (std::int32_t k = 0; k < 2; ++k) {
                 const std::int32_t cell = pieces_[p].cells[index(k)];
                 if (cell >= 0 && number[index(cell)] >= 0)
-                    visit(index(number[index(cell)]), PieceRef{static_cast<std::int32_t>(p), k});
+                    put(index(number[index(cell)]), PieceRef{static_cast<std::int32_t>(p), k});
             }
         }
-    };
-    auto& offsets = cell_pieces_.offsets;
-    offsets.assign(count + 1, 0);
-    each([&](std::size_t cell, PieceRef) { ++offsets[cell + 1]; });
-    for (std::size_t i = 0; i < count; ++i)
-        offsets[i + 1] += offsets[i];
-    cell_pieces_.refs.resize(static_cast<std::size_t>(offsets[count]));
-    std::vector<std::int64_t> at(offsets.begin(), offsets.end() - 1);
-    each([&](std::size_t cell, PieceRef ref) {
-        cell_pieces_.refs[static_cast<std::size_t>(at[cell]++)] = ref;
     });
-
     cell_cuts_.assign(count, {});
-    parallel_chunks(chunks(count, kCells), execution_, [&](std::size_t c) {
+    parallel_ranges(count, kCells, execution_, [&](std::size_t begin, std::size_t end) {
         CellCutter cutter(model_, sides_, *cuts_, pieces_, plane_);
-        for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             if (parts) {
                 cutter.cut(cell_pieces_[i], cell_cuts_[i]);
             } else {
@@ -305,7 +296,7 @@ void PlaneCutter::cut_cells(bool parts) {
     for (std::size_t i = 0; i < count; ++i) {
         const Polygons& caps = cell_cuts_[i].caps;
         for (std::size_t c = 0; c < caps.size(); ++c) {
-            const std::int32_t cell = cell_pieces_.cells[i];
+            const std::int32_t cell = cut_cells_[i];
             pieces_.add(caps[c], {-1, {cell, cell}, {kBelow, kAbove}, true});
         }
     }
@@ -316,7 +307,7 @@ void PlaneCutter::cut_cells(bool parts) {
 /// some rounding (true: to be done again), else moves a corner of its cap by as little as possible.
 bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
                               std::span<const PieceRef> refs) {
-    Position low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    spatial::Box box;
     NodeId last = -1;
     std::vector<NodeId> vertices;
     bool near = true;
@@ -324,10 +315,7 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
         if (cut.part[i] != part) continue;
         for (const NodeId node : pieces_.polygons[index(refs[i].piece)]) {
             const Position p = position(node);
-            for (std::size_t k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], p[k]);
-                high[k] = std::max(high[k], p[k]);
-            }
+            box.include(p);
             if (cuts_->contains(node)) {
                 last = std::max(last, node);
             } else if (sides_[index(node)] != kOn) {
@@ -347,7 +335,7 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
     }
     std::vector<std::size_t> flat;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (low[k] == high[k]) flat.push_back(k);
+        if (box.low[k] == box.high[k]) flat.push_back(k);
     }
     if (flat.empty()) return false;
     if (near) {

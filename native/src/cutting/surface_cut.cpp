@@ -73,7 +73,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution&
     if (std::find(model.cell_block.begin(), model.cell_block.end(), block) ==
         model.cell_block.end())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
-    Pieces pieces;
+    CutPieces pieces;
     Polygons polygons;
     std::vector<HalfCell> cells;
     const auto side = [&](std::int32_t cell) {
@@ -88,7 +88,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, const Execution&
         const std::array<std::int32_t, 2> own{model.cell(f, 0), model.cell(f, 1)};
         const std::array<std::int8_t, 2> sides{side(own[0]), side(own[1])};
         const bool bounds = (sides[0] == kBelow) != (sides[1] == kBelow);
-        const Piece origin{static_cast<std::int32_t>(f), own, sides, bounds, own};
+        const CutPiece origin{static_cast<std::int32_t>(f), own, sides, bounds, own};
         polygons.clear();
         if (bounds && own[1] >= 0) {
             divide_face(model, f, polygons);

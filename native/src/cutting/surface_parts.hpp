@@ -22,7 +22,7 @@ public:
     SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding, const PartSides& sides,
                  Progress* progress);
 
-    Pieces pieces;
+    CutPieces pieces;
     std::vector<HalfCell> half_cells;
     /// Of cells below and above: whether some use an edge more than twice.
     std::array<bool, 2> touches{false, false};

@@ -128,7 +128,7 @@ void SurfaceParts::number_parts() {
 void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
                          bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
                          bool level) {
-    Piece origin{face, {-1, -1}, {kOn, kOn}, level};
+    CutPiece origin{face, {-1, -1}, {kOn, kOn}, level};
     for (std::size_t k = 0; k < 2; ++k) {
         if (slots[k] < 0) continue;
         const Slot& slot = slots_[index(slots[k])];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -92,8 +93,7 @@ std::vector<Edge> sharp_edges(const ComplexView& model, const std::vector<KeptFa
         const auto loop = model.face(kept.face);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const std::int32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-            uses.push_back({{std::min(a, b), std::max(a, b)},
-                            static_cast<std::int32_t>(&kept - faces.data())});
+            uses.push_back({unordered(a, b), static_cast<std::int32_t>(&kept - faces.data())});
         }
         // turned the same way all over a patch
         const auto at = [&](std::size_t i) { return model.vertex(loop[i]); };
@@ -172,7 +172,7 @@ public:
                     goes_on = goes_on || is_straight(v, others[i], others[j]);
             if (others.size() == 2 && goes_on) continue;
             found[goes_on || others.size() < 2 ? 1 : 0].push_back(v);
-            corners_[v] = true;
+            corners_.insert(v);
         }
         return found;
     }
@@ -201,10 +201,7 @@ private:
         const Point w = minus(model_.vertex(b), model_.vertex(v));
         return dot(u, w) < kStraight * length(u) * length(w);
     }
-    bool take(const Edge& edge) {
-        return taken_.emplace(Edge{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])}, true)
-            .second;
-    }
+    bool take(const Edge& edge) { return taken_.insert(unordered(edge[0], edge[1])).second; }
     std::pair<double, std::vector<std::int32_t>> walk(std::int32_t from, std::int32_t to) {
         std::vector<std::int32_t> line{from, to};
         while (!corners_.contains(line.back()) && line.back() != from) {
@@ -221,8 +218,8 @@ private:
 
     const ComplexView& model_;
     std::map<std::int32_t, std::vector<std::int32_t>> neighbors_;
-    std::map<std::int32_t, bool> corners_;
-    std::map<Edge, bool> taken_;
+    std::set<std::int32_t> corners_;
+    std::set<Edge> taken_;
 };
 
 /// A piece of a line; its size is its length where edges are as long as anywhere, and more where

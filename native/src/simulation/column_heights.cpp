@@ -2,7 +2,6 @@
 #include "simulation/column_heights.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -165,7 +164,6 @@ public:
             z[level] = z[level - 1];
             surface[level] = surface[level - 1];
         }
-        assert(std::is_sorted(z.begin(), z.end()));
         return true;
     }
 

@@ -49,15 +49,16 @@ double local_length(const PlanPoint& p, double edge_length, std::span<const Line
 }
 
 using Link = std::array<std::int32_t, 2>;
-struct Met {
+/// What lies along a link.
+struct LinkUse {
     bool is_step = false;
     std::vector<std::int32_t> ending;
 };
 
 /// The anchors that lines run along, and what ends along each pair.
-std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
-                                   const meshing::ConstrainedTriangulation& delaunay,
-                                   Progress* progress) {
+std::map<Link, LinkUse> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
+                                       const meshing::ConstrainedTriangulation& delaunay,
+                                       Progress* progress) {
     std::vector<std::vector<std::int32_t>> neighbors(anchors.size());
     for (const auto& t : delaunay.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -84,7 +85,7 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
         }
         return from;
     };
-    std::map<Link, Met> links;
+    std::map<Link, LinkUse> links;
     std::int32_t at = 0;
     std::size_t count = 0;
     for (const Traces::Segment& segment : traces.segments) {
@@ -109,12 +110,12 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
                 }
             }
             if (next < 0) break;
-            Met& met = links[{std::min(here, next), std::max(here, next)}];
+            LinkUse& use = links[unordered(here, next)];
             if (segment.block < 0) {
-                met.is_step = true;
-            } else if (std::find(met.ending.begin(), met.ending.end(), segment.block) ==
-                       met.ending.end()) {
-                met.ending.push_back(segment.block);
+                use.is_step = true;
+            } else if (std::find(use.ending.begin(), use.ending.end(), segment.block) ==
+                       use.ending.end()) {
+                use.ending.push_back(segment.block);
             }
             here = next;
         }
@@ -126,7 +127,8 @@ std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoi
 std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& blocks,
                                    std::span<const PlanPoint> anchors,
                                    const meshing::ConstrainedTriangulation& delaunay,
-                                   const std::map<Link, Met>& links, const Execution& execution) {
+                                   const std::map<Link, LinkUse>& links,
+                                   const Execution& execution) {
     constexpr std::array<std::array<double, 3>, 7> kShares{{{1. / 3, 1. / 3, 1. / 3},
                                                             {.6, .2, .2},
                                                             {.2, .6, .2},
@@ -148,12 +150,16 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     }
     const ColumnHeights columns(model, blocks, samples, execution);
     DisjointSets faces(triangles.size());
+    std::vector<std::int32_t> open;  // triangles that no line divides from beyond the anchors
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t a = triangles[t][i], b = triangles[t][(i + 1) % 3],
-                               n = delaunay.neighbors[t][i];
-            if (n >= 0 && !links.contains({std::min(a, b), std::max(a, b)}))
+            const std::int32_t n = delaunay.neighbors[t][i];
+            if (links.contains(unordered(triangles[t][i], triangles[t][(i + 1) % 3]))) continue;
+            if (n >= 0) {
                 faces.join(static_cast<std::int32_t>(t), n);
+            } else {
+                open.push_back(static_cast<std::int32_t>(t));
+            }
         }
     }
     std::vector<std::vector<double>> area(triangles.size());  // of each rock mass, then outside
@@ -167,15 +173,9 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
             area[face][rock < 0 ? blocks.count() : index(rock)] += own;
         }
     }
-    // what no line divides from beyond the anchors lies outside
-    std::vector<std::uint8_t> is_open(triangles.size(), 0);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t a = triangles[t][i], b = triangles[t][(i + 1) % 3];
-            if (delaunay.neighbors[t][i] < 0 && !links.contains({std::min(a, b), std::max(a, b)}))
-                is_open[index(faces.find(static_cast<std::int32_t>(t)))] = 1;
-        }
-    }
+    std::vector<std::uint8_t> is_open(triangles.size(), 0);  // it lies outside
+    for (const std::int32_t t : open)
+        is_open[index(faces.find(t))] = 1;
     std::vector<std::int32_t> rocks(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const auto face = index(faces.find(static_cast<std::int32_t>(t)));
@@ -254,18 +254,17 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = delaunay.triangles[t][i], b = delaunay.triangles[t][(i + 1) % 3];
-            auto& own =
-                sides.try_emplace({std::min(a, b), std::max(a, b)}, Link{-1, -1}).first->second;
+            auto& own = sides.try_emplace(unordered(a, b), Link{-1, -1}).first->second;
             own[a < b ? 0 : 1] = rocks[t];
         }
     }
     lines.ending_offsets.push_back(0);
-    for (auto& [link, met] : links) {
+    for (auto& [link, use] : links) {
         const auto& [left, right] = sides.at(link);
         if (left < 0 && right < 0) continue;
-        lines.segments.push_back({link[0], link[1], left, right, met.is_step || left != right});
-        std::sort(met.ending.begin(), met.ending.end());
-        lines.ending_blocks.insert(lines.ending_blocks.end(), met.ending.begin(), met.ending.end());
+        lines.segments.push_back({link[0], link[1], left, right, use.is_step || left != right});
+        std::sort(use.ending.begin(), use.ending.end());
+        lines.ending_blocks.insert(lines.ending_blocks.end(), use.ending.begin(), use.ending.end());
         lines.ending_offsets.push_back(static_cast<std::int32_t>(lines.ending_blocks.size()));
     }
     for (const Traces::Segment& s : traces.segments) {

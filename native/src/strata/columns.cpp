@@ -111,7 +111,7 @@ void add_rock(Site& site, EnteredRock& rock, Construction& construction, double 
         SurfaceTiling tiling = tilings.take(k);
         if (site.window) clip_to_window(site, rock, tiling, execution.progress);
         envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
-                                        : overlay_columns(site.geometry, envelope, tiling, k,
+                                        : overlay_columns(site.geometry, envelope, {tiling, k},
                                                           construction, wanted, execution);
         tilings.give_back(std::move(tiling));
     }

@@ -9,14 +9,14 @@
 
 namespace realmodel::structures {
 
+using cutting::CutPiece;
+using cutting::CutPieces;
 using cutting::NodeId;
-using cutting::Piece;
-using cutting::Pieces;
 
 void cancel_facing(cutting::RoundedParts& parts) {
-    Pieces& pieces = parts.pieces;
+    CutPieces& pieces = parts.pieces;
     std::vector<std::uint8_t> is_gone(pieces.size(), 0);
-    Pieces fresh;
+    CutPieces fresh;
     bool any = false;
     for (const auto& equal : cutting::equal_pieces(parts)) {
         std::map<std::int32_t, int> facing;  // of parts: how often a polygon faces away from each
@@ -41,7 +41,7 @@ void cancel_facing(cutting::RoundedParts& parts) {
         std::vector<NodeId> nodes(first.begin(), first.end());
         if (cutting::winding_of(nodes) < 0) std::ranges::reverse(nodes);
         for (std::size_t i = 0; i < std::max(left[0].size(), left[1].size()); ++i) {
-            Piece piece = pieces[equal[0]];
+            CutPiece piece = pieces[equal[0]];
             for (std::size_t k = 0; k < 2; ++k) {
                 const bool has_part = i < left[k].size();
                 piece.parts[k] = has_part ? left[k][i] : -1;

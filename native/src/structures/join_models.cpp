@@ -179,12 +179,12 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
     const std::size_t own = together.vertices.size();
     cutting::ChunkedComplex chunked(complex, own + new_positions.size(), pieces.chunks(),
                                     execution);
-    const auto is_left = [](const cutting::Piece& piece) {
+    const auto is_left = [](const cutting::CutPiece& piece) {
         return piece.parts[0] >= 0 || piece.parts[1] >= 0;
     };
     parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
         pieces.each_of(chunk,
-                       [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
+                       [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
                            if (is_left(piece)) chunked.count(chunk, nodes.size());
                        });
     });
@@ -192,7 +192,7 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
     parallel_chunks(pieces.chunks(), execution, [&](std::size_t chunk) {
         cutting::ChunkedComplex::Writer writer(chunked, chunk);
         pieces.each_of(chunk,
-                       [&](std::span<const cutting::NodeId> nodes, const cutting::Piece& piece) {
+                       [&](std::span<const cutting::NodeId> nodes, const cutting::CutPiece& piece) {
                            if (!is_left(piece)) return;
                            writer.write(nodes, piece.parts,
                                         piece.face < 0 ? WantedParts::surface_of_cap(piece.face)

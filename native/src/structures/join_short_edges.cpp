@@ -237,7 +237,7 @@ private:
 
 void join_short_edges(RoundedParts& parts, double least_rounding) {
     const double allowed = std::max(cutting::rounding_of(parts.vertices), least_rounding);
-    const cutting::Pieces& pieces = parts.pieces;
+    const cutting::CutPieces& pieces = parts.pieces;
     constexpr std::size_t kPieces = 1 << 12;  // at a time
     std::vector<std::vector<Edge>> found((pieces.size() + kPieces - 1) / kPieces);
     parallel_ranges(

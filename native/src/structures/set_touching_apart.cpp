@@ -9,8 +9,8 @@
 
 namespace realmodel::structures {
 
+using cutting::CutPieces;
 using cutting::NodeId;
-using cutting::Pieces;
 using cutting::RoundedParts;
 
 namespace {
@@ -128,7 +128,7 @@ NodeId add_between(RoundedParts& parts, const Edge& edge) {
 void set_touching_apart(RoundedParts& parts) {
     const std::vector<Edge> touching = touching_edges(parts);
     if (touching.empty()) return;
-    const Pieces& pieces = parts.pieces;
+    const CutPieces& pieces = parts.pieces;
     std::vector<EdgeOfPiece> uses;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const auto nodes = pieces.polygons[p];
@@ -159,7 +159,7 @@ void set_touching_apart(RoundedParts& parts) {
         }
     }
     if (nodes_on.empty()) return;
-    Pieces apart;
+    CutPieces apart;
     std::vector<NodeId> loop;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         loop.clear();

@@ -16,33 +16,13 @@
 
 namespace realmodel::structures {
 
+using cutting::CutterBorderEdge;
 using cutting::CutterSurface;
 using cutting::NodeId;
 using cutting::Position;
 using spatial::Box;
 
 namespace {
-
-/// An edge of one triangle, as that triangle runs.
-struct OpenEdge {
-    NodeId from, to, corner;
-};
-
-std::vector<OpenEdge> border_of(const CutterSurface& surface) {
-    std::map<std::array<NodeId, 2>, std::pair<int, OpenEdge>> users;
-    for (const auto& t : surface.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
-            ++count;
-            edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
-        }
-    }
-    std::vector<OpenEdge> border;
-    for (const auto& [key, use] : users) {
-        if (use.first % 2 == 1) border.push_back(use.second);
-    }
-    return border;
-}
 
 /// How far a continuation goes on, in two steps, by the size of a box around the rock and all
 /// structures.
@@ -69,7 +49,7 @@ public:
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
         for (std::size_t i = 0; i < border_.size(); ++i) {
-            const OpenEdge& edge = border_[i];
+            const CutterBorderEdge& edge = border_[i];
             const Position& way = direction_[i];
             Position a = at(edge.from), b = at(edge.to);
             for (const double length : lengths_) {
@@ -98,21 +78,14 @@ public:
 private:
     Position at(NodeId v) const { return fault_.vertices[index(v)]; }
 
-    /// Away from an edge, in the plane of its triangle.
-    Position away_from(const OpenEdge& edge) const {
-        const Position along = minus(at(edge.to), at(edge.from));
-        const Position inward = minus(at(edge.corner), at(edge.from));
-        const double share = dot(inward, along) / dot(along, along);
-        return unit(minus(times(share, along), inward));
-    }
-
     void find_directions(const std::vector<std::vector<std::uint8_t>>& beyond) {
-        const auto are_beyond = [](const std::vector<std::uint8_t>& own, const OpenEdge& edge) {
+        const auto are_beyond = [](const std::vector<std::uint8_t>& own,
+                                   const CutterBorderEdge& edge) {
             return own[index(edge.from)] != 0 && own[index(edge.to)] != 0;
         };
         std::vector<std::vector<std::int32_t>> leaving(fault_.vertices.size());
-        for (const OpenEdge& edge : border_) {
-            const Position away = away_from(edge);
+        for (const CutterBorderEdge& edge : border_) {
+            const Position away = cutting::away_from(fault_, edge);
             const bool is_steep = std::abs(away[2]) >= 0.5;
             const bool in_plane =
                 std::ranges::any_of(beyond, [&](const auto& own) { return are_beyond(own, edge); });
@@ -151,11 +124,11 @@ private:
     /// to the fault, directions turn the way that the border does not.
     bool overlap(std::int32_t i, std::int32_t next) const {
         constexpr double kTurns = 0.25;  // a little overlap, nearly in one plane, parts nothing
-        const OpenEdge &one = border_[index(i)], &other = border_[index(next)];
+        const CutterBorderEdge &one = border_[index(i)], &other = border_[index(next)];
         const Position normal = unit(plus(normal_of(one), normal_of(other)));
         return dot(normal, cross(direction_[index(i)], direction_[index(next)])) < -kTurns;
     }
-    Position normal_of(const OpenEdge& edge) const {
+    Position normal_of(const CutterBorderEdge& edge) const {
         return unit(
             cross(minus(at(edge.to), at(edge.from)), minus(at(edge.corner), at(edge.from))));
     }
@@ -210,7 +183,7 @@ private:
     }
 
     const CutterSurface& fault_;
-    std::vector<OpenEdge> border_;
+    std::vector<CutterBorderEdge> border_;
     std::vector<Position> direction_;  ///< of these
     std::array<double, 2> lengths_;
     std::vector<std::array<Position, 3>> triangles_;
@@ -261,9 +234,10 @@ bool divides(const CutterSurface& fault, const Box& rock) {
     Box near = rock;
     near.widen(1e-6 * length(extent));
     const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
-    return std::ranges::none_of(
-               border_of(fault),
-               [&](const OpenEdge& edge) { return passes(near, at(edge.from), at(edge.to)); }) &&
+    return std::ranges::none_of(border_of(fault),
+                                [&](const CutterBorderEdge& edge) {
+                                    return passes(near, at(edge.from), at(edge.to));
+                                }) &&
            std::ranges::any_of(fault.triangles, [&](const auto& t) {
                return passes(rock, std::array{at(t[0]), at(t[1]), at(t[2])});
            });
@@ -304,7 +278,7 @@ std::vector<std::array<Position, 3>> continuation(std::span<const Structure> str
     if (!structure.dies_out)
         return Continuation(own, beyond_others(structure, given, own), size).triangles();
     std::vector<std::array<NodeId, 2>> border;
-    for (const OpenEdge& edge : border_of(own))
+    for (const CutterBorderEdge& edge : border_of(own))
         border.push_back({edge.from, edge.to});
     auto found = continued_in_mean_plane(own, border, reaches(size));
     if (!found)

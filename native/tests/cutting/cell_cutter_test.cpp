@@ -25,7 +25,7 @@ public:
         for (std::size_t f = 0; f < model_.face_count(); ++f) {
             const auto& loop = complex_.loops[f];
             const NodeLoop face(loop.begin(), loop.end());
-            FaceParts parts;
+            SplitFace parts;
             const auto [low, high] =
                 std::ranges::minmax(loop, {}, [this](std::int32_t v) { return sides_[index(v)]; });
             if (sides_[index(low)] * sides_[index(high)] < 0) {
@@ -48,7 +48,7 @@ public:
     /// The part that what remains of a face belongs to, on a side of the plane.
     std::int32_t part_of(std::int32_t face, std::int8_t side) const {
         for (std::size_t i = 0; i < refs_.size(); ++i) {
-            const Piece& piece = pieces_[index(refs_[i].piece)];
+            const CutPiece& piece = pieces_[index(refs_[i].piece)];
             if (piece.face == face && piece.sides[0] == side) return cut.part[i];
         }
         return -1;
@@ -90,11 +90,11 @@ private:
     exact::OrientedPlane plane_;
     std::vector<std::int8_t> sides_;
     EdgeIntersections cuts_;
-    Pieces pieces_;
+    CutPieces pieces_;
     std::vector<PieceRef> refs_;
 };
 
-TEST(CellParts, ACubeHasOneBelowItsCapAndOneAbove) {
+TEST(CellCutter, ACubeHasOneBelowItsCapAndOneAbove) {
     const CutAt cut(prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), 0.5);
     EXPECT_TRUE(cut.cut.is_clean);
     EXPECT_EQ(cut.cut.caps.size(), 1U);
@@ -107,7 +107,7 @@ TEST(CellParts, ACubeHasOneBelowItsCapAndOneAbove) {
                   cut.beside_cap(0));
 }
 
-TEST(CellParts, AUFallsIntoItsFootAndTwoTowers) {
+TEST(CellCutter, AUFallsIntoItsFootAndTwoTowers) {
     const CutAt cut(u_shape(), 1.5);
     EXPECT_EQ(cut.cut.caps.size(), 2U);
     EXPECT_DOUBLE_EQ(cut.area(), 2);
@@ -117,7 +117,7 @@ TEST(CellParts, AUFallsIntoItsFootAndTwoTowers) {
     EXPECT_NE(cut.beside_cap(0)[1], cut.beside_cap(1)[1]);
 }
 
-TEST(CellParts, WhereAValleyTouchesThePlaneWhatIsAboveFallsApart) {
+TEST(CellCutter, WhereAValleyTouchesThePlaneWhatIsAboveFallsApart) {
     const CutAt cut(prism({{0, 0}, {3, 0}, {3, 2}, {1, 1}, {0, 2}}), 1);
     EXPECT_DOUBLE_EQ(cut.area(), 3);
     EXPECT_EQ(cut.count(kBelow), 1);
@@ -125,14 +125,14 @@ TEST(CellParts, WhereAValleyTouchesThePlaneWhatIsAboveFallsApart) {
     EXPECT_NE(cut.part_of(4, kAbove), cut.part_of(5, kAbove));  // the slopes of the valley
 }
 
-TEST(CellParts, WhereARoofTouchesThePlaneFromWithinWhatIsBelowFallsApart) {
+TEST(CellCutter, WhereARoofTouchesThePlaneFromWithinWhatIsBelowFallsApart) {
     const CutAt cut(prism({{0, 0}, {1, 1}, {3, 0}, {3, 2}, {0, 2}}), 1);
     EXPECT_DOUBLE_EQ(cut.area(), 3);
     EXPECT_EQ(cut.count(kBelow), 2);
     EXPECT_EQ(cut.count(kAbove), 1);
 }
 
-TEST(CellParts, ATopThatOnlyTouchesThePlaneHasNoCap) {
+TEST(CellCutter, ATopThatOnlyTouchesThePlaneHasNoCap) {
     // two peaks, the left one as high as the plane
     const CutAt cut(prism({{0, 0}, {4, 0}, {3, 2}, {2, 0.5}, {1, 1}}), 1);
     EXPECT_EQ(cut.cut.caps.size(), 1U);
@@ -160,7 +160,7 @@ validation::OwnedComplex hollow_cube() {
                        {{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}});
 }
 
-TEST(CellParts, AHollowBelongsToThePartAroundIt) {
+TEST(CellCutter, AHollowBelongsToThePartAroundIt) {
     const CutAt below_it(hollow_cube(), 0.125), above_it(hollow_cube(), 0.875);
     EXPECT_EQ(below_it.cut.part_side.size(), 2U);
     EXPECT_EQ(below_it.part_of(6, kAbove), below_it.beside_cap(0)[1]);
@@ -168,7 +168,7 @@ TEST(CellParts, AHollowBelongsToThePartAroundIt) {
     EXPECT_EQ(above_it.part_of(6, kBelow), above_it.beside_cap(0)[0]);
 }
 
-TEST(CellParts, AHollowInOneTowerBelongsToThatTower) {
+TEST(CellCutter, AHollowInOneTowerBelongsToThatTower) {
     // the tower to the right is the smaller one; faces 3 and 9 are the towers' outer walls
     const Outline right{{2.25, 1.6}, {2.75, 1.6}, {2.75, 1.8}, {2.25, 1.8}},
         left{{0.25, 1.6}, {0.75, 1.6}, {0.75, 1.8}, {0.25, 1.8}};
@@ -182,7 +182,7 @@ TEST(CellParts, AHollowInOneTowerBelongsToThatTower) {
     }
 }
 
-TEST(CellParts, ThroughAHollowTheCapsGoRoundIt) {
+TEST(CellCutter, ThroughAHollowTheCapsGoRoundIt) {
     const CutAt cut(hollow_cube(), 0.5);
     EXPECT_DOUBLE_EQ(cut.area(), 0.75);
     EXPECT_EQ(cut.cut.part_side.size(), 2U);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/dump.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "halved_box.hpp"
-#include "level_cutter.hpp"
 
 namespace realmodel::cutting {
 namespace {
@@ -34,17 +32,6 @@ TEST_F(CuttingDump, PartsAreGroupsOfPolygonsSeenFromOutside) {
     EXPECT_LT(text.find("g part_0\n"), second);
     EXPECT_LT(text.find("f 9 10 12 11\n"), second);  // the cap of the lower part
     EXPECT_NE(text.find("f 11 12 10 9\n", second), std::string::npos);
-}
-
-TEST_F(CuttingDump, RegionsAreInAGroupForFacesAndOneForTheSurface) {
-    cut_at(0.5);
-    const CutterSurface surface = level_cutter(0.5);
-    const SurfaceOverlay overlay(model_, surface, {1, nullptr});
-    dump_overlay(overlay, path_.c_str());
-    std::string text = read();
-    EXPECT_LT(text.find("g faces\n"), text.find("g surface\n"));
-    // four walls of four regions each; of the surface one within, and one around with a hole
-    EXPECT_EQ(std::ranges::count(text, 'f') - 2, 4 * 4 + 3);
 }
 
 TEST_F(CuttingDump, AFileThatCannotBeWrittenIsAnError) {

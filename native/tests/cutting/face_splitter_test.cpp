@@ -26,7 +26,7 @@ Parts parts_of_front(validation::OwnedComplex prism, const Plane& plane) {
         if (sides[index(a)] * sides[index(b)] < 0) edges.push_back(unordered(NodeId{a}, NodeId{b}));
     }
     const EdgeIntersections cuts(model, oriented, edges);
-    FaceParts parts;
+    SplitFace parts;
     FaceSplitter(model, sides, cuts).split(NodeLoop(front.begin(), front.end()), parts);
     Parts found;
     for (std::size_t p = 0; p < parts.polygons.size(); ++p)

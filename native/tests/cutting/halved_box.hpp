@@ -5,9 +5,9 @@
 
 #include <set>
 
+#include "../arrangement/small_polygons.hpp"
 #include "cutting/halves.hpp"
 #include "cutting/rounding/part_rounding.hpp"
-#include "small_polygons.hpp"
 
 namespace realmodel::cutting {
 
@@ -71,7 +71,7 @@ protected:
     std::vector<std::int64_t> offsets_;
     std::vector<std::int32_t> face_vertices_, cells_, surfaces_{1, 1, -1, -1, -1, -1}, block_{0};
     ComplexView model_;
-    Pieces pieces_;
+    CutPieces pieces_;
     std::vector<Position> new_;
     std::vector<HalfCell> parts_{{0, kBelow}, {0, kAbove}};
 };

@@ -33,7 +33,7 @@ protected:
 
     validation::OwnedComplex cubes = validation::two_cubes();
     const ComplexView model = cubes.view();
-    Pieces pieces;
+    CutPieces pieces;
     std::vector<HalfCell> half_cells;
 };
 

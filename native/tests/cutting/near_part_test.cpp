@@ -93,7 +93,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
     const NearPart part(model, is_near, {2, nullptr});
     const ComplexView near = part.view();
     ASSERT_EQ(near.cell_count(), 2U);
-    Pieces pieces;
+    CutPieces pieces;
     std::vector<HalfCell> cells;
     for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
         cells.push_back({c, kAbove});
@@ -111,7 +111,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
         EXPECT_EQ(cells[index(c)].cell, c);
     EXPECT_EQ(whole->near().size(), near.face_count());
     std::size_t f = 0;
-    const auto visit = [&](std::span<const NodeId> polygon, const Piece& piece) {
+    const auto visit = [&](std::span<const NodeId> polygon, const CutPiece& piece) {
         ASSERT_LT(f, all.face_count());
         EXPECT_EQ(piece.face, static_cast<std::int32_t>(f));
         std::vector<NodeId> own(polygon.begin(), polygon.end());
@@ -133,7 +133,7 @@ TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
     const CellComplex model = row();
     const auto is_near = near_cells(model, 1.5, 1);
     const NearPart part(model, is_near, {2, nullptr});
-    Pieces pieces;  // none of the part's faces is left
+    CutPieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;
     const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);
     EXPECT_FALSE(part.put_back(std::move(pieces), cells, sides));

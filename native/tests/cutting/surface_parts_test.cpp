@@ -45,7 +45,7 @@ struct Parted {
     SurfaceParts parts{overlay, winding, sides, nullptr};
 };
 
-TEST(SurfacePieces, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
+TEST(SurfaceParts, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
     const Parted cut(validation::two_cubes(), level_cutter(0.5));
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
@@ -56,18 +56,18 @@ TEST(SurfacePieces, ACubeCutInHalfHasTwoPartsAndTheOneAboveItStaysWhole) {
     EXPECT_EQ(cut.parts.touches, (std::array{false, false}));
 }
 
-TEST(SurfacePieces, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
+TEST(SurfaceParts, ACapHasThePartBelowFirstAndIsSeenFromAbove) {
     const Parted cut(validation::two_cubes(), level_cutter(0.5));
     const auto caps = cut.caps();
     ASSERT_EQ(caps.size(), 1U);
-    const Piece& cap = cut.parts.pieces[caps[0]];
+    const CutPiece& cap = cut.parts.pieces[caps[0]];
     EXPECT_EQ(cap.face, -1);
     EXPECT_EQ(cap.cells, (std::array<std::int32_t, 2>{0, 0}));
     EXPECT_EQ(cap.sides, (std::array<std::int8_t, 2>{kBelow, kAbove}));
     EXPECT_EQ(cut.height_of_normal(caps[0]), 2);
 }
 
-TEST(SurfacePieces, EachPartIsClosed) {
+TEST(SurfaceParts, EachPartIsClosed) {
     for (const double height : {0.5, 1.0, 1.5}) {
         const Parted cut(validation::two_cubes(), level_cutter(height));
         std::map<std::pair<std::int32_t, std::array<NodeId, 2>>, int> uses;
@@ -86,7 +86,7 @@ TEST(SurfacePieces, EachPartIsClosed) {
     }
 }
 
-TEST(SurfacePieces, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
+TEST(SurfaceParts, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
     const Parted cut(validation::two_cubes(), level_cutter(1));
     EXPECT_EQ(cut.parts.half_cells.size(), 2U);
     for (const std::size_t cap : cut.caps())
@@ -94,14 +94,14 @@ TEST(SurfacePieces, AlongAFaceNoCellIsPartedAndTheFaceIsTheCap) {
     EXPECT_EQ(cut.caps().size(), 2U);  // the face's triangles
 }
 
-TEST(SurfacePieces, TheTowersOfAUBecomeTwoParts) {
+TEST(SurfaceParts, TheTowersOfAUBecomeTwoParts) {
     const Parted cut(u_shape(), level_cutter(1.5));
     EXPECT_EQ(cut.count(0, kBelow), 1);
     EXPECT_EQ(cut.count(0, kAbove), 2);
     EXPECT_EQ(cut.caps().size(), 2U);
 }
 
-TEST(SurfacePieces, AHollowThatIsCutOutBelongsToThePartAroundIt) {
+TEST(SurfaceParts, AHollowThatIsCutOutBelongsToThePartAroundIt) {
     const Parted cut(validation::two_cubes(), closed_cutter());
     EXPECT_EQ(cut.parts.half_cells.size(), 3U);
     EXPECT_EQ(cut.count(0, kBelow), 1);
@@ -109,12 +109,12 @@ TEST(SurfacePieces, AHollowThatIsCutOutBelongsToThePartAroundIt) {
     EXPECT_EQ(cut.caps().size(), 4U);
 }
 
-TEST(SurfacePieces, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
+TEST(SurfaceParts, LoopsOfAWallStayOnePolygonOthersBecomeConvex) {
     auto u = u_shape();
     const ComplexView model = u.view();
     const CutterSurface surface = level_cutter(9);
     SurfaceOverlay overlay(model, surface, {1, nullptr});
-    const std::vector<NodeLoop> front{loop_of({0, 1, 2, 3, 4, 5, 6, 7})};
+    const std::vector<NodeLoop> front{node_loop({0, 1, 2, 3, 4, 5, 6, 7})};
     arrangement::LoopTable<NodeId> loops;
     loops.add_loop(front[0]);
     loops.end_region();

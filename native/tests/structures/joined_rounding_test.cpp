@@ -9,10 +9,10 @@ namespace realmodel::structures {
 namespace {
 
 using cutting::kBelow;
-using cutting::loop_of;
 using cutting::NodeId;
 using cutting::Position;
 using cutting::RoundedParts;
+using realmodel::node_loop;
 
 class JoinedHalves : public cutting::AHalvedBox {
 protected:
@@ -31,7 +31,7 @@ TEST_F(JoinedHalves, PolygonsThatFaceEachOtherWithinAPartCancel) {
     cancel_facing(parts);
     ASSERT_EQ(pieces_.size(), 11U);
     EXPECT_EQ(pieces_[0].parts, (std::array{-1, 1}));  // what is left comes first
-    EXPECT_EQ(nodes(0), loop_of({8, 9, 11, 10}));
+    EXPECT_EQ(nodes(0), node_loop({8, 9, 11, 10}));
 }
 
 TEST_F(JoinedHalves, PolygonsOfTwoPartsStay) {
@@ -45,7 +45,7 @@ TEST_F(JoinedHalves, AnEdgeAsShortAsRoundingIsContracted) {
     new_[1] = {0, 0, 0.5 + ulp(0.5)};  // beside node 8
     RoundedParts parts = rounded_parts(true);
     join_short_edges(parts, 0);
-    EXPECT_EQ(nodes(kCap), loop_of({8, 11, 10}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 11, 10}));
 }
 
 TEST_F(JoinedHalves, ALongerEdgeIsContractedOnlyWhereRoundingIsCoarser) {
@@ -53,12 +53,12 @@ TEST_F(JoinedHalves, ALongerEdgeIsContractedOnlyWhereRoundingIsCoarser) {
     {
         RoundedParts parts = rounded_parts(true);
         join_short_edges(parts, 0);
-        EXPECT_EQ(nodes(kCap), loop_of({8, 9, 11, 10}));
+        EXPECT_EQ(nodes(kCap), node_loop({8, 9, 11, 10}));
     }
     surfaces_.assign(6, 1);  // walls would keep their nodes
     RoundedParts parts = rounded_parts(true);
     join_short_edges(parts, 0x1p-29);
-    EXPECT_EQ(nodes(kCap), loop_of({8, 11, 10}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 11, 10}));
 }
 
 TEST_F(JoinedHalves, ShortEdgesStayWhereAPartWouldVanish) {
@@ -80,9 +80,9 @@ TEST_F(JoinedHalves, WhereAPartTouchesItselfTheWayRoundGetsANodeOfItsOwn) {
     set_touching_apart(parts);
     ASSERT_EQ(new_.size(), 7U);
     EXPECT_EQ(new_[6], (Position{0.5, 0, 0.5}));
-    EXPECT_EQ(nodes(11), loop_of({8, 14, 9, 12}));
-    EXPECT_EQ(nodes(12), loop_of({8, 14, 9, 13}));
-    EXPECT_EQ(nodes(kCap), loop_of({8, 9, 11, 10}));
+    EXPECT_EQ(nodes(11), node_loop({8, 14, 9, 12}));
+    EXPECT_EQ(nodes(12), node_loop({8, 14, 9, 13}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 9, 11, 10}));
 }
 
 TEST_F(JoinedHalves, RoundedTogetherTheyAreSound) {

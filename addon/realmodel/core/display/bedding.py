@@ -88,15 +88,9 @@ def bedding_of(
         of_corners[_runs(corner_begin, own)] = np.repeat(history[own], np.diff(corner_begin)[own])
     height, thickness, depth = work.native(
         native_module().bedding,
-        model.vertices,
-        model.face_offsets,
-        model.face_vertices,
-        model.face_cells,
+        model.native(),
         histories,
-        faces,
-        np.ascontiguousarray(is_second, bool),
-        history,
-        layer[block],
+        (faces, np.ascontiguousarray(is_second, bool), history, layer[block]),
         np.zeros(0, np.int32) if of_corners is None else of_corners,
         execution=on_threads(threads),
     )

@@ -182,11 +182,7 @@ def _shells(
     def task(work):
         shells = work.native(
             native_module().complex_shells,
-            model.vertices,
-            model.face_offsets,
-            model.face_vertices,
-            model.face_cells,
-            label,
+            {**model.native(), "cell_block": label},
             count,
             tuple(float(value) for value in origin),
             shrink,

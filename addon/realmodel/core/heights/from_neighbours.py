@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.work import native_module
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
-from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
+from ..settings.variogram import Variogram, fit_warnings
 from .interpolation import Result, Task
 
 
@@ -33,20 +33,18 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
         return Structure(Variogram.from_settings(given), DEFAULT_NEIGHBOURS if asked is None else asked)
-    anisotropy = settings["anisotropy"] or NO_ANISOTROPY
-    finds = settings["anisotropy"] is None
+    anisotropy = settings["anisotropy"]
+    along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
     fitted = task.run(
         native_module().fit_variogram,
         task.points,
+        anisotropy=along,
         drift=settings.get("drift", "constant"),
-        anisotropy_ratio=anisotropy["ratio"],
-        anisotropy_azimuth=anisotropy["azimuth"],
-        finds_anisotropy=finds,
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
         are_apart=are_apart,
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
-    variogram = Variogram.from_fit(fitted, finds)
+    variogram = Variogram.from_fit(fitted, anisotropy is None)
     return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points, "drift" in settings)))
 
 

@@ -31,8 +31,8 @@ def dsi(task: Task) -> Result:
         task.points,
         task.nodes,
         task.triangles,
-        weight=settings["weight"] or 0.0,
-        **given,
+        tuple(given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most")),
+        settings["weight"] or 0.0,
     )
     warnings = []
     if found["outside"]:

@@ -36,14 +36,13 @@ class MeshOptions:
     constraint_points: np.ndarray | None = None
     points: np.ndarray | None = None
 
-    def of_native(self, rings: Sequence[np.ndarray]) -> dict:
-        """The arguments of the native mesher. Raises InputRefused and UsageError."""
+    def request(self) -> dict:
+        """What the native mesher is asked for. Raises InputRefused and UsageError."""
         lines = [places_of(line, f"constraint {number}") for number, line in enumerate(self.constraints)]
         given = self.constraint_points
         given = None if given is None else places_of(given, "constraint_points")
         length, wanted, density = size_of_edges(self.edge_length, self.triangles, self.points)
         return {
-            "rings": list(rings),
             "edge_length": length,
             "mesher": self.mesher,
             "triangles": wanted,
@@ -98,11 +97,11 @@ def mesh_region(
     """
     check_mesher(mesher)
     options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
-    asked = options.of_native(region_rings(outline, holes))
+    rings, request = region_rings(outline, holes), options.request()
 
     def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
         with work.phase(0.0, 1.0, "meshing"):
-            return _native_call(work, native_module().mesh_region, asked)
+            return _native_call(work, native_module().mesh_region, rings, request)
 
     return run(task, progress, cancel)
 
@@ -123,14 +122,15 @@ def estimate_mesh(
     they come before meshing."""
     check_mesher(mesher)
     options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
-    asked = options.of_native(region_rings(outline, holes))
-    made, memory = run(lambda work: _native_call(work, native_module().estimate_region_mesh, asked))
+    rings, request = region_rings(outline, holes), options.request()
+    estimate = native_module().estimate_region_mesh
+    made, memory = run(lambda work: _native_call(work, estimate, rings, request))
     return MeshEstimate(round(made), round(memory))
 
 
 def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions):
     """mesh_region within a work that is already running, from checked rings."""
-    return _native_call(work, native_module().mesh_region, options.of_native(rings))
+    return _native_call(work, native_module().mesh_region, rings, options.request())
 
 
 def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -163,10 +163,10 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
         raise refused_region(error) from error
 
 
-def _native_call(work: Work, function, asked: dict):
+def _native_call(work: Work, function, rings: Sequence[np.ndarray], request: dict):
     native = native_module()
     try:
-        return work.native(function, **asked)
+        return work.native(function, list(rings), request)
     except native.InputError as error:
         raise refused_region(error) from error
 

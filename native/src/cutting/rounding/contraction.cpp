@@ -109,7 +109,7 @@ std::optional<Contraction::Shape> Contraction::shape(std::int32_t part, Scratch&
 }
 
 void Contraction::apply() {
-    Pieces kept;
+    CutPieces kept;
     std::vector<NodeId> loop;
     // what a node became stays: no chains
     assert(std::ranges::all_of(becomes, [this](NodeId n) { return becomes[index(n)] == n; }));

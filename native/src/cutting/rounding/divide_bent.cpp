@@ -125,7 +125,7 @@ void divide_bent(RoundedParts& parts, std::span<const std::uint8_t> is_doubled,
         },
         0.05);
     if (std::ranges::count(is_whole, 0) == 0) return;
-    Pieces divided;
+    CutPieces divided;
     for (std::size_t p = 0; p < parts.pieces.size(); ++p) {
         const auto nodes = parts.pieces.polygons[p];
         if (is_whole[p] != 0) {

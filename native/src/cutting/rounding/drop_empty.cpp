@@ -5,7 +5,7 @@ namespace realmodel::cutting {
 
 void drop_empty(RoundedParts& parts) {
     std::vector<std::int32_t> number(parts.half_cells.size(), -1);
-    for (const Piece& piece : parts.pieces.origins) {
+    for (const CutPiece& piece : parts.pieces.origins) {
         for (const std::int32_t own : piece.parts) {
             if (own >= 0) number[index(own)] = 0;
         }
@@ -17,7 +17,7 @@ void drop_empty(RoundedParts& parts) {
         kept.push_back(parts.half_cells[part]);
     }
     parts.half_cells = std::move(kept);
-    for (Piece& piece : parts.pieces.origins) {
+    for (CutPiece& piece : parts.pieces.origins) {
         for (std::int32_t& own : piece.parts) {
             if (own >= 0) own = number[index(own)];
         }

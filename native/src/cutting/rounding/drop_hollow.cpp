@@ -7,7 +7,7 @@
 namespace realmodel::cutting {
 
 void drop_hollow(RoundedParts& parts) {
-    Pieces& pieces = parts.pieces;
+    CutPieces& pieces = parts.pieces;
     bool any = false;
     for (std::size_t part = 0; part < parts.half_cells.size(); ++part) {
         const auto around = parts.pieces_of[part];

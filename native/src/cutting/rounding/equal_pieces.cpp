@@ -29,7 +29,7 @@ std::uint64_t hash_of(std::span<const NodeId> nodes) {
 }
 
 std::vector<std::vector<std::size_t>> equal_pieces(const RoundedParts& parts) {
-    const Pieces& pieces = parts.pieces;
+    const CutPieces& pieces = parts.pieces;
     // how many have the same hash, up to 2: only of these the nodes are compared
     std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces.size() + 1), 0);
     constexpr std::size_t kFar = SIZE_MAX;

@@ -16,9 +16,9 @@ struct Outer {
 
 /// Of equal polygons of one half: those that face each other from outside of it become one between
 /// their parts, which is added to `glued`, or none in one part. Whether there were any.
-bool glue(RoundedParts& parts, std::span<const std::size_t> equal, std::int8_t half, Pieces& glued,
-          std::vector<std::uint8_t>& is_doubled) {
-    Pieces& pieces = parts.pieces;
+bool glue(RoundedParts& parts, std::span<const std::size_t> equal, std::int8_t half,
+          CutPieces& glued, std::vector<std::uint8_t>& is_doubled) {
+    CutPieces& pieces = parts.pieces;
     bool any = false;
     std::vector<Outer> outers;
     for (const std::size_t p : equal) {
@@ -40,7 +40,7 @@ bool glue(RoundedParts& parts, std::span<const std::size_t> equal, std::int8_t h
                 const auto cell = [&](std::size_t i) {
                     return parts.half_cells[index(met[i])].cell;
                 };
-                const Piece between{-1, {cell(0), cell(1)}, {half, half}, false, met};
+                const CutPiece between{-1, {cell(0), cell(1)}, {half, half}, false, met};
                 const auto nodes = pieces.polygons[against->piece];
                 if (against->which == 1) {
                     glued.add_reversed(nodes, between);
@@ -58,7 +58,7 @@ bool glue(RoundedParts& parts, std::span<const std::size_t> equal, std::int8_t h
 }  // namespace
 
 std::vector<std::uint8_t> glue_doubled(RoundedParts& parts) {
-    Pieces glued;
+    CutPieces glued;
     std::vector<std::uint8_t> is_doubled(parts.pieces.size(), 0);
     bool any = false;
     for (const auto& equal : equal_pieces(parts)) {

@@ -46,7 +46,7 @@ std::vector<NodeId> contract(const RoundedParts& parts, std::vector<NodeId>& bec
 void keep_sound(const RoundedParts& parts, Contraction& contraction,
                 const std::vector<NodeId>& contracted, const std::array<bool, 2>& touches) {
     auto& becomes = contraction.becomes;
-    const Pieces& pieces = parts.pieces;
+    const CutPieces& pieces = parts.pieces;
     std::vector<std::uint8_t> is_involved(becomes.size(), 0);
     for (const NodeId node : contracted)
         is_involved[index(node)] = is_involved[index(becomes[index(node)])] = 1;

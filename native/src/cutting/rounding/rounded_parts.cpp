@@ -8,7 +8,7 @@
 namespace realmodel::cutting {
 
 RoundedParts::RoundedParts(const ComplexView& of, std::vector<Position>& positions,
-                           Pieces& polygons, std::vector<HalfCell>& cells, bool of_several,
+                           CutPieces& polygons, std::vector<HalfCell>& cells, bool of_several,
                            const Execution& executed)
     : model(of),
       new_positions(positions),

@@ -19,7 +19,7 @@ struct RoundedParts {
     /// @param positions   of nodes after the model's vertices; they may move
     /// @param of_several  whether the cells are of several models, of which each was rounded by
     ///                    itself
-    RoundedParts(const ComplexView& of, std::vector<Position>& positions, Pieces& polygons,
+    RoundedParts(const ComplexView& of, std::vector<Position>& positions, CutPieces& polygons,
                  std::vector<HalfCell>& cells, bool of_several, const Execution& executed);
 
     bool is_new(NodeId node) const { return index(node) >= vertices.size(); }
@@ -62,14 +62,14 @@ struct RoundedParts {
 
     /// Finds the arrays below anew, for other pieces or nodes.
     void update();
-    void replace_pieces(Pieces&& with) {
+    void replace_pieces(CutPieces&& with) {
         pieces = std::move(with);
         update();
     }
 
     const ComplexView& model;
     std::vector<Position>& new_positions;
-    Pieces& pieces;
+    CutPieces& pieces;
     std::vector<HalfCell>& half_cells;
     bool are_joined;
     Execution execution;

@@ -35,7 +35,7 @@ public:
         const ComplexCounts before = complex_.counts();
         for (int round = 0; round < kRounds; ++round) {
             changes_ = 0;
-            list_all_edges();
+            queue_ = EdgeQueue(std::greater<>(), short_edges());
             join_short_edges();
             give_up_thin_faces();
             join_short_edges();
@@ -47,7 +47,7 @@ public:
         made.volumes_before = volumes;
         made.before = before;
         made.after = complex_.counts();
-        made.short_edges = left_short_edges();
+        made.short_edges = short_edges().size();
         made.thin_cells = thin_cells().size();
         made.largest_move = *std::max_element(moved_.begin(), moved_.end());
         return made;
@@ -59,6 +59,7 @@ private:
         std::int32_t from, to;
         auto operator<=>(const Edge&) const = default;
     };
+    using EdgeQueue = std::priority_queue<Edge, std::vector<Edge>, std::greater<>>;
     struct ThinCell {
         double width;
         std::int32_t cell;
@@ -70,7 +71,7 @@ private:
                        std::vector<Edge>& listed) const {
         std::int32_t from = loop.back();
         for (const std::int32_t to : loop) {
-            const std::int32_t low = std::min(from, to), high = std::max(from, to);
+            const auto [low, high] = unordered(from, to);
             from = to;
             if (only >= 0 && low != only && high != only) continue;
             const double length = complex_.distance(low, high);
@@ -78,26 +79,14 @@ private:
         }
     }
 
-    void list_all_edges() {
-        edges_.clear();
-        next_edge_ = 0;
+    /// All short edges, each once.
+    std::vector<Edge> short_edges() const {
+        std::vector<Edge> found;
         for (std::int32_t f = 0; f < complex_.face_count(); ++f) {
-            if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, edges_);
+            if (complex_.has_face(f)) list_edges_of(complex_.corners(f), -1, found);
         }
-        sort_unique(edges_);
-    }
-
-    /// The next of the listed edges and of those that came since, by length; false: there is none.
-    bool take_edge(Edge& edge) {
-        const bool is_listed = next_edge_ < edges_.size();
-        if (!is_listed && queue_.empty()) return false;
-        if (is_listed && (queue_.empty() || edges_[next_edge_] < queue_.top())) {
-            edge = edges_[next_edge_++];
-        } else {
-            edge = queue_.top();
-            queue_.pop();
-        }
-        return true;
+        sort_unique(found);
+        return found;
     }
 
     bool is_edge(std::int32_t from, std::int32_t to) const {
@@ -113,10 +102,11 @@ private:
     }
 
     void join_short_edges() {
-        std::size_t round = 0;
-        Edge edge{}, last{-1, -1, -1};
-        while (take_edge(edge)) {
-            poll(progress_, round++);
+        Edge last{-1, -1, -1};
+        for (std::size_t round = 0; !queue_.empty(); ++round) {
+            poll(progress_, round);
+            const Edge edge = queue_.top();
+            queue_.pop();
             if (edge == last) continue;
             last = edge;
             if (is_edge(edge.from, edge.to)) join(edge);
@@ -381,20 +371,13 @@ private:
         }
     }
 
-    std::size_t left_short_edges() {
-        list_all_edges();
-        return edges_.size();
-    }
-
     EditableComplex complex_;
     ChangeCheck check_;
     double tolerance_;
     Progress* progress_;
     std::vector<double> moved_;  // how far what was joined in each vertex has moved
-    std::vector<Edge> edges_;    // each once, in ascending order
-    std::size_t next_edge_ = 0;  // of these
     std::vector<Edge> fresh_edges_;
-    std::priority_queue<Edge, std::vector<Edge>, std::greater<>> queue_;
+    EdgeQueue queue_;  // short edges, the shortest first; some are gone since, or twice there
     Change change_, other_;
     std::vector<std::int32_t> loop_, beside_edge_, kept_cells_;
     std::size_t changes_ = 0;

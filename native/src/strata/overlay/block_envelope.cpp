@@ -118,7 +118,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
         }
     }
     const std::size_t first_face = construction_.faces.size();
-    Overlaid overlaid = overlay_facets(geometry_, envelope, part, number, &blocks, nullptr,
+    Overlaid overlaid = overlay_facets(geometry_, envelope, {part, number}, &blocks, nullptr,
                                        construction_, execution_);
     sort_overlaid(overlaid.kept, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
@@ -259,7 +259,7 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
             link(node_of(own.front()), node_of(piece));
         enter(plane, number, node_of(own.front()), filter_.surface_at[t].span);
     }
-    add_surface_facets(part, use, overlaid.below, pieces, number, next_parts_, execution_);
+    add_surface_facets({part, number}, use, overlaid.below, pieces, next_parts_, execution_);
 }
 
 void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {

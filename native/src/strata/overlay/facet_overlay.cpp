@@ -25,18 +25,17 @@ constexpr std::size_t kColumnFacets = 1024, kBlockFacets = 64;
 /// Works on the facets of one chunk.
 class FacetOverlay {
 public:
-    FacetOverlay(const Envelope& envelope, const SurfaceTiling& tiling, std::int32_t number,
-                 const BlockFacets* blocks, const WantedBoxes* wanted, Overlaid& overlaid,
-                 ChunkResult& result)
+    FacetOverlay(const Envelope& envelope, const NumberedTiling& surface, const BlockFacets* blocks,
+                 const WantedBoxes* wanted, Overlaid& overlaid, ChunkResult& result)
         : envelope_(envelope),
-          tiling_(tiling),
-          number_(number),
+          tiling_(surface.tiling),
+          number_(surface.number),
           blocks_(blocks),
           wanted_(wanted),
           overlaid_(overlaid),
           result_(result),
-          finder_(*result.scope, tiling),
-          grouping_(*result.scope, tiling),
+          finder_(*result.scope, tiling_),
+          grouping_(*result.scope, tiling_),
           clipper_(*result.scope) {}
 
     void process(std::size_t facet) {
@@ -214,15 +213,15 @@ private:
 }  // namespace
 
 Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
-                        const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
+                        const NumberedTiling& surface, const BlockFacets* blocks,
                         const WantedBoxes* wanted, Construction& construction,
                         const Execution& execution) {
     assert(blocks == nullptr || wanted == nullptr);
     assert(blocks == nullptr || (blocks->span.size() == envelope.size() &&
                                  blocks->is_complete.size() == envelope.size()));
     Overlaid overlaid;
-    overlaid.is_divided.resize(tiling.plane.size());
-    if (blocks != nullptr) overlaid.is_touched.resize(tiling.plane.size());
+    overlaid.is_divided.resize(surface.tiling.plane.size());
+    if (blocks != nullptr) overlaid.is_touched.resize(surface.tiling.plane.size());
     const std::size_t size = blocks == nullptr ? kColumnFacets : kBlockFacets;
     const std::size_t chunks = (envelope.size() + size - 1) / size;
     std::vector<std::unique_ptr<ChunkResult>> results(chunks);
@@ -232,7 +231,7 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
     parallel_chunks(chunks, execution, [&](std::size_t c) {
         const std::size_t begin = c * size, end = std::min(envelope.size(), begin + size);
         results[c] = std::make_unique<ChunkResult>(geometry, end - begin);
-        FacetOverlay facets(envelope, tiling, number, blocks, wanted, overlaid, *results[c]);
+        FacetOverlay facets(envelope, surface, blocks, wanted, overlaid, *results[c]);
         for (std::size_t f = begin; f < end; ++f)
             facets.process(f);
         for (const PolygonPool* pool : results[c]->pools())
@@ -247,13 +246,13 @@ Overlaid overlay_facets(PlanArrangement& geometry, const Envelope& envelope,
 }
 
 Envelope overlay_columns(PlanArrangement& geometry, const Envelope& envelope,
-                         const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, const WantedBoxes* wanted,
-                         const Execution& execution) {
-    Overlaid overlaid = overlay_facets(geometry, envelope, tiling, number, nullptr, wanted,
-                                       construction, execution);
-    const PiecesOfPolygons pieces = sort_by_polygon(overlaid.below, tiling.plane.size(), execution);
-    add_surface_facets(tiling, overlaid.is_divided, overlaid.below, pieces, number, overlaid.kept,
+                         const NumberedTiling& surface, Construction& construction,
+                         const WantedBoxes* wanted, const Execution& execution) {
+    Overlaid overlaid =
+        overlay_facets(geometry, envelope, surface, nullptr, wanted, construction, execution);
+    const PiecesOfPolygons pieces =
+        sort_by_polygon(overlaid.below, surface.tiling.plane.size(), execution);
+    add_surface_facets(surface, overlaid.is_divided, overlaid.below, pieces, overlaid.kept,
                        execution);
     return std::move(overlaid.kept);
 }

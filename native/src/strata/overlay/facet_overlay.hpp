@@ -30,20 +30,19 @@ struct Overlaid {
     std::vector<std::uint8_t> is_touched;
 };
 
-/// Overlays facets with surface `number`: beneath those parts that lie above it nodes are closed.
+/// Overlays facets with a surface: beneath those parts that lie above it nodes are closed.
 /// Pieces are grouped to columns, or as `blocks` says.
 /// @param wanted  as overlay_columns has it; not with `blocks`
 Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelope,
-                        const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
+                        const NumberedTiling& surface, const BlockFacets* blocks,
                         const WantedBoxes* wanted, Construction& construction,
                         const Execution& execution);
 
-/// Lays surface `number` under the envelope: where it is lower, a column is closed between the two
+/// Lays a surface under the envelope: where it is lower, a column is closed between the two
 /// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
 /// @param wanted  where columns are; those elsewhere are left out. Nothing: all of them are
 Envelope overlay_columns(exact::PlanArrangement& geometry, const Envelope& envelope,
-                         const SurfaceTiling& tiling, std::int32_t number,
-                         Construction& construction, const WantedBoxes* wanted,
-                         const Execution& execution);
+                         const NumberedTiling& surface, Construction& construction,
+                         const WantedBoxes* wanted, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -104,9 +104,10 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
     return of;
 }
 
-void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
+void add_surface_facets(const NumberedTiling& surface, const std::vector<std::uint8_t>& use,
                         const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
-                        std::int32_t number, Envelope& next, const Execution& execution) {
+                        Envelope& next, const Execution& execution) {
+    const auto& [tiling, number] = surface;
     const std::size_t polygons = tiling.plane.size();
     assert(use.size() == polygons && of_polygon.offsets.size() == polygons + 1);
     // Says what a polygon becomes.

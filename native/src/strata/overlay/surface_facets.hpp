@@ -33,12 +33,12 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
 /// What becomes of a polygon of the surface: one facet, one of each piece, or nothing here.
 enum PolygonUse : std::uint8_t { kTogether, kDivided, kElsewhere };
 
-/// Adds the facets of surface `number` to the envelope, in order of the tiling's polygons. One that
+/// Adds the facets of a surface to the envelope, in order of the tiling's polygons. One that
 /// lies below the envelope all over becomes one facet again with the pieces as its faces, so that
 /// the overlay does not compound; of divided ones each piece is a facet.
 /// @param use  PolygonUse of each polygon
-void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
+void add_surface_facets(const NumberedTiling& surface, const std::vector<std::uint8_t>& use,
                         const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
-                        std::int32_t number, Envelope& next, const Execution& execution);
+                        Envelope& next, const Execution& execution);
 
 }  // namespace realmodel::strata

@@ -54,7 +54,7 @@ Envelope region_envelope(Site& site, EnteredRock& rock, const Execution& executi
                                                      rock.window_plan, {}, -1, execution);
     site.surface_of_plane.resize(site.geometry.plane_count(), kBase);
     Construction nothing;
-    Overlaid overlaid = overlay_facets(site.geometry, region, window, kSkyBlock, nullptr, nullptr,
+    Overlaid overlaid = overlay_facets(site.geometry, region, {window, kSkyBlock}, nullptr, nullptr,
                                        nothing, execution);
     std::fill(overlaid.kept.plane.begin(), overlaid.kept.plane.end(), kOutside);
     for (std::size_t i = 0; i < overlaid.below.polygon.size(); ++i)

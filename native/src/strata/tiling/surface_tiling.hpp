@@ -43,6 +43,12 @@ struct SurfaceTiling {
                std::size_t cells = 0);
 };
 
+/// The tiling of a surface, and the surface's number.
+struct NumberedTiling {
+    const SurfaceTiling& tiling;
+    std::int32_t number;
+};
+
 /// A triangle of the input as it is used: its number there and its plan vertices.
 struct UsedTriangle {
     std::int64_t number;

@@ -30,7 +30,7 @@ TEST_F(AHalvedBox, APartIsNoMoreWhereItsNodesBecomeThoseOfOnePolygon) {
 
 TEST_F(AHalvedBox, EqualPolygonsOfAPartThatFaceEachOtherCancelWhereTheyMay) {
     cut_at(0.5);
-    const Piece in_two{-1, {0, 0}, {kBelow, kBelow}, false, {0, 0}};
+    const CutPiece in_two{-1, {0, 0}, {kBelow, kBelow}, false, {0, 0}};
     pieces_.add(std::array<NodeId, 3>{8, 0, 9}, in_two);
     RoundedParts parts = rounded_parts();
     pieces_[kCap + 1].parts = {0, -1};
@@ -61,7 +61,7 @@ TEST_F(AHalvedBox, AppliedContractionsTakePolygonsAway) {
     contraction.becomes[9] = 1;
     contraction.apply();
     EXPECT_EQ(pieces_.size(), 10U);  // the lower piece of the side of 0 and 1 vanished
-    EXPECT_EQ(nodes(kCap - 1), loop_of({0, 1, 11, 10}));
+    EXPECT_EQ(nodes(kCap - 1), node_loop({0, 1, 11, 10}));
 }
 
 }  // namespace

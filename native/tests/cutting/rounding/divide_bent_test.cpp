@@ -21,7 +21,7 @@ protected:
 TEST_F(DivideBent, ACapThatIsNoLongerConvexIsDividedRoundANodeInItsMiddle) {
     new_[3] = {0.25, 0.25, 0.5};  // beyond the diagonal of the others
     EXPECT_EQ(pieces_after(), 14U);
-    EXPECT_EQ(nodes(kCap), loop_of({8, 9, 12}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 9, 12}));
     EXPECT_EQ(new_.at(4), (Position{0.3125, 0.3125, 0.5}));
 }
 

@@ -7,7 +7,7 @@ namespace {
 TEST_F(AHalvedBox, PartsWithoutPolygonsAreNoMore) {
     cut_at(0.5);
     parts_.insert(parts_.begin(), HalfCell{0, kAbove});
-    for (Piece& piece : pieces_.origins) {
+    for (CutPiece& piece : pieces_.origins) {
         for (std::int32_t& part : piece.parts)
             part += part >= 0 ? 1 : 0;
     }

@@ -8,7 +8,7 @@ TEST_F(AHalvedBox, APartBetweenTwoPolygonsThatLieOnEachOtherVanishes) {
     cut_at(0.5);
     parts_.push_back({0, kBelow});  // between the lower part and the upper one
     pieces_[kCap].parts = {2, 1};
-    const Piece under{-1, {0, 0}, {kBelow, kBelow}, false, {0, 2}};
+    const CutPiece under{-1, {0, 0}, {kBelow, kBelow}, false, {0, 2}};
     pieces_.add(std::array{NodeId{8}, NodeId{9}, NodeId{11}, NodeId{10}}, under);
     RoundedParts parts = rounded_parts();
     drop_hollow(parts);

@@ -7,16 +7,16 @@ namespace realmodel::cutting {
 namespace {
 
 TEST(WindingOf, SaysWhichWayALoopGoesFromItsLeastNode) {
-    EXPECT_EQ(winding_of(loop_of({3, 5, 7})), 1);
-    EXPECT_EQ(winding_of(loop_of({7, 3, 5})), 1);
-    EXPECT_EQ(winding_of(loop_of({7, 5, 3})), -1);
+    EXPECT_EQ(winding_of(node_loop({3, 5, 7})), 1);
+    EXPECT_EQ(winding_of(node_loop({7, 3, 5})), 1);
+    EXPECT_EQ(winding_of(node_loop({7, 5, 3})), -1);
 }
 
 TEST(PutFirst, IsTheSameForLoopsOfTheSameEdges) {
     std::vector<NodeId> one, other, third;
-    put_first(loop_of({3, 5, 9, 7}), one);
+    put_first(node_loop({3, 5, 9, 7}), one);
     put_first(std::array<NodeId, 4>{9, 5, 3, 7}, other);
-    put_first(loop_of({3, 9, 5, 7}), third);
+    put_first(node_loop({3, 9, 5, 7}), third);
     EXPECT_EQ(one, (std::vector<NodeId>{3, 5, 9, 7}));
     EXPECT_EQ(other, one);
     EXPECT_NE(third, one);
@@ -25,7 +25,7 @@ TEST(PutFirst, IsTheSameForLoopsOfTheSameEdges) {
 
 TEST_F(AHalvedBox, EqualPiecesAreFoundWhicheverWayTheyTurn) {
     cut_at(0.5);
-    const Piece origin{-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
+    const CutPiece origin{-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
     pieces_.add_reversed(pieces_.polygons[kCap], origin);
     pieces_.add(std::array<NodeId, 4>{8, 11, 9, 10}, origin);  // the same nodes, but other edges
     pieces_.add(std::array<NodeId, 4>{11, 10, 8, 9}, origin);

@@ -7,7 +7,7 @@ namespace {
 TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     cut_at(0.5);
     parts_[1].side = kBelow;  // both parts in one half, and a cap of each
-    for (Piece& piece : pieces_.origins) {
+    for (CutPiece& piece : pieces_.origins) {
         if (piece.sides[0] == kAbove) piece.sides[0] = kBelow;
     }
     pieces_[kCap] = {-1, {0, -1}, {kBelow, kOn}, false, {0, -1}};
@@ -16,7 +16,7 @@ TEST_F(AHalvedBox, PolygonsOfAHalfThatFaceEachOtherBecomeOne) {
     const auto doubled = glue_doubled(parts);
     ASSERT_EQ(pieces_.size(), 11U);
     EXPECT_EQ(pieces_[0].parts, (std::array{0, 1}));  // glued ones come first
-    EXPECT_EQ(nodes(0), loop_of({8, 9, 11, 10}));
+    EXPECT_EQ(nodes(0), node_loop({8, 9, 11, 10}));
     EXPECT_EQ(std::ranges::count(doubled, 0), 11);
 }
 

@@ -11,8 +11,8 @@ TEST_F(AHalvedBox, ANodeWhereAVertexIsBecomesIt) {
     RoundedParts parts = rounded_parts();
     join_coincident(parts, {false, false}, false);
     ASSERT_EQ(pieces_.size(), 11U);
-    EXPECT_EQ(nodes(kCap), loop_of({0, 9, 11, 10}));
-    EXPECT_EQ(nodes(2), loop_of({0, 1, 9}));
+    EXPECT_EQ(nodes(kCap), node_loop({0, 9, 11, 10}));
+    EXPECT_EQ(nodes(2), node_loop({0, 1, 9}));
 }
 
 TEST_F(AHalvedBox, NodesInOnePositionBecomeTheFirst) {
@@ -20,15 +20,15 @@ TEST_F(AHalvedBox, NodesInOnePositionBecomeTheFirst) {
     new_[1] = new_[0];
     RoundedParts parts = rounded_parts();
     join_coincident(parts, {false, false}, false);
-    EXPECT_EQ(nodes(kCap), loop_of({8, 11, 10}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 11, 10}));
 }
 
 TEST_F(AHalvedBox, NodesStayApartWhereAPartWouldVanish) {
     cut_at(0);
     RoundedParts parts = rounded_parts();
     join_coincident(parts, {false, false}, false);
-    EXPECT_EQ(nodes(kCap), loop_of({8, 9, 11, 10}));
-    EXPECT_EQ(nodes(2), loop_of({0, 1, 9, 8}));
+    EXPECT_EQ(nodes(kCap), node_loop({8, 9, 11, 10}));
+    EXPECT_EQ(nodes(2), node_loop({0, 1, 9, 8}));
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ struct Columns {
     Columns(const OwnedSurface& lower, const OwnedSurface& upper) {
         Scene scene({lower, upper});
         const SurfaceTiling facets = scene.tiling(1), surface = scene.tiling(0);
-        envelope = overlay_columns(scene.geometry(), initial_envelope(facets, 1), surface, 0, made,
-                                   nullptr, {1, nullptr});
+        envelope = overlay_columns(scene.geometry(), initial_envelope(facets, 1), {surface, 0},
+                                   made, nullptr, {1, nullptr});
     }
     std::vector<std::int32_t> blocks_beneath() const {
         std::vector<std::int32_t> blocks;

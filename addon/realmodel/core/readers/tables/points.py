@@ -182,8 +182,7 @@ def _pieces(
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
     def read(piece: bytes):
-        execution = on_threads(1)
-        return native.read_numbers(piece, 0, len(piece), table.layout.separator, *reading, execution)
+        return native.read_numbers(piece, table.layout.separator, *reading, on_threads(1))
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts
