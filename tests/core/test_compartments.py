@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import Reach
@@ -79,7 +80,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
         seen |= own
         space = reach.cells_of(part)
         assert space[tuple(((points[own] - reach.low) // reach.step).astype(int).T)].all()
-        over = reach.over(space.any(axis=2), (sheet, squares))
+        over = reach.over(space.any(axis=2), Sheet(sheet, squares))
         x, y = np.clip((points[own, :2] * 4).astype(int), 0, 39).T
         at = x * 40 + y
         assert over[at].all() and over[at + 1600].all()

@@ -18,6 +18,7 @@ from ..core.base.atomic import Outputs
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
+from ..core.project.project import Project
 from .workers import require_this_version, workers_of
 
 _BATCHES = "batches"
@@ -25,7 +26,7 @@ _BUILT = 0.05  # of the time: the model that all realizations start from
 
 
 def ensemble(
-    project,
+    project: Project,
     realizations: int,
     folder: str | Path,
     seed: int = 0,

@@ -17,6 +17,7 @@ from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.work import Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
+from ..core.project.project import Project
 from ..core.structures.setup import structured_inputs
 from ..core.tiles import TiledModel
 from ..core.tiles.catalog import CATALOG, Catalog
@@ -46,7 +47,7 @@ _WINDOW = "window"
 
 
 def build_faulted(
-    project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, progress, cancel
+    project: Project, folder: Path, size: tuple[float, float], cells: str, workers: Workers, progress, cancel
 ) -> TiledModel:
     """tile_folder.build for a project with faults or bodies. size: of tiles."""
     with mapped_arrays(folder) as arrays:
@@ -55,7 +56,7 @@ def build_faulted(
 
 
 def _built(
-    project, folder: Path, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+    project: Project, folder: Path, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
 ) -> TiledModel | tuple[Store, Catalog]:
     """The files of the run and the table of the whole; or the model, where the folder is finished. arrays:
     where surfaces and their sheets are kept."""

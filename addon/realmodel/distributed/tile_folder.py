@@ -16,6 +16,7 @@ from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import read_mapped, write_mapped
 from ..core.base.work import run
 from ..core.project.build_options import check_cells
+from ..core.project.project import Project
 from ..core.surfaces.local_heights import PartHeights
 from ..core.surfaces.wrong_sides import WrongPoints
 from ..core.tiles import TiledModel
@@ -63,7 +64,7 @@ _BUILT = 0.6  # of the time of a tile
 
 
 def build(
-    project,
+    project: Project,
     folder: str | Path,
     tile_size: tuple[float, float],
     client=None,

@@ -18,7 +18,7 @@ from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
-from ..core.project.project import surface_item
+from ..core.project.project import Project, surface_item
 from ..core.surfaces.local_heights import LocalHeights, linked, local_heights, local_surfaces
 from ..core.surfaces.rock_input import RockInput
 from ..core.surfaces.surface_heights import interpolation_order
@@ -61,7 +61,9 @@ class Prepared:
         return replace(self, rocks=[], near={}, own={})
 
 
-def prepared(project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel) -> Prepared:
+def prepared(
+    project: Project, size, cells: str, arrays: MappedArrays, workers: Workers, progress, cancel
+) -> Prepared:
     """arrays: where everything is kept. size: of tiles."""
     reader = SurfaceReader(arrays, workers)
 

@@ -11,6 +11,8 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
 from ..project.build_options import check_cells, check_stage
+from ..project.project import Project
+from ..structures.parts.parts import Structures
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
 from .blocks import Block
@@ -57,7 +59,13 @@ def build_stage(
 
 
 def intersect(
-    work: Work, inputs, cells: str, threads: int, start: float, end: float, structures=None
+    work: Work,
+    inputs: list[RockInput],
+    cells: str,
+    threads: int,
+    start: float,
+    end: float,
+    structures: Structures | None = None,
 ) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
     if structures is not None:
@@ -76,7 +84,7 @@ def intersect(
 
 def assemble(
     work: Work,
-    project,
+    project: Project,
     inputs: list[RockInput],
     built: BuiltCells,
     threads: int,
@@ -117,7 +125,7 @@ def assemble(
     return model
 
 
-def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComplex:
+def _complex(inputs: list[RockInput], built: BuiltCells, structures: Structures | None) -> CellComplex:
     """The cells with blocks numbered without those that cannot exist."""
     exists = [
         number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
@@ -129,7 +137,7 @@ def _complex(inputs: list[RockInput], built: BuiltCells, structures) -> CellComp
     return replace(built.complex, cell_block=cell_block)
 
 
-def _surfaces(inputs: list[RockInput], structures) -> SurfaceArrays:
+def _surfaces(inputs: list[RockInput], structures: Structures | None) -> SurfaceArrays:
     """The surfaces, then the structures."""
     surfaces = [entry.surface(number) for entry in inputs for number in range(len(entry.surfaces))]
     return SurfaceArrays.of(surfaces if structures is None else [*surfaces, *structures.shapes])
@@ -140,7 +148,9 @@ def _first_block(entry: RockInput) -> int:
     return 0 if entry.rock.base_elevation is not None else 1
 
 
-def list_blocks(inputs, volumes: np.ndarray, own: CellComplex, structures) -> list[Block]:
+def list_blocks(
+    inputs: list[RockInput], volumes: np.ndarray, own: CellComplex, structures: Structures | None
+) -> list[Block]:
     """The blocks of some cells; without cells those that may be."""
     total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
     bodies = [] if structures is None else structures.blocks_of_bodies()
@@ -180,7 +190,9 @@ def list_blocks(inputs, volumes: np.ndarray, own: CellComplex, structures) -> li
     return blocks
 
 
-def _warnings(inputs, built: BuiltCells, blocks: list[Block], structures) -> list[BuildWarning]:
+def _warnings(
+    inputs: list[RockInput], built: BuiltCells, blocks: list[Block], structures: Structures | None
+) -> list[BuildWarning]:
     warnings = [warning for entry in inputs for warning in entry.warnings]
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
     for kind, surface, items, text in built.warnings:

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module, on_threads
 from ..structures.parts.part_models import (
     DEEP,
@@ -19,6 +21,7 @@ from ..structures.parts.part_models import (
 )
 from ..structures.parts.parts import Structures, compartment_of
 from ..structures.parts.refusals import refused_structure
+from ..surfaces.rock_input import RockInput
 from .built_cells import BuiltCells, CellParts, NativeWarning
 from .cell_complex import CellComplex
 from .reach import Reach
@@ -29,7 +32,7 @@ _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and j
 
 def build_joined(
     work: Work,
-    inputs: list,
+    inputs: list[RockInput],
     structures: Structures,
     cells: str,
     threads: int,
@@ -86,7 +89,7 @@ def build_joined(
     return _with_parts(found, part, inputs, structures, divides)
 
 
-def _native(own: CellComplex, inputs: list, structures: Structures) -> dict:
+def _native(own: CellComplex, inputs: list[RockInput], structures: Structures) -> dict:
     """The cells in one part of space as the native module takes them."""
     surfaces = _first_surfaces(inputs)[-1]
     return own.native(surfaces + len(inputs) * len(structures)) | {"surfaces": surfaces}
@@ -110,7 +113,7 @@ def _renumbered(built: BuiltCells, there: np.ndarray, part: np.ndarray, count: i
 
 
 def _with_parts(
-    built: BuiltCells, part: np.ndarray, inputs: list, structures: Structures, divides: np.ndarray
+    built: BuiltCells, part: np.ndarray, inputs: list[RockInput], structures: Structures, divides: np.ndarray
 ) -> BuiltCells:
     """The cells with each body as one block of all rock masses, and their parts. divides: as `blocks_divided`
     has it."""
@@ -129,7 +132,7 @@ def _with_parts(
     )
 
 
-def _nothing(inputs: list, structures: Structures, cells: str) -> BuiltCells:
+def _nothing(inputs: list[RockInput], structures: Structures, cells: str) -> BuiltCells:
     none = np.empty(0, np.int32)
     return BuiltCells(
         CellComplex.empty(cells),
@@ -138,13 +141,19 @@ def _nothing(inputs: list, structures: Structures, cells: str) -> BuiltCells:
     )
 
 
-def _first_surfaces(inputs: list) -> list[int]:
+def _first_surfaces(inputs: list[RockInput]) -> list[int]:
     """The number of the first surface of each rock mass, and of all."""
     return np.cumsum([0, *(len(entry.surfaces) for entry in inputs)]).tolist()
 
 
 def _part_model(
-    work: Work, inputs: list, structures: Structures, reach: Reach, part: int, cells: str, threads: int
+    work: Work,
+    inputs: list[RockInput],
+    structures: Structures,
+    reach: Reach,
+    part: int,
+    cells: str,
+    threads: int,
 ) -> BuiltCells | None:
     """The cells of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
@@ -235,10 +244,12 @@ def _voids(stacks: list[tuple[Stack, bool]]) -> dict:
     return {"emptied": [list(stack.emptied) for stack, _ in stacks], "fills": tops}
 
 
-def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:
+def _stack(
+    inputs: list[RockInput], structures: Structures, part: int, number: int, first: int, surfaces: int
+) -> Stack:
     """The stack of one rock mass in one part. surfaces: of all rock masses."""
     entry = inputs[number]
-    sheets = entry.structure.sheets[compartment_of(structures, entry, part)]
+    sheets = entry.divided().of_compartment(compartment_of(structures, entry, part))
     rules = [surface.rule for surface in entry.rock.surfaces]
     stack = plain_stack(sheets, rules, entry.rock.base_elevation, first)
     count = len(structures.faults)
@@ -267,15 +278,15 @@ def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> i
     return surfaces + rock * len(structures) + len(structures.faults) + body
 
 
-def beyond_all(sheets, structures: Structures) -> tuple[float, float]:
+def beyond_all(sheets: Sequence[Sheet], structures: Structures) -> tuple[float, float]:
     """Heights below and above all sheets and bodies."""
-    shapes = [*(vertices for vertices, _ in sheets), *(body.vertices for body in structures.bodies)]
+    shapes = [*(vertices for vertices, _ in sheets), *(body.triangulation()[0] for body in structures.bodies)]
     low, high = min(each[:, 2].min() for each in shapes), max(each[:, 2].max() for each in shapes)
     away = (high - low) + 1.0
     return float(low - away), float(high + away)
 
 
-def blocks_divided(inputs: list, structures: Structures) -> np.ndarray:
+def blocks_divided(inputs: list[RockInput], structures: Structures) -> np.ndarray:
     """(S, B) uint8: whether a structure divides a block, those of bodies as body_block numbers them. A fault
     divides what it displaces and the bodies that were there by then; a body what was there before it, and is
     hidden in later ones."""

@@ -80,14 +80,14 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
     return None, -1
 
 
-def _beyond_its_points(entry, lowest: float) -> str:
+def _beyond_its_points(entry: RockInput, lowest: float) -> str:
     """The advice where the lowest position is not at a point, but extrapolated by a method."""
     for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
         if shape is None or shape.vertices[:, 2].min() > lowest or not surface.interpolated:
             continue
-        if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
-            least = surface.points[:, 2].min()
-            return f"the lowest point of surface '{surface.name}' is {least:.6g}, so check its method"
+        z = surface.point_array()[:, 2]
+        if len(z) and z.min() > lowest:
+            return f"the lowest point of surface '{surface.name}' is {z.min():.6g}, so check its method"
     return ""
 
 

@@ -79,7 +79,7 @@ def bedding_of(
         compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own], threads)
         of_corners[_runs(corner_begin, own)] = len(histories) + compartments
         histories += [
-            ([structure.sheet(c, k).arrays for k in range(len(surfaces))], base_elevation, rules)
+            ([sheet.arrays for sheet in structure.of_compartment(c)], base_elevation, rules)
             for c in range(len(structure.sheets))
         ]
     if of_corners is not None:

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 
 import numpy as np
 
-from ..base.work import Work, on_threads
+from ..base.sheet import Sheet
+from ..base.work import Arguments, Work, on_threads
+from ..base.work import Result as Value
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 
@@ -48,11 +50,14 @@ class Task:
     threads: int
     triangles: np.ndarray | None = None
     left_out: bool = False
-    surfaces: Mapping[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+    surfaces: Mapping[str, Sheet] = field(default_factory=dict)
 
-    def run(self, function, *arguments, **options):
+    def run(
+        self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs
+    ) -> Value:
         """A native function, with this task's threads."""
-        return self.work.native(function, *arguments, **options, execution=on_threads(self.threads))
+        options.setdefault("execution", on_threads(self.threads))
+        return self.work.native(function, *arguments, **options)
 
 
 @dataclass

@@ -26,12 +26,13 @@ def dsi(task: Task) -> Result:
         given["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), given["equal"], np.nan)
     for lower, upper in (("above", "below"), ("above", "border"), ("border", "below")):
         _refuse_crossed(task, given, lower, upper)
+    equal, least, most = (given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most"))
     found = task.run(
         native_module().dsi,
         task.points,
         task.nodes,
         task.triangles,
-        tuple(given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most")),
+        (equal, least, most),
         settings["weight"] or 0.0,
     )
     warnings = []

@@ -23,6 +23,7 @@ def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[
     regions, of_cell = np.unique(parts, axis=0, return_inverse=True)
     made = call_native(
         work,
+        threads,
         native_module().filled_mesh,
         model_arrays(model),
         of_cell.ravel().astype(np.int32),
@@ -30,7 +31,6 @@ def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[
         edge_length,
         tolerance,
         sizes,
-        threads,
     )
     block, compartment = regions[made["region"]].T.astype(np.int32)
     return {

@@ -3,16 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ..base.errors import BuildFailed, InputRefused
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Arguments, Result, Work, native_module, on_threads
 
 
-def call_native(work: Work, function, *arguments):
-    """The result of `function`; its last argument is the number of threads. Raises InputRefused,
-    BuildFailed."""
+def call_native(
+    work: Work,
+    threads: int,
+    function: Callable[Arguments, Result],
+    *arguments: Arguments.args,
+    **options: Arguments.kwargs,
+) -> Result:
+    """The result of a native function. Raises InputRefused, BuildFailed."""
     native = native_module()
     try:
-        return work.native(function, *arguments[:-1], execution=on_threads(arguments[-1]))
+        options.setdefault("execution", on_threads(threads))
+        return work.native(function, *arguments, **options)
     except native.InputError as error:
         if error.kind == "nothing":
             raise InputRefused(str(error), advice="use a shorter edge length") from error

@@ -106,7 +106,7 @@ def simulation_mesh(
         rocks = np.array([block.rock for block in model.blocks], np.int32)
         with work.phase(0.0, 0.2, "simplifying lines"):
             lines = call_native(
-                work, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes, threads
+                work, threads, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes
             )
         inner = lines.inner_lines
         plan_sizes = _of_plan(sizes, inner)
@@ -116,6 +116,7 @@ def simulation_mesh(
         with work.phase(0.5, 1.0, "filling columns"):
             made = call_native(
                 work,
+                threads,
                 native_module().layered_mesh,
                 arrays,
                 rocks,
@@ -126,7 +127,6 @@ def simulation_mesh(
                 numbers,
                 0.0 if layer_thickness is None else float(layer_thickness),
                 elements == "tetrahedra",
-                threads,
             )
         return _assembled(model, made, elements, numbers)
 

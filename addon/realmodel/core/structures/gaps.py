@@ -19,6 +19,7 @@ from ..base.work import Work
 from ..project.structure_entries import Fault, fault_item
 from ..settings.rules import RULES
 from ..surfaces.planar_mesh import triangulate_rings
+from ..surfaces.rock_input import RockInput
 from ..surfaces.sides import FaultShape, fault_sides, sides_of
 from ..surfaces.surface_heights import needed_surfaces
 from ..surfaces.wrong_sides import heights_at
@@ -60,7 +61,7 @@ class _Samples(NamedTuple):
 _Conditions = dict[str, Callable[[np.ndarray], np.ndarray]]
 
 
-def edge_length(entry) -> float:
+def edge_length(entry: RockInput) -> float:
     """The median edge of the planar mesh of a RockInput; where it has none, of its surfaces, in plan."""
     meshes = [entry.region] if entry.region is not None and entry.rock.interpolates else []
     meshes = meshes or [shape for shape in entry.surfaces if shape is not None]
@@ -73,7 +74,12 @@ def edge_length(entry) -> float:
 
 
 def close_gaps(
-    work: Work, structures: Structures, inputs: list, box: np.ndarray, threads: int, has_sheets: bool = False
+    work: Work,
+    structures: Structures,
+    inputs: list[RockInput],
+    box: np.ndarray,
+    threads: int,
+    has_sheets: bool = False,
 ) -> tuple[list[Fault], list[BuildWarning]]:
     """The faults of some structures, with arrays, continued where their borders end short of the wall of a
     rock mass (RockInput), of a fault at which they end, or, where the sheets are known, of the youngest
@@ -92,7 +98,7 @@ def close_gaps(
         around = [
             _Around(work, structures, inputs[rock], number, last, threads)
             for rock, last in structures.displaced[number].items()
-            if not has_sheets or inputs[rock].structure.is_made(last)
+            if not has_sheets or inputs[rock].divided().is_made(last)
         ]
         if not len(_outer_border(faults[number]).edges):
             continue
@@ -123,7 +129,9 @@ def tops_of_faults(structures: Structures, number: int, rock) -> set[int]:
 class _Around:
     """A fault in one rock mass. last: the youngest surface of it that the fault displaces."""
 
-    def __init__(self, work: Work, structures: Structures, entry, number: int, last: int, threads: int):
+    def __init__(
+        self, work: Work, structures: Structures, entry: RockInput, number: int, last: int, threads: int
+    ):
         self.work, self.structures, self.entry, self.threads = work, structures, entry, threads
         self.number, self.last = number, last
         self.width = _GAP * edge_length(entry)
@@ -180,7 +188,8 @@ class _Around:
         surfaces = entry.surfaces[: self.last + 1]
         if entry.region is not None:
             shapes = [level(Sheet(*triangulate_rings(entry.rock.rings())), 0.0)]
-        covers = [] if None in surfaces else surfaces
+        known = [surface for surface in surfaces if surface is not None]
+        covers = known if len(known) == len(surfaces) else []
 
         def over(points: np.ndarray) -> np.ndarray:
             found = np.ones(len(points), bool)
@@ -212,7 +221,7 @@ class _Around:
         return {
             f"surface '{self.entry.rock.surfaces[n].name}'": self._below(n)
             for n in numbers
-            if self.entry.structure.is_made(n)
+            if self.entry.divided().is_made(n)
         }
 
     def _below(self, surface: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -225,7 +234,7 @@ class _Around:
     def sheets_at(self, surface: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(N,) the heights of the lower and the higher sheet of a surface on the two sides of this fault, at
         points (N, 3); NaN where there is none."""
-        structure = self.entry.structure
+        structure = self.entry.divided()
         low, high = np.full(len(points), np.nan), np.full(len(points), np.nan)
         active = structure.faults.active(surface)
         if self.number in structure.faults.numbers:
@@ -241,7 +250,7 @@ class _Around:
             low[there], high[there] = np.fmin(low[there], z), np.fmax(high[there], z)
         return low, high
 
-    def _heights(self, sheet, points: np.ndarray) -> np.ndarray:
+    def _heights(self, sheet: Sheet, points: np.ndarray) -> np.ndarray:
         return heights_at(self.work, sheet, points[:, :2], self.threads)
 
     def require_end(self, fault: Fault, ends: list[Fault], box, has_sheets: bool) -> None:

@@ -34,10 +34,10 @@ _ROUNDS = 4  # in which sheets may reach beyond what was divided
 
 def make_structures(
     work: Work,
-    project,
+    project: Project,
     faults: list[Fault],
     bodies: list[Body],
-    inputs: list,
+    inputs: list[RockInput],
     threads: int,
     stage: int | None,
     start: float,
@@ -74,8 +74,8 @@ def make_structures(
                 _make_all(work, inputs, tops, first, middle, threads, stage, keep)
         _make_all(work, inputs, None, middle, end, threads, stage, keep)
         for entry in inputs:
-            names = [surface.name for surface in entry.rock.surfaces]
-            entry.structure.warnings.sort(key=lambda each: names.index(each[1].surface))
+            numbers = {surface.name: number for number, surface in enumerate(entry.rock.surfaces)}
+            entry.divided().warnings.sort(key=lambda each: numbers[each[1].surface or ""])
             warn_of_doubts(work, entry, threads, stage, keep)
         wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
@@ -92,13 +92,16 @@ def make_structures(
         )
     if joins:
         for entry in inputs:
+            structure = entry.divided()
             for number in range(len(entry.surfaces)):
-                if entry.structure.is_made(number):  # not younger than the stage
-                    entry.surfaces[number] = joined(entry.structure.distinct(number))
+                if structure.is_made(number):  # not younger than the stage
+                    entry.surfaces[number] = joined(structure.distinct(number))
     return structures
 
 
-def _make_all(work: Work, inputs: list, numbers: list[set[int]] | None, start, end, threads, stage, keep):
+def _make_all(
+    work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, start, end, threads, stage, keep
+):
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     steps = np.linspace(start, end, len(inputs) + 1).tolist()
     for number, (entry, begin, finish) in enumerate(zip(inputs, steps[:-1], steps[1:], strict=True)):
@@ -107,7 +110,7 @@ def _make_all(work: Work, inputs: list, numbers: list[set[int]] | None, start, e
 
 
 def _without_gaps(
-    work: Work, structures: Structures, inputs: list, box, threads: int, has_sheets: bool = False
+    work: Work, structures: Structures, inputs: list[RockInput], box, threads: int, has_sheets: bool = False
 ) -> Structures:
     """The structures with their faults continued where close_gaps does so; the same ones where it does not.
     Its warnings are added to the first RockInput."""

@@ -34,6 +34,10 @@ class RockStructure:
         assert sheet is not None
         return sheet
 
+    def of_compartment(self, compartment: int) -> list[Sheet]:
+        """The sheets of all surfaces in a compartment, once they are made."""
+        return [self.sheet(compartment, number) for number in range(len(self.sheets[compartment]))]
+
     def is_made(self, surface: int) -> bool:
         """Whether a surface has all its sheets; no for one younger than the stage."""
         return all(sheets[surface] is not None for sheets in self.sheets)

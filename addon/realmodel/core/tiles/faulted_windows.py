@@ -101,7 +101,11 @@ class Windows:
         if _are_any_close(work, [plan.vertices for plan in self._all], threads):
             self.inputs, self.snapped = _snapped(work, inputs, threads, keep)
             self._find_plans()
-        ends = [beyond_all(sheets, structures) for entry in inputs for sheets in entry.divided().sheets]
+        ends = [
+            beyond_all(entry.divided().of_compartment(c), structures)
+            for entry in inputs
+            for c in range(len(entry.divided().sheets))
+        ]
         self._ends = min(low for low, _ in ends), max(high for _, high in ends)
         given = structures.native()
         self._continued = native_module().continued_structures(given, structures.divided_box())
@@ -279,9 +283,7 @@ class Windows:
         kept = structure.compartments[np.ix_(rows, np.array(at, np.int64))]
         compartments, first = np.unique(kept, axis=0, return_index=True)
         of = rows[first].tolist()
-        sheets: list[list[Sheet | None]] = [
-            [sheet_of(structure.sheet(c, k)) for k in range(len(entry.surfaces))] for c in of
-        ]
+        sheets: list[list[Sheet | None]] = [[*map(sheet_of, structure.of_compartment(c))] for c in of]
         found = RockStructure(
             _faults(structure.faults, at, present),
             compartments,
@@ -357,7 +359,7 @@ def _snapped(
         new = {sheet: snapped(sheet) for sheet in sheets}
         structure = entry.divided()
         of: list[list[Sheet | None]] = [
-            [new[structure.sheet(c, k)] for k in range(len(own))] for c, own in enumerate(structure.sheets)
+            [new[sheet] for sheet in structure.of_compartment(c)] for c in range(len(structure.sheets))
         ]
         region = None if entry.region is None else snapped(entry.region)
         found.append(replace(entry, region=region, structure=replace(structure, sheets=of)))

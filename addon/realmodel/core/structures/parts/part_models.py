@@ -164,7 +164,7 @@ def distinct_plans(sheets: Sequence[Sheet]) -> list[Sheet]:
     """One of each group of sheets that cover the same triangles in plan."""
     found: list[Sheet] = []
     for sheet in sheets:
-        if not any(sheet is other or sheet.has_plan_of(other) for other in found):
+        if not any(sheet.has_plan_of(other) for other in found):
             found.append(sheet)
     return found
 

@@ -11,8 +11,10 @@ import numpy as np
 
 from ...base.sheet import Sheet
 from ...base.work import Work, native_module, on_threads
+from ...project.project import Project
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import body_times, displaced_surfaces
+from ...surfaces.rock_input import RockInput
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, RockFaults
 from .refusals import refused_structure
@@ -165,7 +167,7 @@ class Structures:
         return few, first.astype(np.int32)
 
 
-def structures_of(project, faults: list[Fault], bodies: list[Body]) -> Structures:
+def structures_of(project: Project, faults: list[Fault], bodies: list[Body]) -> Structures:
     """faults, bodies: those of the project, with arrays."""
     displaced = [displaced_surfaces(project, fault) for fault in faults]
     return Structures(faults, bodies, displaced, [body_times(project, body) for body in bodies])
@@ -200,7 +202,7 @@ def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
     }
 
 
-def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -> np.ndarray:
+def box_around(inputs: list[RockInput], structures: Structures, has_sheets: bool = False) -> np.ndarray:
     """(2, 3) corners of a box around all rock that there may be: around RockInputs, or their sheets where
     these are made, and bodies, with a margin for what is not interpolated yet."""
     x, y, z = [], [], [body.triangulation()[0][:, 2] for body in structures.bodies]
@@ -210,8 +212,8 @@ def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -
             x.append(entry.region.vertices[:, 0])
             y.append(entry.region.vertices[:, 1])
         for number, (surface, shape) in enumerate(zip(entry.rock.surfaces, entry.surfaces, strict=True)):
-            has_made = has_sheets and entry.structure.is_made(number)  # not younger than the stage
-            shapes = entry.structure.distinct(number) if has_made else [shape]
+            has_made = has_sheets and entry.divided().is_made(number)  # not younger than the stage
+            shapes = entry.divided().distinct(number) if has_made else [shape]
             is_known &= None not in shapes
             for given in (surface.points if shape is None else shape.vertices for shape in shapes):
                 places = np.asarray(given, np.float64).reshape(-1, 3)
@@ -230,13 +232,13 @@ def box_around(inputs: list, structures: Structures, has_sheets: bool = False) -
     margin = np.array([0.0, 0.0, 0.0 if is_known else _BEYOND * (high[2] - low[2])])
     margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
     box = np.array([low - margin, high + margin])
-    bases = [entry.rock.base_elevation for entry in inputs]
-    if None not in bases:  # no rock is lower
+    bases = [base for entry in inputs if (base := entry.rock.base_elevation) is not None]
+    if len(bases) == len(inputs):  # no rock is lower
         box[0, 2] = min(bases)
     return box
 
 
-def add_compartments(structures: Structures, inputs: list) -> None:
+def add_compartments(structures: Structures, inputs: list[RockInput]) -> None:
     """Sets the compartments of each rock mass (RockInput): the parts, by their sides of the faults that act
     in it."""
     for number, entry in enumerate(inputs):
@@ -246,10 +248,11 @@ def add_compartments(structures: Structures, inputs: list) -> None:
         entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
 
 
-def compartment_of(structures: Structures, entry, part: int) -> int:
+def compartment_of(structures: Structures, entry: RockInput, part: int) -> int:
     """The compartment of a RockInput that a part lies in."""
-    row = structures.sides[part, entry.structure.faults.numbers]
-    return int(np.flatnonzero((entry.structure.compartments == row).all(axis=1))[0])
+    structure = entry.divided()
+    row = structures.sides[part][structure.faults.numbers]
+    return int(np.flatnonzero((structure.compartments == row).all(axis=1))[0])
 
 
 def compartment_names(names: list[str], rows: np.ndarray) -> list[str]:

@@ -13,16 +13,21 @@ from ...base.sheet import Sheet
 from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
 from ...base.work import Work
 from ...heights.interpolate import checked_points
+from ...project.project import Project
 from ...project.structure_entries import Body, Fault, body_item, fault_item
 from ...project.structure_history import displaced_surfaces
 from ...readers import read_mesh
 from ...readers.fault_sticks import read_fault_points
+from ...surfaces.rock_input import RockInput
 from .continued import extended
 from .fitted import fit_points, fit_sticks
+from .ground import Top
 from .traces import read_trace, trace_surface
 
 
-def read_structures(work: Work, project, threads: int = 0, inputs=None):
+def read_structures(
+    work: Work, project: Project, threads: int = 0, inputs: list[RockInput] | None = None
+) -> tuple[list[Fault], list[Body], list[BuildWarning]]:
     """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
     only; and the warnings of reading and fitting. inputs: the rock masses, read (RockInput), which faults
     given by a trace go through; None: these keep their traces, read. Raises InputRefused."""
@@ -71,7 +76,12 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
 
 
 def _read_traced(
-    work: Work, fault: Fault, project, inputs, threads: int, warnings: list[BuildWarning]
+    work: Work,
+    fault: Fault,
+    project: Project,
+    inputs: list[RockInput] | None,
+    threads: int,
+    warnings: list[BuildWarning],
 ) -> Fault:
     item = fault_item(fault)
     fault = replace(fault, shape_file=fault.input_file or fault.shape_file)
@@ -96,7 +106,7 @@ def _read_traced(
     )
 
 
-def _tops(project, inputs, fault: Fault) -> list[tuple]:
+def _tops(project: Project, inputs: list[RockInput], fault: Fault) -> list[Top]:
     """Of each rock mass that a fault displaces its RockInput, and the number of the surface that the trace is
     on: of the named one (None where there is none), else of the youngest."""
     tops = []
@@ -143,11 +153,11 @@ def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
     return replace(body, vertices=vertices, triangles=triangles, mesh=None, shape_file=shape_file)
 
 
-def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Sheet:
+def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning], item: str) -> Sheet:
     if entry.mesh_file is None:
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
-        mesh = read_mesh(entry.input_file)
+        mesh = read_mesh(entry.mesh_file.file)
         vertices, texts = mesh.in_model(entry.mesh_file, units)
         warnings += [BuildWarning(text, "mesh_file") for text in texts]
         triangles = mesh.triangles
@@ -161,6 +171,6 @@ def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Shee
     return Sheet(vertices, kept)
 
 
-def _within(error: InputRefused, entry, item: str) -> InputRefused:
+def _within(error: InputRefused, entry: Fault | Body, item: str) -> InputRefused:
     file, line = entry.shape_source()
     return error.within(item, file=file, line=line)

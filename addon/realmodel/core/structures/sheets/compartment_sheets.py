@@ -13,7 +13,7 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused
 from ...project.project import Rock, surface_item
-from ...surfaces.rock_input import named_surfaces
+from ...surfaces.rock_input import RockInput, named_surfaces
 from ...surfaces.surface_heights import needed_surfaces
 from .borrowed import between_faults
 from .families import Family, around_tips, families
@@ -27,9 +27,9 @@ class CompartmentSheets:
 
     Raises InputRefused for a surface that has data in no compartment."""
 
-    def __init__(self, entry, number: int, surface: InterpolatedSurface | ReadyMesh):
+    def __init__(self, entry: RockInput, number: int, surface: InterpolatedSurface | ReadyMesh):
         self.entry, self.number, self.surface = entry, number, surface
-        self.every = families(entry.structure, number)
+        self.every = families(entry.divided(), number)
         self.with_data = [family for family in self.every if surface.has_data(family)]
         if not self.with_data:
             raise InputRefused(
@@ -93,7 +93,7 @@ class CompartmentSheets:
         taken = [self._from(source, family, throws) for source in sources]
         trends = taken[0]
         if len(taken) > 1:
-            shapes = self.entry.structure.faults.shapes
+            shapes = self.entry.divided().faults.shapes
             faults = []
             for source in sources:  # several are taken over only by their throws
                 assert source.shift is not None and source.fault is not None
@@ -107,7 +107,7 @@ class CompartmentSheets:
         with named(self.entry.rock, self.number):
             trends = _drawn_together(self.surface, family, trends)
             self.made[family.key] = self.surface.sheets(family, trends)
-        self.entry.structure.warnings.append((list(family.members), self._warning(family, sources)))
+        self.entry.divided().warnings.append((list(family.members), self._warning(family, sources)))
 
     def _from(self, source: Source, family: Family, throws: Throws) -> Sheets:
         """The sheets of another family by the sides of this one, whose faults that die out may differ."""
@@ -141,12 +141,12 @@ class CompartmentSheets:
 
     def finish(self) -> None:
         """Gives the compartments the sheets, once all are made; those beyond tips are drawn together."""
-        structure, number = self.entry.structure, self.number
+        structure, number = self.entry.divided(), self.number
         for family in self.every:
             for compartment, sides in family.members.items():
                 structure.sheets[compartment][number] = self.made[family.key][sides]
         for together in around_tips(structure, number, self.every):
-            sheets = {sides: structure.sheets[each][number] for each, sides in together.members.items()}
+            sheets = {sides: structure.sheet(each, number) for each, sides in together.members.items()}
             drawn = _drawn_together(self.surface, together, sheets)
             for compartment, sides in together.members.items():
                 structure.sheets[compartment][number] = drawn[sides]
@@ -158,7 +158,7 @@ class CompartmentSheets:
         if not rock.surfaces[self.number].interpolated:
             return True
         needed = needed_surfaces(rock, self.number) if others is None else others
-        return all(self.entry.structure.sheets[0][other] is not None for other in needed)
+        return all(self.entry.divided().sheets[0][other] is not None for other in needed)
 
     def _tell(self, family: Family, sheets: Sheets, throws: Throws) -> None:
         self.told.add(family.key)
@@ -170,7 +170,7 @@ class CompartmentSheets:
         return OWN if family in self.own else TAKEN
 
     def _warning(self, family: Family, sources: list[Source]) -> BuildWarning:
-        structure, rock = self.entry.structure, self.entry.rock
+        structure, rock = self.entry.divided(), self.entry.rock
         names = [structure.names[next(iter(each.members))] for each in (family, *(s.family for s in sources))]
         here, *there = (f"'{name}'" for name in names)
         if family.key in self.few:

@@ -20,6 +20,7 @@ from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
+from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import fault_sides, sides_of
 from ...surfaces.surface_heights import Trend, give_heights, needed_surfaces, used_vertices, where_known
 from ...surfaces.wrong_sides import heights_at
@@ -42,11 +43,11 @@ class InterpolatedSurface:
 
     data = "points"
 
-    def __init__(self, work: Work, entry, number: int, threads: int):
+    def __init__(self, work: Work, entry: RockInput, number: int, threads: int):
         self.work, self.entry, self.number, self.threads = work, entry, number, threads
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
-        structure = entry.structure
+        structure = entry.divided()
         self.placed = point_sides(work, self.points, entry, number, threads)
         structure.points[number] = self.placed.sides
         names = structure.faults.names
@@ -55,14 +56,14 @@ class InterpolatedSurface:
             structure.warnings.append((list(range(len(structure.compartments))), warning))
         self._leave_out_contradictions()
         self.counts = self._that_count()
-        self.keys = keys_of(entry.structure, number, self.placed.sides)
+        self.keys = keys_of(entry.divided(), number, self.placed.sides)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
         """Leaves out points that others at their place in plan contradict, with a warning."""
-        faults = self.entry.structure.faults
+        faults = self.entry.divided().faults
         rows = np.where(faults.active(self.number), self.placed.sides, 0)
         beyond = beyond_faults(self.points, rows)
         wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
@@ -77,14 +78,14 @@ class InterpolatedSurface:
             "other side reach beyond a fault there"
         )
         warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
-        every = list(range(len(self.entry.structure.compartments)))
-        self.entry.structure.warnings.append((every, warning))
+        every = list(range(len(self.entry.divided().compartments)))
+        self.entry.divided().warnings.append((every, warning))
         self.points, self.placed = self.points[~left_out], self.placed.some(~left_out)
 
     def _that_count(self) -> np.ndarray:
         """(P,) bool: the points that its method takes; one that works on the mesh ignores others."""
         if METHODS[self.surface.method_options()[0]].on_mesh:
-            nodes, triangles = self.entry.region
+            nodes, triangles = self.entry.planar_mesh()
             level = np.column_stack([nodes, np.zeros(len(nodes))])
             over = np.isfinite(
                 heights_at(self.work, Sheet(level, triangles), self.points[:, :2], self.threads)
@@ -110,7 +111,7 @@ class InterpolatedSurface:
             return False
         points = self.points[self._certain(family)]
         return len(points) == 0 or are_few(
-            self.surface, points, self.entry.region.vertices, self._within(family)
+            self.surface, points, self.entry.planar_mesh().vertices, self._within(family)
         )
 
     def _certain(self, family: Family) -> np.ndarray:
@@ -131,7 +132,7 @@ class InterpolatedSurface:
         """Sheets of another family, across a fault, for this one: as its method continues them, or with the
         heights that they have at the fault, where they would run away, or the points of this family agree
         better with that."""
-        shape, side = self.entry.structure.faults.shapes[fault], source.key[fault]
+        shape, side = self.entry.divided().faults.shapes[fault], source.key[fault]
         within, points = self._within(family), self.points[self._certain(family)]
         found: dict[Sheet, Sheet] = {}
         for sheet in sheets.values():
@@ -172,8 +173,8 @@ class InterpolatedSurface:
         common = self._interpolated(family, first, own, trend=trend)
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
-        faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
-        nodes, triangles = self.entry.region
+        faults = [self.entry.divided().faults.shapes[fault] for fault in family.dying]
+        nodes, triangles = self.entry.planar_mesh()
         z = self._on_nodes(common)
         known = np.isfinite(z)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
@@ -182,7 +183,7 @@ class InterpolatedSurface:
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
-        met = family.with_ends(met, self.entry.structure.faults)
+        met = family.with_ends(met, self.entry.divided().faults)
         hidden = {
             (number, side): own
             & (self.placed.sides[:, family.dying[number]] == -side)
@@ -244,7 +245,7 @@ class InterpolatedSurface:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
         if len(set(sheets.values())) == 1:
             return sheets
-        _, triangles = self.entry.region
+        _, triangles = self.entry.planar_mesh()
         values = {sides: self._values_on_nodes(sheet) for sides, sheet in sheets.items()}
         known = np.logical_and.reduce([np.isfinite(of[:, 0]) for of in values.values()])
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
@@ -254,8 +255,8 @@ class InterpolatedSurface:
     def _with_equal_ends(self, family: Family, some, values: dict, meshed: np.ndarray, result) -> Sheets:
         """Sheets with some values at the nodes, as _values_on_nodes has them, drawn together beyond the ends
         of some of the faults that die out. result: the interpolation that is known of them."""
-        nodes, triangles = self.entry.region
-        shapes = self.entry.structure.faults.shapes
+        nodes, triangles = self.entry.planar_mesh()
+        shapes = self.entry.divided().faults.shapes
         faults = [family.dying[number] for number in some]
         ramp = _RAMP * median_edge(nodes, triangles)
         equal = with_equal_ends(
@@ -295,7 +296,7 @@ class InterpolatedSurface:
         if trend is None and own.sum() > self.most[0]:
             self.most = (int(own.sum()), result)
         for warning in one.warnings:
-            self.entry.structure.warn(list(family.members), warning)
+            self.entry.divided().warn(list(family.members), warning)
         return sheet
 
     def _points(self, family: Family, own: np.ndarray, lips: Sequence[Lip] | None) -> np.ndarray:
@@ -346,7 +347,7 @@ class InterpolatedSurface:
         result = one.interpolations[self.number]
         for text in (*few_points(points, result.method), *runs_away(points, result.z, result.method)):
             warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
-            self.entry.structure.warn(list(family.members), warning)
+            self.entry.divided().warn(list(family.members), warning)
         return np.column_stack([result.z, *one.attributes[self.number].values()])
 
     def _values_on_nodes(self, sheet: Sheet) -> np.ndarray:
@@ -366,7 +367,7 @@ class InterpolatedSurface:
 
     def _beyond(self, family: Family, own: np.ndarray, lips: Sequence[Lip]) -> np.ndarray:
         """(K, 3) points beyond the faults at which the sheet ends, for a method that needs them."""
-        points, shapes = self.points[own], self.entry.structure.faults.shapes
+        points, shapes = self.points[own], self.entry.divided().faults.shapes
         whole = np.ones(len(points), bool)
         parting = [Lip(shapes[n], side, whole) for n, side in enumerate(family.key) if side in (-1, 1)]
         lips, options = [*parting, *lips], self.surface.method_options()
@@ -383,12 +384,12 @@ class InterpolatedSurface:
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Sheet:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
         the planar mesh gets the height of the compartment in which the other surface lies there."""
-        structure = self.entry.structure
+        structure = self.entry.divided()
         members = [each for each, its in family.members.items() if its == sides] or list(family.members)
-        different = list(dict.fromkeys(structure.sheets[each][other] for each in members))
+        different = list(dict.fromkeys(structure.sheet(each, other) for each in members))
         if len(different) == 1:
             return different[0]
-        nodes, triangles = self.entry.region
+        nodes, triangles = self.entry.planar_mesh()
         chosen = np.full(len(nodes), np.nan)
         total, known = np.zeros(len(nodes)), np.zeros(len(nodes))
         for sheet in different:
@@ -407,13 +408,13 @@ class InterpolatedSurface:
 
     def _on_nodes(self, sheet: Sheet) -> np.ndarray:
         """(N,) heights of a sheet at the nodes of the planar mesh; NaN where it has none."""
-        nodes, _ = self.entry.region
+        nodes, _ = self.entry.planar_mesh()
         if len(sheet.vertices) == len(nodes) and np.array_equal(sheet.vertices[:, :2], nodes):
             return sheet.vertices[:, 2]
         return heights_at(self.work, sheet, nodes, self.threads)
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.structure, self.number, family, self.threads)
+        return Within(self.work, self.entry.divided(), self.number, family, self.threads)
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex

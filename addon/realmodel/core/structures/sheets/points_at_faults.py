@@ -17,6 +17,7 @@ from ...base.errors import place_text
 from ...base.triangles import median_edge, nearest_triangles
 from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
+from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import FaultShape, sides_of
 
 _NEAR = 0.25  # of an edge length: nearer to a fault, the position does not decide
@@ -42,7 +43,9 @@ class PointSides(NamedTuple):
         return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
 
 
-def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int = 0) -> PointSides:
+def point_sides(
+    work: Work, points: np.ndarray, entry: RockInput, number: int, threads: int = 0
+) -> PointSides:
     """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
     A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
@@ -50,13 +53,13 @@ def point_sides(work: Work, points: np.ndarray, entry, number: int, threads: int
     decides, unless some of the points near the fault agree with them and others do not: these are of the
     other side.
     """
-    structure = entry.structure
+    structure = entry.divided()
     faults = structure.faults
     sides = sides_of(work, points, faults, threads)
     active = faults.active(number)
     away = np.full(sides.shape, np.inf)
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
-    reach, away[:, active] = distances(points, median_edge(*entry.region), shapes)
+    reach, away[:, active] = distances(points, median_edge(*entry.planar_mesh().arrays), shapes)
     near, beside = away < reach, np.isfinite(away)
     agreement = _Agreement(
         work=work,

@@ -11,6 +11,7 @@ from ...base.triangles import edge_numbers, edges_of, median_edge, meet, open_ed
 from ...base.work import Work
 from ...heights import Task, heights
 from ...settings.methods import CONTINUATION
+from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import common_lines
 from .families import Family, around_tips, families
@@ -27,12 +28,13 @@ class ReadyMesh:
 
     data = "triangles"
 
-    def __init__(self, work: Work, entry, number: int, threads: int):
+    def __init__(self, work: Work, entry: RockInput, number: int, threads: int):
         self.work, self.entry, self.number, self.threads = work, entry, number, threads
         surface = entry.rock.surfaces[number]
+        assert surface.vertices is not None and surface.triangles is not None  # it is read
         self.vertices, self.triangles = surface.vertices, surface.triangles
         self.method, self.settings = surface.method_options()
-        faults = entry.structure.faults
+        faults = entry.divided().faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
         self.reach, near = self._near(faults.shapes)
@@ -106,7 +108,7 @@ class ReadyMesh:
                 self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
             )
         plan, triangles, known = self.tiling.around(own)
-        shapes = self.entry.structure.faults.shapes
+        shapes = self.entry.divided().faults.shapes
         cut: list[tuple[FaultShape, int, Trace | None]] = [
             (shapes[fault], side, None) for fault, side in enumerate(family.key) if side in (-1, 1)
         ]
@@ -126,7 +128,7 @@ class ReadyMesh:
         met = [number for number, trace in enumerate(traces) if len(trace.points) or over[number].any()]
         if not met and (self.tiling.is_mesh or not self._is_drawn_together()):
             return dict.fromkeys(family.members.values(), sheet)
-        met = family.with_ends(met, self.entry.structure.faults)
+        met = family.with_ends(met, self.entry.divided().faults)
         self._require_one_height_beyond(family, met, sheet)
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
@@ -149,7 +151,7 @@ class ReadyMesh:
 
     def _is_drawn_together(self) -> bool:
         """Whether sheets of several families are, so that they need one plan."""
-        structure = self.entry.structure
+        structure = self.entry.divided()
         return bool(around_tips(structure, self.number, families(structure, self.number)))
 
     def _over_others(self, own: np.ndarray, fault: int) -> np.ndarray:
@@ -163,7 +165,7 @@ class ReadyMesh:
         if not len(pairs):
             return found
         begin, end = common_lines(corners[0][pairs[:, 0]], corners[1][pairs[:, 1]])
-        faults = self.entry.structure.faults
+        faults = self.entry.divided().faults
         is_missed = np.isnan(hit_shares(begin, end, faults.shapes[fault]))
         if is_missed.any():
             first = int(is_missed.argmax())
@@ -174,7 +176,7 @@ class ReadyMesh:
         return found
 
     def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Sheet) -> None:
-        faults = self.entry.structure.faults
+        faults = self.entry.divided().faults
         for number in met:
             fault, within = family.dying[number], self._within(family)
             place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
@@ -193,7 +195,7 @@ class ReadyMesh:
     def _with_equal_ends(self, family: Family, some, heights: dict, plan: np.ndarray, triangles: np.ndarray):
         """Sheets with some heights, by sides, drawn together beyond the ends of some of the faults that die
         out."""
-        shapes = self.entry.structure.faults.shapes
+        shapes = self.entry.divided().faults.shapes
         faults = [shapes[family.dying[number]] for number in some]
         within = self._within(family)
         ramps = [0.0] * len(faults)
@@ -201,7 +203,7 @@ class ReadyMesh:
         return shared({sides: Sheet(np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.structure, self.number, family, self.threads)
+        return Within(self.work, self.entry.divided(), self.number, family, self.threads)
 
     def _continued(
         self,

@@ -14,6 +14,7 @@ from ...base.mapped_arrays import Keep, as_it_is
 from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
+from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import sides_of
 from ...surfaces.surface_heights import interpolation_order
 from ...surfaces.wrong_sides import points_too_low
@@ -25,7 +26,7 @@ from .throws import Throws
 
 def make_sheets(
     work: Work,
-    entry,
+    entry: RockInput,
     start: float,
     end: float,
     threads: int,
@@ -46,7 +47,7 @@ def make_sheets(
         [
             number
             for number in each
-            if (numbers is None or number in numbers) and not entry.structure.is_made(number)
+            if (numbers is None or number in numbers) and not entry.divided().is_made(number)
         ]
         for each in _by_kind(rock, stage)
     )
@@ -74,7 +75,7 @@ def make_sheets(
             sheets.finish()
         _keep(entry, sheets.number, keep)
 
-    few = entry.structure.few
+    few = entry.divided().few
     # ready meshes need no others
     with work.phase(start, steps[0], "interpolating surfaces"):
         unfinished = list(itertools.chain(*work.each(begin_ready, ready, threads)))
@@ -85,14 +86,14 @@ def make_sheets(
         with work.phase(end, end, "interpolating surfaces"):
             begun = {*ready, *interpolated}
             for number in itertools.chain(*reversed(_by_kind(rock, None))):
-                if number not in begun and not entry.structure.is_made(number):
+                if number not in begun and not entry.divided().is_made(number):
                     unfinished += begin(work, number, threads)
             for sheets in unfinished:
                 sheets.surface.work = work
-            make_borrowed(unfinished, Throws(work, entry.structure, few, threads), finish)
+            make_borrowed(unfinished, Throws(work, entry.divided(), few, threads), finish)
         younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
-        warnings = entry.structure.warnings
-        entry.structure.warnings = [each for each in warnings if each[1].surface not in younger]
+        warnings = entry.divided().warnings
+        entry.divided().warnings = [each for each in warnings if each[1].surface not in younger]
 
 
 def _by_kind(rock, stage: int | None) -> tuple[list[int], list[int]]:
@@ -106,13 +107,13 @@ def _count(rock, stage: int | None) -> int:
     return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
 
 
-def warn_of_doubts(work: Work, entry, threads: int, stage: int | None, keep: Keep) -> None:
+def warn_of_doubts(work: Work, entry: RockInput, threads: int, stage: int | None, keep: Keep) -> None:
     """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
     for number in sorted(interpolation_order(entry.rock, stage)):
         _warn_of_doubts(work, entry, number, threads, keep)
 
 
-def _keep(entry, number: int, keep: Keep) -> None:
+def _keep(entry: RockInput, number: int, keep: Keep) -> None:
     """Keeps the arrays of a surface elsewhere. Sheets and arrays that are the same object stay so."""
     made: dict[Sheet, Sheet] = {}
 
@@ -123,8 +124,9 @@ def _keep(entry, number: int, keep: Keep) -> None:
                 return getattr(new, name)
         return keep(array)
 
-    for sheets in entry.structure.sheets:
-        sheet = sheets[number]
+    structure = entry.divided()
+    for compartment, sheets in enumerate(structure.sheets):
+        sheet = structure.sheet(compartment, number)
         if sheet not in made:
             made[sheet] = Sheet(kept(sheet, "vertices"), kept(sheet, "triangles"))
         sheets[number] = made[sheet]
@@ -132,10 +134,10 @@ def _keep(entry, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_doubts(work: Work, entry, number: int, threads: int, keep: Keep) -> None:
+def _warn_of_doubts(work: Work, entry: RockInput, number: int, threads: int, keep: Keep) -> None:
     """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
     compartment."""
-    structure, surfaces = entry.structure, entry.rock.surfaces
+    structure, surfaces = entry.divided(), entry.rock.surfaces
     points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
     sides = structure.points[number]
     for compartment, row in enumerate(structure.compartments):
