@@ -112,22 +112,12 @@ def simulation_mesh(
         plan_sizes = _of_plan(sizes, inner)
         with work.phase(0.2, 0.5, "meshing the plan"):
             options = MeshOptions(float(edge_length), mesher, size=plan_sizes, constraints=inner)
-            vertices, triangles = mesh_rings(work, lines.rings, options)
+            plan = mesh_rings(work, lines.rings, options)
+        thickest = 0.0 if layer_thickness is None else float(layer_thickness)
+        layering = float(minimum_thickness), numbers, thickest, elements == "tetrahedra"
         with work.phase(0.5, 1.0, "filling columns"):
-            made = call_native(
-                work,
-                threads,
-                native_module().layered_mesh,
-                arrays,
-                rocks,
-                lines,
-                vertices,
-                triangles,
-                float(minimum_thickness),
-                numbers,
-                0.0 if layer_thickness is None else float(layer_thickness),
-                elements == "tetrahedra",
-            )
+            function = native_module().layered_mesh
+            made = call_native(work, threads, function, arrays, rocks, lines, *plan, *layering)
         return _assembled(model, made, elements, numbers)
 
     return run(fill if without_columns else task, progress, cancel)
