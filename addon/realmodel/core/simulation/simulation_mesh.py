@@ -112,12 +112,12 @@ def simulation_mesh(
         plan_sizes = _of_plan(sizes, inner)
         with work.phase(0.2, 0.5, "meshing the plan"):
             options = MeshOptions(float(edge_length), mesher, size=plan_sizes, constraints=inner)
-            plan = mesh_rings(work, lines.rings, options)
+            vertices, triangles = mesh_rings(work, lines.rings, options)
         thickest = 0.0 if layer_thickness is None else float(layer_thickness)
         layering = float(minimum_thickness), numbers, thickest, elements == "tetrahedra"
         with work.phase(0.5, 1.0, "filling columns"):
             function = native_module().layered_mesh
-            made = call_native(work, threads, function, arrays, rocks, lines, *plan, *layering)
+            made = call_native(work, threads, function, arrays, rocks, lines, vertices, triangles, *layering)
         return _assembled(model, made, elements, numbers)
 
     return run(fill if without_columns else task, progress, cancel)
