@@ -34,14 +34,4 @@ void dump_regions(const exact::SpacePoints& points, const TriangleArrangement& a
     }
 }
 
-void dump_fan(const exact::SpacePoints& points, SpacePointId a, SpacePointId b,
-              std::span<const HalfPlane> items, const char* path) {
-    ObjFile file(path);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        file.begin_group("item_" + std::to_string(i));
-        file.add('f', std::array{points.rounded(a), points.rounded(b),
-                                 points.rounded(items[i].towards)});
-    }
-}
-
 }  // namespace realmodel::arrangement

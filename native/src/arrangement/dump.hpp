@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
-
-#include "arrangement/edge_fan.hpp"
 #include "arrangement/triangle_arrangement.hpp"
 
 // Pictures of what is divided, as strata/dump.hpp has them of the stack: nothing in the library
@@ -16,10 +13,5 @@ namespace realmodel::arrangement {
 /// regions as faces and the holes in them as lines.
 void dump_regions(const exact::SpacePoints& points, const TriangleArrangement& arrangement,
                   const char* path);
-
-/// Half-planes around the edge from a to b as triangles, each in a group "item_N" in the order of
-/// its number.
-void dump_fan(const exact::SpacePoints& points, SpacePointId a, SpacePointId b,
-              std::span<const HalfPlane> items, const char* path);
 
 }  // namespace realmodel::arrangement

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <span>
 
+#include "base/index.hpp"
+#include "base/key_table.hpp"
 #include "realmodel/base/array.hpp"
 
 namespace realmodel::arrangement {
@@ -52,6 +56,32 @@ private:
     const std::size_t* begins_;
     std::size_t count_;
 };
+
+/// A hash that is the same for loops of the same nodes, wherever they begin.
+template <class Node>
+std::uint32_t loop_hash(std::span<const Node> loop) {
+    std::uint32_t hash = 0;
+    for (const Node node : loop)
+        hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(index(node))});
+    return hash;
+}
+
+/// 1 where two loops pass the same nodes in the same order, from whichever on; -1 where they do so
+/// against each other; else 0.
+template <class Node>
+std::int8_t facing_of(std::span<const Node> one, std::span<const Node> other) {
+    const std::size_t n = one.size();
+    if (other.size() != n) return 0;
+    for (const bool back : {false, true}) {
+        for (std::size_t begin = 0; begin < n; ++begin) {
+            std::size_t i = 0;
+            while (i < n && one[i] == other[(begin + (back ? n - i : i)) % n])
+                ++i;
+            if (i == n) return back ? -1 : 1;
+        }
+    }
+    return 0;
+}
 
 /// The loops of many regions in three arrays.
 template <class Node>

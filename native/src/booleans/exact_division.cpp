@@ -43,24 +43,6 @@ private:
     const View& view_;
 };
 
-/// A loop from its least node on, in the direction of the lesser of that node's neighbors.
-std::vector<SpacePointId> canonical(std::span<const SpacePointId> loop) {
-    std::vector<SpacePointId> best;
-    for (const bool backward : {false, true}) {
-        std::vector<SpacePointId> turned(loop.begin(), loop.end());
-        if (backward) std::reverse(turned.begin(), turned.end());
-        const SpacePointId least = *std::min_element(turned.begin(), turned.end());
-        for (std::size_t i = 0; i < turned.size(); ++i) {
-            if (turned[i] != least) continue;
-            std::vector<SpacePointId> rotated(turned);
-            std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(i),
-                        rotated.end());
-            if (best.empty() || rotated < best) best = std::move(rotated);
-        }
-    }
-    return best;
-}
-
 bool is_triangle(const Region& region) {
     return region.loops.size() == 1 && region.loops[0].size() == 3;
 }
@@ -241,32 +223,24 @@ void ExactDivision::divide(const std::vector<Meeting>& at) {
 /// Of regions that coincide the first is divided, the others as that one; triangles need not be.
 std::vector<ExactDivision::Copy> ExactDivision::coinciding_regions() const {
     const auto& regions = arrangement_.regions();
-    std::vector<std::vector<SpacePointId>> outlines(regions.size());
-    parallel_ranges(regions.size(), kChunk, execution_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t r = begin; r < end; ++r) {
-            if (!is_triangle(regions[r])) outlines[r] = canonical(regions[r].loops[0]);
-        }
-    });
     std::vector<Copy> copies(regions.size());
     KeyTable table;
-    std::vector<std::uint64_t> words;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         poll(execution_.progress, r);
-        if (outlines[r].empty()) continue;
-        words.clear();
-        for (const SpacePointId p : outlines[r])
-            words.push_back(static_cast<std::uint64_t>(p.number()));
-        const auto found = table.find_or_add(
-            KeyTable::hash(words), static_cast<std::int32_t>(r),
-            [&](std::int32_t other) { return outlines[index(other)] == outlines[r]; });
-        copies[r].of = found.number;
-        if (found.is_new) continue;
-        const Region first = regions[index(found.number)];
-        assert(first.loops.size() == regions[r].loops.size());
-        const auto view = arrangement_.view_of(regions[r].triangle);
-        const auto& corners = arrangement_.corners(first.triangle);
-        copies[r].is_reversed = exact::orient2d(pieces_.points, view.first, corners[0], corners[1],
-                                                corners[2]) != view.second;
+        if (is_triangle(regions[r])) continue;
+        const auto outline = regions[r].loops[0];
+        std::int8_t facing = 1;
+        copies[r].of =
+            table
+                .find_or_add(arrangement::loop_hash(outline), static_cast<std::int32_t>(r),
+                             [&](std::int32_t other) {
+                                 facing = arrangement::facing_of(outline,
+                                                                 regions[index(other)].loops[0]);
+                                 return facing != 0;
+                             })
+                .number;
+        assert(regions[index(copies[r].of)].loops.size() == regions[r].loops.size());
+        copies[r].is_reversed = facing < 0;
     }
     return copies;
 }

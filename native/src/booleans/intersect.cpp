@@ -100,21 +100,6 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const FacetCel
     }
 }
 
-/// Whether triangles pass each edge as often one way as the other.
-[[maybe_unused]] bool is_closed(const std::vector<std::array<std::int32_t, 3>>& triangles,
-                                std::size_t vertices) {
-    const auto edges = arrangement::edges_of(
-        triangles.size(), vertices, [&](std::size_t t) -> const auto& { return triangles[t]; },
-        {1});
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        int net = 0;
-        for (const arrangement::EdgeUse& use : edges[e])
-            net += use.direction;
-        if (net != 0) return false;
-    }
-    return true;
-}
-
 /// Six times the volume between a triangle and an origin.
 DoubleDoubleInterval volume_below(const std::vector<Position>& vertices,
                                   const std::array<std::int32_t, 3>& t, const Position& origin) {
@@ -151,7 +136,6 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
                                      vertices[index(block.triangles[0][0])]);
         }
         block.volume = (sum.high + sum.low) / 6;
-        assert(is_closed(block.triangles, vertices.size()));
         for (std::size_t source = 0; source < 2; ++source)
             block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
@@ -180,7 +164,7 @@ Refinement intersect(const TriangleMesh& first, const TriangleMesh& second,
     if (execution.progress != nullptr)
         execution.progress->begin(0.9, 0.99, "finding what is inside");
     const FacetCells cells = cells_of(parts.vertices, mesh, execution);
-    Loops loops = find_loops(mesh, execution.progress);
+    Loops loops = find_loops(mesh, parts.vertices.size(), execution.progress);
     Refinement result;
     result.vertices.reserve(3 * parts.vertices.size());
     for (const Position& p : parts.vertices)

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
 
 namespace realmodel::booleans {
@@ -25,40 +26,35 @@ bool is_intersection(const FacetMesh& mesh, std::size_t edge) {
 /// The intersection edges as a graph.
 class LoopGraph {
 public:
-    LoopGraph(const FacetMesh& mesh, Progress* progress) : mesh_(mesh), progress_(progress) {
+    LoopGraph(const FacetMesh& mesh, std::size_t vertices, Progress* progress) : mesh_(mesh) {
         result_.of_edge.assign(mesh.edges.size(), -1);
-        for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
-            poll(progress_, e);
-            if (!is_intersection(mesh, e)) continue;
-            for (const std::int32_t v : mesh.edges.ends(e))
-                ends_.emplace_back(v, static_cast<std::int32_t>(e));
-        }
-        std::sort(ends_.begin(), ends_.end());
+        edges_at_ = bucketize<std::int32_t>(vertices, [&](const auto& put) {
+            for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+                poll(progress, e);
+                if (!is_intersection(mesh, e)) continue;
+                for (const std::int32_t v : mesh.edges.ends(e))
+                    put(index(v), static_cast<std::int32_t>(e));
+            }
+        });
     }
 
     /// First the paths between vertices that have not two edges, then the cycles of those that do.
-    Loops run() {
+    Loops run(Progress* progress) {
         for (const bool paths : {true, false}) {
-            for (const auto& [vertex, edge] : ends_) {
-                poll(progress_, index(edge));
-                if (result_.of_edge[index(edge)] < 0 && (degree(vertex) != 2) == paths)
-                    follow(vertex, edge);
+            for (std::size_t v = 0; v < edges_at_.size(); ++v) {
+                poll(progress, v);
+                for (const std::int32_t edge : edges_at_[v]) {
+                    const auto vertex = static_cast<std::int32_t>(v);
+                    if (result_.of_edge[index(edge)] < 0 && (degree(vertex) != 2) == paths)
+                        follow(vertex, edge);
+                }
             }
         }
         return std::move(result_);
     }
 
 private:
-    using End = std::pair<std::int32_t, std::int32_t>;  ///< vertex, edge
-    std::vector<End>::const_iterator first_of(std::int32_t vertex) const {
-        return std::lower_bound(ends_.begin(), ends_.end(), End(vertex, 0));
-    }
-    std::size_t degree(std::int32_t vertex) const {
-        std::size_t count = 0;
-        for (auto end = first_of(vertex); end != ends_.end() && end->first == vertex; ++end)
-            ++count;
-        return count;
-    }
+    std::size_t degree(std::int32_t vertex) const { return edges_at_[index(vertex)].size(); }
     void follow(std::int32_t start, std::int32_t edge) {
         const auto number = static_cast<std::int32_t>(result_.loops.size());
         IntersectionLoop loop{LoopKind::kOpen, {start}};
@@ -76,23 +72,21 @@ private:
                 if (degree(start) > 2 && degree(at) > 2) loop.kind = LoopKind::kSoftClosed;
                 break;
             }
-            const auto first = first_of(at);
-            assert(first->first == at && std::next(first)->first == at);
-            edge = first->second == edge ? std::next(first)->second : first->second;
+            const auto both = edges_at_[index(at)];
+            edge = both[0] == edge ? both[1] : both[0];
         }
         result_.loops.push_back(std::move(loop));
     }
 
     const FacetMesh& mesh_;
-    Progress* progress_;
     Loops result_;
-    std::vector<End> ends_;  ///< in order
+    Buckets<std::int32_t> edges_at_;  ///< of vertices: intersection edges
 };
 
 }  // namespace
 
-Loops find_loops(const FacetMesh& mesh, Progress* progress) {
-    return LoopGraph(mesh, progress).run();
+Loops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress) {
+    return LoopGraph(mesh, vertices, progress).run(progress);
 }
 
 }  // namespace realmodel::booleans

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "arrangement/edge_fan.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
@@ -12,6 +13,7 @@
 
 namespace realmodel::cutting {
 
+using arrangement::EdgeUses;
 using spatial::Box;
 using spatial::BoxTree;
 
@@ -28,14 +30,22 @@ public:
 
 private:
     Position at(NodeId v) const { return surface_.vertices[index(v)]; }
-    std::map<Edge, std::vector<std::int32_t>> by_edge() const;
+    /// A corner of a border that lies on a border edge, at a share of its length.
+    struct OnEdge {
+        Edge edge;
+        double share;
+        NodeId node;
+        auto operator<=>(const OnEdge&) const = default;
+    };
+
+    EdgeUses edges_of(const std::vector<Triangle>& triangles) const;
     bool drop_repeated();
     void divide_borders();
-    void divide_triangle(std::size_t t, const std::map<Edge, std::vector<NodeId>>& on_edge);
+    void divide_triangle(std::size_t t, std::span<const OnEdge> on_edges);
     bool runs(std::int32_t t, NodeId a, NodeId b) const;
     void reverse(std::int32_t t);
     bool orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
-                         const std::map<Edge, std::vector<std::int32_t>>& users_of);
+                         const EdgeUses& edges);
     void orient_upward();
     void extend_border();
 
@@ -77,42 +87,37 @@ SurfaceInput::SurfaceInput(const TriangleView& given) {
                          "the surface that is to cut has no triangles with an area");
 }
 
-std::map<Edge, std::vector<std::int32_t>> SurfaceInput::by_edge() const {
-    std::map<Edge, std::vector<std::int32_t>> users;
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-        const Triangle& c = surface_.triangles[t];
-        for (std::size_t i = 0; i < 3; ++i) {
-            const NodeId a = c[i], b = c[(i + 1) % 3];
-            users[unordered(a, b)].push_back(static_cast<std::int32_t>(t));
-        }
-    }
-    return users;
+EdgeUses SurfaceInput::edges_of(const std::vector<Triangle>& triangles) const {
+    return arrangement::edges_of(triangles.size(), surface_.vertices.size(),
+                                 [&](std::size_t t) -> const Triangle& { return triangles[t]; },
+                                 {1});
 }
 
 /// Where leaving out pairs of equal triangles leaves a closed surface: does that, and true. Else
 /// leaves one of each.
 bool SurfaceInput::drop_repeated() {
-    std::map<Triangle, std::vector<std::size_t>> equal;
+    std::vector<std::pair<Triangle, std::size_t>> sorted;
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-        Triangle key = surface_.triangles[t];
-        std::sort(key.begin(), key.end());
-        equal[key].push_back(t);
+        sorted.push_back({surface_.triangles[t], t});
+        std::ranges::sort(sorted.back().first);
     }
-    std::map<Edge, int> users;
-    bool any = false;
-    for (const auto& [key, numbers] : equal) {
-        if (numbers.size() % 2 == 0) continue;
-        any = true;
-        for (const Edge& edge : {Edge{key[0], key[1]}, Edge{key[1], key[2]}, Edge{key[0], key[2]}})
-            ++users[edge];
+    std::ranges::sort(sorted);
+    std::vector<Triangle> odd;           // those that are there an odd number of times
+    std::vector<std::size_t> all, kept;  // the first of each, and of these
+    for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+        while (end < sorted.size() && sorted[end].first == sorted[begin].first)
+            ++end;
+        all.push_back(sorted[begin].second);
+        if ((end - begin) % 2 == 0) continue;
+        odd.push_back(sorted[begin].first);
+        kept.push_back(sorted[begin].second);
     }
-    const bool closed = any && std::all_of(users.begin(), users.end(),
-                                           [](const auto& e) { return e.second % 2 == 0; });
-    std::vector<std::size_t> kept;
-    for (const auto& [key, numbers] : equal) {
-        if (!closed || numbers.size() % 2 == 1) kept.push_back(numbers[0]);
-    }
-    std::sort(kept.begin(), kept.end());
+    const EdgeUses edges = edges_of(odd);
+    bool closed = !odd.empty();
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        closed = closed && edges[e].size() % 2 == 0;
+    if (!closed) kept = std::move(all);
+    std::ranges::sort(kept);
     std::vector<Triangle> triangles;
     std::vector<std::int64_t> original;
     for (const std::size_t t : kept) {
@@ -129,11 +134,12 @@ void SurfaceInput::divide_borders() {
     std::vector<Edge> edges;
     std::vector<Box> boxes;
     std::vector<NodeId> corners;
-    for (const auto& [edge, users] : by_edge()) {
-        if (users.size() != 1) continue;
-        edges.push_back(edge);
+    const EdgeUses uses = edges_of(surface_.triangles);
+    for (std::size_t e = 0; e < uses.size(); ++e) {
+        if (uses[e].size() != 1) continue;
+        edges.push_back(uses.ends(e));
         Box& box = boxes.emplace_back();
-        for (const NodeId v : edge) {
+        for (const NodeId v : edges.back()) {
             corners.push_back(v);
             box.include(at(v));
         }
@@ -141,7 +147,7 @@ void SurfaceInput::divide_borders() {
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     const BoxTree tree(boxes);
-    std::map<Edge, std::vector<std::pair<double, NodeId>>> found;
+    std::vector<OnEdge> found;
     for (const NodeId v : corners) {
         const Position p = at(v);
         const double tolerance = rounding_of(std::span(&p, 1));
@@ -157,23 +163,17 @@ void SurfaceInput::divide_borders() {
             for (std::size_t k = 0; k < 3; ++k) {
                 if (std::abs(off[k] - share * line[k]) > tolerance) return;
             }
-            found[edge].push_back({share, v});
+            found.push_back({edge, share, v});
         });
     }
     if (found.empty()) return;
-    std::map<Edge, std::vector<NodeId>> on_edge;
-    for (auto& [edge, corners_on_it] : found) {
-        std::sort(corners_on_it.begin(), corners_on_it.end());
-        for (const auto& [share, v] : corners_on_it)
-            on_edge[edge].push_back(v);
-    }
+    std::ranges::sort(found);
     const std::size_t count = surface_.triangles.size();
     for (std::size_t t = 0; t < count; ++t)
-        divide_triangle(t, on_edge);
+        divide_triangle(t, found);
 }
 
-void SurfaceInput::divide_triangle(std::size_t t,
-                                   const std::map<Edge, std::vector<NodeId>>& on_edge) {
+void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edges) {
     const Triangle corners = surface_.triangles[t];
     const std::array positions{at(corners[0]), at(corners[1]), at(corners[2])};
     const View view(polygon_normal(positions));
@@ -181,12 +181,11 @@ void SurfaceInput::divide_triangle(std::size_t t,
     for (std::size_t i = 0; i < 3; ++i) {
         const NodeId a = corners[i], b = corners[(i + 1) % 3];
         loop.push_back({a, view(at(a))});
-        const auto found = on_edge.find(unordered(a, b));
-        if (found == on_edge.end()) continue;
-        std::vector<NodeId> between = found->second;
-        if (a > b) std::reverse(between.begin(), between.end());
-        for (const NodeId v : between)
-            loop.push_back({v, view(at(v))});
+        const std::size_t begin = loop.size();
+        for (const OnEdge& on :
+             std::ranges::equal_range(on_edges, unordered(a, b), {}, &OnEdge::edge))
+            loop.push_back({on.node, view(at(on.node))});
+        if (a > b) std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
     }
     if (loop.size() == 3) return;
     std::vector<std::array<LoopCorner, 3>> triangles;
@@ -216,15 +215,16 @@ void SurfaceInput::reverse(std::int32_t t) {
 /// Gives all triangles that are connected with the first of a part its orientation, and adds them.
 /// @return whether the part is closed
 bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
-                                   const std::map<Edge, std::vector<std::int32_t>>& users_of) {
+                                   const EdgeUses& edges) {
     bool closed = true;
     for (std::size_t i = 0; i < part.size(); ++i) {
         const Triangle corners = surface_.triangles[index(part[i])];
         for (std::size_t k = 0; k < 3; ++k) {
             const NodeId a = corners[k], b = corners[(k + 1) % 3];
-            const auto& users = users_of.at(unordered(a, b));
-            closed = closed && users.size() == 2;
-            for (const std::int32_t other : users) {
+            const auto uses = edges.between(unordered(a, b));
+            closed = closed && uses.size() == 2;
+            for (const arrangement::EdgeUse& use : uses) {
+                const std::int32_t other = use.item;
                 if (other == part[i]) continue;
                 if (done[index(other)]) {
                     if (!runs(other, a, b)) continue;
@@ -242,20 +242,19 @@ bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<
 
 /// Orients each connected part of an open surface: upward on the whole, outward if closed.
 void SurfaceInput::orient_upward() {
-    const auto users_of = by_edge();
-    for (const auto& [edge, users] : users_of) {
-        if (users.size() < 3) continue;
-        throw InputError(
-            "branching", "more than two triangles of the surface share an edge", -1,
-            {original_[index(users[0])], original_[index(users[1])], original_[index(users[2])]},
-            at(edge[0]));
+    const EdgeUses edges = edges_of(surface_.triangles);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() < 3) continue;
+        const auto row = [&](std::size_t i) { return original_[index(edges[e][i].item)]; };
+        throw InputError("branching", "more than two triangles of the surface share an edge", -1,
+                         {row(0), row(1), row(2)}, at(edges.ends(e)[0]));
     }
     std::vector<bool> done(surface_.triangles.size(), false);
     for (std::int32_t start = 0; index(start) < done.size(); ++start) {
         if (done[index(start)]) continue;
         std::vector<std::int32_t> part{start};
         done[index(start)] = true;
-        const bool closed = orient_as_first(part, done, users_of);
+        const bool closed = orient_as_first(part, done, edges);
         double upward = 0, volume = 0;
         const Position origin = at(surface_.triangles[index(start)][0]);
         for (const std::int32_t t : part) {
@@ -276,31 +275,26 @@ void SurfaceInput::orient_upward() {
 void SurfaceInput::extend_border() {
     const std::vector<CutterBorderEdge> border = border_of(surface_);
     const double width = 256 * rounding_of(surface_.vertices);
-    std::map<NodeId, Position> outward;
+    std::vector<Position> outward(surface_.vertices.size(), Position{0, 0, 0});
     for (const CutterBorderEdge& edge : border) {
         const Position away = away_from(surface_, edge);
-        for (const NodeId v : {edge.from, edge.to}) {
-            Position& sum = outward.try_emplace(v, Position{0, 0, 0}).first->second;
-            for (std::size_t k = 0; k < 3; ++k)
-                sum[k] += away[k];
-        }
+        for (const NodeId v : {edge.from, edge.to})
+            outward[index(v)] = plus(outward[index(v)], away);
     }
-    std::map<NodeId, NodeId> beyond;
-    for (const auto& [v, way] : outward) {
-        const double size = length(way);
-        if (size < 0.1) continue;  // the border runs back: it is a slit there
-        Position p = surface_.vertices[index(v)];
+    std::vector<NodeId> beyond(outward.size(), -1);
+    for (std::size_t v = 0; v < outward.size(); ++v) {
+        const double size = length(outward[v]);
+        if (size < 0.1) continue;  // away from the border, or it runs back: it is a slit there
+        Position p = surface_.vertices[v];
         for (std::size_t k = 0; k < 3; ++k)
-            p[k] += width * way[k] / size;
+            p[k] += width * outward[v][k] / size;
         beyond[v] = static_cast<NodeId>(surface_.vertices.size());
         surface_.vertices.push_back(p);
     }
     for (const auto& [a, b, c] : border) {
-        const auto at_a = beyond.find(a), at_b = beyond.find(b);
-        if (at_a != beyond.end()) surface_.triangles.push_back({b, a, at_a->second});
-        if (at_b != beyond.end())
-            surface_.triangles.push_back(
-                {b, at_a == beyond.end() ? a : at_a->second, at_b->second});
+        const NodeId at_a = beyond[index(a)], at_b = beyond[index(b)];
+        if (at_a >= 0) surface_.triangles.push_back({b, a, at_a});
+        if (at_b >= 0) surface_.triangles.push_back({b, at_a < 0 ? a : at_a, at_b});
     }
 }
 

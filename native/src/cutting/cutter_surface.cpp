@@ -2,8 +2,8 @@
 #include "cutting/cutter_surface.hpp"
 
 #include <algorithm>
-#include <map>
 
+#include "arrangement/edge_fan.hpp"
 #include "cutting/edge_intersections.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -41,17 +41,20 @@ void triangulate_face(const ComplexView& model, std::size_t face,
 }
 
 std::vector<CutterBorderEdge> border_of(const CutterSurface& surface) {
-    std::map<std::array<NodeId, 2>, std::pair<int, CutterBorderEdge>> users;
-    for (const auto& t : surface.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
-            ++count;
-            edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
-        }
-    }
+    const auto& triangles = surface.triangles;
+    const auto corners = [&](std::size_t t) -> const auto& {
+        return triangles[t];
+    };
+    const auto edges =
+        arrangement::edges_of(triangles.size(), surface.vertices.size(), corners, {});
     std::vector<CutterBorderEdge> border;
-    for (const auto& [key, use] : users) {
-        if (use.first % 2 == 1) border.push_back(use.second);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() % 2 == 0) continue;
+        const auto& t = triangles[index(edges[e].back().item)];
+        std::size_t i = 0;
+        while (unordered(t[i], t[(i + 1) % 3]) != edges.ends(e))
+            ++i;
+        border.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
     }
     return border;
 }

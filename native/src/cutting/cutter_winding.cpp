@@ -11,30 +11,6 @@ using arrangement::each_edge;
 
 namespace {
 
-/// The same for loops of the same nodes.
-std::uint32_t hash_of(std::span<const NodeId> loop) {
-    std::uint32_t hash = 0;
-    for (const NodeId node : loop)
-        hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(node)});
-    return hash;
-}
-
-/// 1 where two loops pass the same nodes in the same order, from whichever on; -1 where they do so
-/// against each other; else 0.
-std::int8_t facing_of(std::span<const NodeId> one, std::span<const NodeId> other) {
-    const std::size_t n = one.size();
-    if (other.size() != n) return 0;
-    for (const bool back : {false, true}) {
-        for (std::size_t begin = 0; begin < n; ++begin) {
-            std::size_t i = 0;
-            while (i < n && one[i] == other[(begin + (back ? n - i : i)) % n])
-                ++i;
-            if (i == n) return back ? -1 : 1;
-        }
-    }
-    return 0;
-}
-
 std::uint32_t hash_of(const Winding& winding) {
     std::uint32_t hash = 0;
     for (const auto& [cell, times] : winding)
@@ -76,7 +52,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
                     continue;
                 winding_[2 * r] = winding_[2 * r + 1] = 0;
             } else {
-                winding_[2 * r] = number(cast(r));
+                winding_[2 * r] = number(cast(r, progress));
                 Winding above = around(r, 0);
                 for (const std::int32_t face_region : lying_on_[r])
                     cross(above, index(face_region), level_facing(index(face_region)) > 0 ? 1 : 0);
@@ -101,7 +77,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
 
 bool CutterWinding::is_edge(const std::array<NodeId, 2>& edge) const {
     for (std::size_t e = first_edge_[index(edge[0])]; e < first_edge_[index(edge[0]) + 1]; ++e) {
-        if (this->edge(e)[0].edge == edge) return true;
+        if (edges_.ends(e) == edge) return true;
     }
     return false;
 }
@@ -117,9 +93,11 @@ void CutterWinding::find_coinciding(Progress* progress) {
     KeyTable first;  // of the regions of the surface with one outline
     for (std::size_t r = 0; r < count; ++r) {
         if (!overlay_.of_cutter(r)) continue;
-        const auto found = first.find_or_add(
-            hash_of(outline(r)), static_cast<std::int32_t>(r),
-            [&](std::int32_t other) { return facing_of(outline(r), outline(index(other))) != 0; });
+        const auto found = first.find_or_add(arrangement::loop_hash(outline(r)),
+                                             static_cast<std::int32_t>(r), [&](std::int32_t other) {
+                                                 return arrangement::facing_of(
+                                                            outline(r), outline(index(other))) != 0;
+                                             });
         auto& counts = counts_[index(found.number)];
         if (found.is_new) {
             counts = 1;
@@ -131,10 +109,11 @@ void CutterWinding::find_coinciding(Progress* progress) {
         count, 1 << 12, {overlay_.threads(), progress}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 std::int8_t facing = 0;
-                const std::int32_t found = first.find(hash_of(outline(r)), [&](std::int32_t other) {
-                    facing = facing_of(outline(r), outline(index(other)));
-                    return facing != 0;
-                });
+                const std::int32_t found =
+                    first.find(arrangement::loop_hash(outline(r)), [&](std::int32_t other) {
+                        facing = arrangement::facing_of(outline(r), outline(index(other)));
+                        return facing != 0;
+                    });
                 if (found < 0 || counts_[index(found)] == 0) continue;
                 level_[r] = found;
                 level_facing_[r] = facing;
@@ -173,20 +152,21 @@ void CutterWinding::collect_uses(Progress* progress) {
             }
         },
         {overlay_.threads(), progress});
-    uses_ = std::move(found.values);
+    auto& uses = edges_.uses;
+    uses = std::move(found.values);
     first_edge_.assign(nodes + 1, 0);
     std::size_t kept = 0;
-    for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         bool is_own = false;
-        for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end)
-            is_own = is_own || counts(index(uses_[end].item));
+        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end)
+            is_own = is_own || counts(index(uses[end].item));
         if (!is_own) continue;
-        ++first_edge_[index(uses_[begin].edge[0]) + 1];
+        ++first_edge_[index(uses[begin].edge[0]) + 1];
         for (std::size_t i = begin; i < end; ++i)
-            uses_[kept++] = uses_[i];
-        edge_begins_.push_back(kept);
+            uses[kept++] = uses[i];
+        edges_.begins.push_back(kept);
     }
-    uses_.resize(kept);
+    uses.resize(kept);
     for (std::size_t node = 0; node < nodes; ++node)
         first_edge_[node + 1] += first_edge_[node];
     edges_of_ = bucketize<std::int32_t>(count, [this](const auto& put) {
@@ -199,9 +179,9 @@ void CutterWinding::collect_uses(Progress* progress) {
 }
 
 void CutterWinding::find_fans(Progress* progress) {
-    order_.resize(uses_.size());
-    windings_.assign(uses_.size(), 0);
-    blade_begins_.resize(uses_.size() + edge_count());
+    order_.resize(edges_.uses.size());
+    windings_.assign(edges_.uses.size(), 0);
+    blade_begins_.resize(edges_.uses.size() + edge_count());
     blades_.resize(edge_count());
     is_known_.assign(edge_count(), 0);
     parallel_ranges(
@@ -211,9 +191,9 @@ void CutterWinding::find_fans(Progress* progress) {
             EdgeFan fan;
             for (std::size_t e = begin; e < end; ++e) {
                 overlay_.find_fan(edge(e), scratch, fan);
-                std::ranges::transform(fan.order, order_.data() + edge_begins_[e], to_number);
-                std::ranges::transform(fan.blade_begins, blade_begins_.data() + edge_begins_[e] + e,
-                                       to_number);
+                std::ranges::transform(fan.order, order_.data() + edges_.begins[e], to_number);
+                std::ranges::transform(fan.blade_begins,
+                                       blade_begins_.data() + edges_.begins[e] + e, to_number);
                 blades_[e] = to_number(fan.blades());
             }
         });
@@ -273,24 +253,31 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
             winding_[2 * region + uses[i].behind()] = behind;
             winding_[2 * region + uses[i].ahead()] = ahead;
         }
-        windings_[edge_begins_[e] + b] = behind = ahead;
+        windings_[edges_.begins[e] + b] = behind = ahead;
     }
 }
 
 /// What is just below a region, by the triangles that a ray from there crosses.
-Winding CutterWinding::cast(std::size_t region) {
+Winding CutterWinding::cast(std::size_t region, Progress* progress) {
     const SpacePointId p = overlay_.inner_point(region);
     const auto view = overlay_.view_of(region);
     const auto axis = view.first;
     const bool faces_ray = view.second > 0;
     exact::SpacePoints& points = overlay_.points();
     Winding winding;
-    overlay_.each_triangle(axis, p, [&](std::size_t face, const auto& corners) {
-        const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
-        if (side == 0) return;
-        add(winding, overlay_.model().cell(face, 0), side);
-        add(winding, overlay_.model().cell(face, 1), -side);
-    });
+    if (!face_boxes_) face_boxes_.emplace(overlay_.face_boxes());
+    for (const std::int32_t f :
+         face_boxes_->find(arrangement::ray_box(points, p, axis), progress)) {
+        const auto face = index(f);
+        for (const auto& t : overlay_.triangles_of(face)) {
+            const std::array corners{overlay_.exact(t[0]), overlay_.exact(t[1]),
+                                     overlay_.exact(t[2])};
+            const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
+            if (side == 0) continue;
+            add(winding, overlay_.model().cell(face, 0), side);
+            add(winding, overlay_.model().cell(face, 1), -side);
+        }
+    }
     return winding;
 }
 

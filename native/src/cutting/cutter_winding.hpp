@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "arrangement/ray_boxes.hpp"
 #include "base/counting_sort.hpp"
 #include "cutting/surface_overlay.hpp"
 
@@ -42,10 +43,8 @@ public:
 
     /// The edges of the regions that count, in order: all uses of each by these and by faces'
     /// regions.
-    std::size_t edge_count() const { return edge_begins_.size() - 1; }
-    std::span<const EdgeUse> edge(std::size_t i) const {
-        return {uses_.data() + edge_begins_[i], edge_begins_[i + 1] - edge_begins_[i]};
-    }
+    std::size_t edge_count() const { return edges_.size(); }
+    std::span<const EdgeUse> edge(std::size_t i) const { return edges_[i]; }
     /// Uses of an edge in the order of their fan, by their places in edge(); where each blade
     /// begins in it, and the last one ends.
     class Fan {
@@ -68,7 +67,7 @@ public:
         std::span<const std::int32_t> windings;  ///< numbers; 0: no cell is there
     };
     Sectors sectors(std::size_t edge) const {
-        const std::size_t begin = edge_begins_[edge], uses = edge_begins_[edge + 1] - begin;
+        const std::size_t begin = edges_.begins[edge], uses = edges_[edge].size();
         const std::size_t blades = blades_[edge];
         return {Fan({order_.data() + begin, uses}, blade_begins_.data() + begin + edge, blades),
                 {windings_.data() + begin, is_known_[edge] != 0 ? blades : 0}};
@@ -83,14 +82,14 @@ private:
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(const Winding& winding);
     void cross(Winding& winding, std::size_t region, std::size_t entered) const;
-    Winding cast(std::size_t region);
+    Winding cast(std::size_t region, Progress* progress);
 
     SurfaceOverlay& overlay_;
+    std::optional<arrangement::RayBoxes> face_boxes_;  ///< once a ray is cast
     std::vector<std::uint8_t> counts_;
     std::vector<std::int32_t> level_;
     std::vector<std::int8_t> level_facing_;
-    Array<EdgeUse> uses_;
-    std::vector<std::size_t> edge_begins_{0};
+    arrangement::EdgeUses edges_;
     /// Of nodes: the first edge of which they are the lesser node, and at the end how many edges.
     std::vector<std::uint32_t> first_edge_;
     // of edges: fans as Fan has them, one blade's end more than uses, and windings of sectors

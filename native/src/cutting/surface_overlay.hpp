@@ -79,10 +79,10 @@ public:
     SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const;
-    /// Calls visit(face, corners as exact points) for the triangles of all faces, those away from
-    /// the surface only where the line along `axis` through `p` may meet them.
-    template <class Visit>
-    void each_triangle(std::size_t axis, SpacePointId p, const Visit& visit);
+    /// Around all faces, and what vertices may have moved by.
+    std::vector<spatial::Box> face_boxes() const;
+    /// The triangles of a face, in nodes.
+    std::vector<std::array<NodeId, 3>> triangles_of(std::size_t face) const;
     /// Around the whole model, and a little wider.
     const spatial::Box& model_box() const { return model_box_; }
 
@@ -120,7 +120,6 @@ private:
     void divide(std::int32_t face, std::span<const NodeId> polygon, FaceParts& parts) const;
     template <class Which>
     void triangulate_parts(FaceParts& parts, const Which& which) const;
-    std::vector<std::array<NodeId, 3>> triangles_of(std::size_t face) const;
     void divide_all(std::span<const std::int32_t> faces);
     std::vector<std::array<NodeId, 2>> edges_of_flat_triangles(std::size_t first) const;
     void divide_active_faces();
@@ -161,25 +160,5 @@ private:
     std::vector<Position> new_positions_;
     arrangement::LoopTable<NodeId> loops_;  ///< of regions, in nodes
 };
-
-template <class Visit>
-void SurfaceOverlay::each_triangle(std::size_t axis, SpacePointId p, const Visit& visit) {
-    const Position at = points_.rounded(p);
-    for (std::size_t f = 0; f < model_.face_count(); ++f) {
-        bool meets = true;
-        for (std::size_t k = 1; k < 3 && meets; ++k) {
-            double low = HUGE_VAL, high = -HUGE_VAL;
-            for (const NodeId v : model_.face(f)) {
-                const double x = model_.vertices[3 * index(v) + (axis + k) % 3];
-                low = std::min(low, x);
-                high = std::max(high, x);
-            }
-            meets = at[(axis + k) % 3] >= low - margin_ && at[(axis + k) % 3] <= high + margin_;
-        }
-        if (!meets) continue;
-        for (const auto& t : triangles_of(f))
-            visit(f, std::array{exact(t[0]), exact(t[1]), exact(t[2])});
-    }
-}
 
 }  // namespace realmodel::cutting

@@ -159,6 +159,18 @@ void SurfaceOverlay::triangulate_parts(FaceParts& parts, const Which& which) con
     }
 }
 
+std::vector<Box> SurfaceOverlay::face_boxes() const {
+    std::vector<Box> boxes(model_.face_count());
+    parallel_ranges(boxes.size(), 1 << 12, execution_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            for (const NodeId v : model_.face(f))
+                boxes[f].include(model_.vertex(v));
+            boxes[f].widen(margin_);
+        }
+    });
+    return boxes;
+}
+
 std::vector<std::array<NodeId, 3>> SurfaceOverlay::triangles_of(std::size_t face) const {
     FaceParts parts;
     if (is_active(face)) {

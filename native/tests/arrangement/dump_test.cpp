@@ -34,16 +34,8 @@ TEST_F(ArrangementDump, RegionsAreFacesInAGroupForEachTriangle) {
     EXPECT_EQ(count(text, "\nl "), 1);  // the slit in it
 }
 
-TEST_F(ArrangementDump, AFanIsATriangleForEachHalfPlane) {
-    const std::vector<HalfPlane> items{{at(1, 0, 0), -1, 1}, {at(0, 1, 0), -1, 1}};
-    dump_fan(points_, at(0, 0, 0), at(0, 0, 1), items, path_.c_str());
-    EXPECT_EQ(read_text(path_),
-              "g item_0\nv 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n"
-              "g item_1\nv 0 0 0\nv 0 0 1\nv 0 1 0\nf 4 5 6\n");
-}
-
 TEST_F(ArrangementDump, AFileThatCannotBeWrittenIsAnError) {
-    EXPECT_THROW(dump_fan(points_, at(0, 0, 0), at(0, 0, 1), {}, "/no/such/folder/fan.obj"),
+    EXPECT_THROW(dump_regions(points_, TriangleArrangement(points_), "/no/such/folder/r.obj"),
                  std::runtime_error);
 }
 

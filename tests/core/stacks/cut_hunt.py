@@ -94,14 +94,14 @@ def judged(model, kind, cutter):
         else native.cut_by_surface
     )
     try:
-        cut = function(model, *cutter, 1)
+        cut = function(model, *cutter, native.Execution(1))
     except native.InputError as error:
         return [], error.kind
     except RuntimeError as error:
         return [f"defect: {error}"], None
     failures = cut_failures(model, cut)
     if kind == "plane" and not failures:
-        failures = _section_failures(model, cut, native.section_by_plane(model, *cutter, 2))
+        failures = _section_failures(model, cut, native.section_by_plane(model, *cutter, native.Execution(2)))
     return failures, None
 
 

@@ -64,7 +64,7 @@ def proof_failures(model, half, touches):
     }
     return [
         f"{test['name']}: {test['failed']} failed, {[o['text'] for o in test['offenders'][:2]]}"
-        for test in places.native().check_topology(arrays, 1)
+        for test in places.native().check_topology(arrays, places.native().Execution(1))
         if test["failed"]
     ]
 
