@@ -157,7 +157,7 @@ def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.
     return low / (low - high)
 
 
-class NoTwoSides(Exception):
+class NoTwoSidesError(Exception):
     """A surface that returns to itself the other way round; edge: its ends (2, 3)."""
 
     def __init__(self, edge: np.ndarray):
@@ -169,7 +169,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """The triangles (T, 3) int32, each turned so that it goes on from its neighbors.
 
     The first triangle of each connected part stays as it is, unless most of the part then faces the other way
-    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSides.
+    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSidesError.
     """
     same = welded(vertices)[triangles]
     edges = edges_of(same)
@@ -201,7 +201,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
                     turned[other], part[other] = wanted, parts
                     waiting.append(other)
                 elif turned[other] != wanted:
-                    raise NoTwoSides(vertices[edges[edge]])
+                    raise NoTwoSidesError(vertices[edges[edge]])
         parts += 1
     result = np.where(turned[:, None] == 1, triangles[:, ::-1], triangles)
     if parts > 1:
