@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from realmodel.core.base.work import Work
+from realmodel.core.heights import Task
 from realmodel.core.heights.draws import Draw
 from realmodel.core.heights.turning_bands import Frame, Noise
 from realmodel.core.settings.methods import checked_options
@@ -48,7 +49,7 @@ def calibrated(points, seed, realizations=REALIZATIONS):
     drawn = np.array(
         [
             Draw(frame, Noise((seed, number)), known)
-            .heights(work, data, nodes, "kriging", settings, 0, None, {})
+            .heights("kriging", Task(work, data, nodes, settings, 0))
             .z
             for number in range(realizations)
         ]

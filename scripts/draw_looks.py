@@ -210,7 +210,7 @@ def draw_weathering(folder):
     set_up(points, 150.0, 22.0, HALF)
     render(folder, "weathering_before")
     slopes = (math.radians(24.0), math.radians(36.0))
-    weathering.put_on(scene, items, 2.5, 0.6, 2.0, 1, *slopes, 3)
+    weathering.put_on(scene, items, weathering.Weathering(2.5, 0.6, 2.0, 1, *slopes, 3))
     render(folder, "weathering_after")
 
 

@@ -209,7 +209,7 @@ def add_label(drawing, place, offset, text):
     x, y = place[0] + offset[0], place[1] + offset[1]
     drawing.line([place, (x, y)], INK, 0.8)
     drawing.dots([place], [2.2], INK)
-    drawing.rectangle(x - width / 2, y - height / 2, width, height, WHITE, INK, 0.6)
+    drawing.rectangle((x - width / 2, y - height / 2, width, height), WHITE, INK, 0.6)
     for number, line in enumerate(lines):
         base = y + height / 2 - 1.35 * LABEL * (number + 1) + 0.5
         drawing.text(x, base, line, LABEL, INK, anchor="middle")
@@ -223,8 +223,8 @@ def add_legend(drawing, entries):
         (name, tuple(int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))) for name, color in reversed(entries)
     ]
     width, height = charts.legend_size("", colors, LABEL)
-    drawing.rectangle(20, 20, width + 20, height - 8, WHITE, SOFT, 0.5)
-    charts.legend(drawing, 30, 20 + height + 9, "", colors, LABEL)
+    drawing.rectangle((20, 20, width + 20, height - 8), WHITE, SOFT, 0.5)
+    charts.legend(drawing, (30, 20 + height + 9), "", colors, LABEL)
 
 
 def write_title(file, title, subtitle, color=None):

@@ -46,15 +46,12 @@ def register_for_batch():
     """Registers this copy of RealModel where none is, or another one: build_model.py brings its own along."""
     import bpy
 
-    from . import handlers
-
     known = bpy.types.Scene.bl_rna.properties.get("realmodel")
     owner = type(known.fixed_type).__module__.rpartition(".")[0] if known else None
     if owner != __name__:
         if owner:
             sys.modules[owner].unregister()
         register()
-    handlers.migrate_all()
 
 
 def unregister():

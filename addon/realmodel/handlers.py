@@ -9,11 +9,9 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import versioning
-from .bl import caches, display, live, quality, region_size, viewports
+from .bl import caches, display, live, quality, region_size, settings, viewports
 from .bl.display import replacing
 from .bl.overlay import rendered
-from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
 _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
@@ -21,7 +19,11 @@ _WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
 
 def _patient(handler):
     """Makes a handler of renders wait for the window. While Blender draws a panel in Python no other thread
-    may write data, not even that of a render, whose handlers run beside the window."""
+    may write data, not even that of a render, whose handlers run beside the window: the flag is Blender's
+    own, of all threads. So the handler begins where none is drawn (the first line writes, to find out), and
+    Python keeps this thread at work until it ends: it changes threads after the switch interval (5 ms) only,
+    and a panel that began to draw in between would make the handler fail half way. No lock of ours would do
+    that, as the drawing of panels is begun by Blender and takes none but Python's."""
 
     @functools.wraps(handler)
     def patient(scene, *arguments):
@@ -29,7 +31,7 @@ def _patient(handler):
             return handler(scene, *arguments)
         until, interval = time.monotonic() + _PATIENCE, sys.getswitchinterval()
         while True:
-            sys.setswitchinterval(_PATIENCE)  # no panel may start to draw in between
+            sys.setswitchinterval(_PATIENCE)
             try:
                 scene.realmodel.view.message = scene.realmodel.view.message
                 return handler(scene, *arguments)
@@ -49,7 +51,7 @@ def _loaded(*_arguments):
     display.stop()
     quality.stop()
     caches.clear()
-    migrate_all()
+    check_versions()
     display.opened()
     live.switched()
     region_size.ask()
@@ -92,13 +94,14 @@ def _frame_changed(scene, depsgraph=None, *_arguments):
         rendered.put(scene, depsgraph=depsgraph)
 
 
-def migrate_all():
-    """Migrates every scene of the file; a scene that cannot be migrated stays as it is, with a report."""
+def check_versions():
+    """Reports scenes whose settings another version of RealModel wrote; no released version wrote older ones,
+    so there are no migrations."""
     for scene in bpy.data.scenes:
-        try:
-            versioning.migrate(scene)
-        except RealModelError as error:
-            _tell(f"scene '{scene.name}': {error}")
+        group = scene.realmodel
+        if group.exists and group.version != settings.VERSION:
+            writer = "a newer version" if group.version > settings.VERSION else "a test version"
+            _tell(f"scene '{scene.name}' was saved by {writer} of RealModel: check its settings")
 
 
 @persistent
@@ -132,21 +135,12 @@ _HANDLERS = (
 )
 
 
-def _migrate_at_start():
-    """Called once, when Blender allows changes of data: not yet while an add-on is enabled."""
-    if hasattr(bpy.types.Scene, "realmodel"):
-        migrate_all()
-
-
 def register():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
-    bpy.app.timers.register(_migrate_at_start, first_interval=0.0)
 
 
 def unregister():
-    if bpy.app.timers.is_registered(_migrate_at_start):
-        bpy.app.timers.unregister(_migrate_at_start)
     for name, handler in _HANDLERS:
         registered = getattr(bpy.app.handlers, name)
         if handler in registered:

@@ -104,7 +104,6 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     blocks: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     exact: StringProperty(options={"HIDDEN"})
-    mesh_options: StringProperty(options={"HIDDEN"})  # of versions 0 to 3
 
 
 CLASSES = (RealModelSize, RealModelConstraint, RealModelRock)

@@ -118,7 +118,6 @@ class RealModelSurface(
     structures: CollectionProperty(type=RealModelStructure)
     stored: StringProperty(options={"HIDDEN"})
     other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file
-    reading: StringProperty(options={"HIDDEN"})  # of versions 0 to 3
 
 
 CLASSES = (RealModelStructure, RealModelFilter, RealModelSurface)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// check_topology and check_samples.
+// check_topology, check_samples and cells_at.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -9,9 +9,11 @@
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "execution.hpp"
+#include "realmodel/validation/cells_at.hpp"
 #include "realmodel/validation/sampling.hpp"
 #include "realmodel/validation/topology.hpp"
 #include "rock_arrays.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -93,6 +95,18 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
     return to_list(results);
 }
 
+Array<std::int32_t> cells_at(const py::dict& model, const Array<double>& positions,
+                             WatchedExecution* execution) {
+    const ComplexArrays arrays(model);
+    const auto at = rows<3>(positions, "positions");
+    std::vector<std::int32_t> cells;
+    {
+        const py::gil_scoped_release release;
+        cells = validation::cells_at(arrays.complex, at, run(execution));
+    }
+    return to_array(std::move(cells));
+}
+
 }  // namespace
 
 void bind_validation(py::module_& module) {
@@ -114,6 +128,13 @@ model as for check_topology, which it must have passed so far that its arrays fi
 build_rock_masses; block_of_surface (S,) int32: the block beneath each surface, -1: none; places: about how
 many; seed: which. Returns tests like check_topology. Raises Cancelled, and InputError where a triangle names
 a vertex that does not exist.)");
+    module.def(
+        "cells_at", &cells_at, py::arg("model"), py::arg("positions"),
+        py::arg("execution") = py::none(),
+        R"(The cell (N,) int32 of a model that each position (N, 3) lies in, -1 for none; exact.
+
+model: its arrays as for check_topology, which it must have passed. A position on a face is above it. Raises
+Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

@@ -3,8 +3,8 @@
 
     blender -b --factory-startup -P tests/blender/make_version_fixture.py
 
-Run it once when settings.VERSION goes up, and keep the file; test_panel_versions.py lists what is in it.
-Version 0 is what build_model.py wrote before there were settings; nothing writes that one any more.
+Run it once when settings.VERSION goes up. Files of versions that were released are kept, as they must be
+migrated. test_panel_versions.py opens them.
 """
 
 import shutil

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import method_settings, region_size, results, surface_figures
+from realmodel.bl import method_settings, region_size, results, surface_statistics
 from realmodel.bl.display import shown_models
 from realmodel.core import load_library, load_project
 from realmodel.core.exporters import FORMATS
@@ -98,7 +98,7 @@ class Rocks(PanelCase):
             region_size.measure(self.scene, rock, bpy.context.evaluated_depsgraph_get())
             expected = region_size.expected_triangles(rock)
             ops.build()
-            triangles = surface_figures.read(rock.surfaces[0])["triangles"]
+            triangles = surface_statistics.read(rock.surfaces[0])["triangles"]
             self.assertLess(abs(expected / triangles - 1.0), 0.35, (edge_length, expected, triangles))
 
     def test_region_cuts_and_base(self):

@@ -48,7 +48,7 @@ class Live(PanelCase):
         """The stage that is shown is made with the model, and stays."""
         self.model.stage = 1
         self.assertEqual(len(self.block().data.polygons), 0)
-        with mock.patch.object(shown_models.Recipe, "make", side_effect=AssertionError("made again")):
+        with mock.patch.object(shown_models.StageRequest, "make", side_effect=AssertionError("made again")):
             raise_by(self.items[1], 5.0)
             self.live_is_done()
         self.assertEqual(self.model.stage, 1)

@@ -15,7 +15,7 @@ from realmodel.bl import (
     meshes,
     project_settings,
     settings,
-    surface_figures,
+    surface_statistics,
     viewports,
 )
 from realmodel.bl import scene as model_tree
@@ -157,8 +157,8 @@ class Lists(StructureCase):
     def test_figures(self):
         self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
         for row, count in ((self.model.faults[0], 2), (self.model.bodies[0], 12)):
-            self.assertEqual(surface_figures.read(row)["triangles"], count)
-        self.assertEqual(surface_figures.read(self.model.bodies[0])["high"], 2.0)
+            self.assertEqual(surface_statistics.read(row)["triangles"], count)
+        self.assertEqual(surface_statistics.read(self.model.bodies[0])["high"], 2.0)
 
     def test_dropped_files_become_faults_where_blender_takes_files(self):
         handler = getattr(bpy.types, "REALMODEL_FH_faults_and_bodies", None)

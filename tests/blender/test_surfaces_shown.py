@@ -6,7 +6,7 @@ import numpy as np
 import realmodel
 from blender_state import coordinates
 from panel_case import ops
-from realmodel.bl import surface_figures
+from realmodel.bl import surface_statistics
 from realmodel.core.display import polygon_mesh
 from view_case import Case
 
@@ -50,7 +50,7 @@ class Surviving(Case):
         self.settings.display, self.settings.view.surfaces = "SURFACES", "SURVIVING"
         for name, item in self.bodies().items():
             row = next(row for row in self.settings.rocks[0].surfaces if row.interface.name == name)
-            expected = surface_figures.read(row)["area"]
+            expected = surface_statistics.read(row)["area"]
             self.assertAlmostEqual(area_in_plan(item.data), expected, delta=1e-3 * expected, msg=name)
 
     def test_at_a_stage_of_the_cut_and_after_a_build(self):

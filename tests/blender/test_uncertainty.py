@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch, scene, surface_figures
+from realmodel.bl import batch, scene, surface_statistics
 from realmodel.core import build
 from realmodel.core.results import layer_values
 
@@ -73,7 +73,7 @@ class UncertaintyInThePanel(PanelCase):
         self.assertEqual(item.material_slots[0].material.name, "Color Scale")
         self.assertEqual(item.data.color_attributes.active_color.name, "realmodel_shade")
         self.assertEqual(self.model.results[1].object.material_slots[0].material.name, "Color Scale")
-        self.assertGreater(surface_figures.read(self.model.rocks[0].surfaces[1])["deviation"], 0.0)
+        self.assertGreater(surface_statistics.read(self.model.rocks[0].surfaces[1])["deviation"], 0.0)
         self.model.color_by = "PROPERTY"
         self.assertEqual(item.material_slots[0].material, own)
         self.assertNotIn("Color Scale", bpy.data.materials)

@@ -2,11 +2,11 @@
 """Small faults, surfaces and rock masses for the tests of structures."""
 
 import numpy as np
-from realmodel.core.base.work import run
+from realmodel.core.base.mapped_arrays import as_it_is
+from realmodel.core.base.work import native_module, run
 from realmodel.core.proof.closed_form import ClosedForm
-from realmodel.core.structures.setup import make_structures
-from realmodel.core.structures.shapes.reading import read_structures
-from realmodel.core.surfaces.prepare import mesh_rock, read_rocks
+from realmodel.core.structures.setup import make_structures, mesh_inputs, read_inputs
+from realmodel.core.surfaces import wrong_sides
 
 
 def plane_fault(x=5.0, lean=0.0, y=(-5.0, 15.0), z=(-20.0, 20.0), turn=0.0):
@@ -27,16 +27,39 @@ SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
 
 def prepared(project, threads=1):
     """The rock masses (RockInput) of a project with their sheets."""
+    return with_structures(project, threads, joins=True)[0]
+
+
+def with_structures(project, threads=1, keep=as_it_is, joins=False):
+    """The rock masses (RockInput) of a project with their sheets, and its structures."""
 
     def task(work):
-        inputs = read_rocks(work, project)
-        for entry in inputs:
-            mesh_rock(work, entry)
-        faults, bodies, _ = read_structures(work, project, threads)
-        make_structures(work, project, faults, bodies, inputs, threads, None, 0.0, 1.0)
-        return inputs
+        inputs, with_arrays = read_inputs(work, project, threads)
+        mesh_inputs(work, inputs, 0.0, 0.1, keep)
+        structures = make_structures(work, with_arrays, inputs, threads, None, 0.1, 1.0, joins, keep)
+        return inputs, structures
 
     return run(task)
+
+
+def heights_at(plan, vertices, triangles):
+    """(N,) heights of a surface at plan points (N, 2)."""
+    return run(lambda work: wrong_sides.heights_at(work, (vertices, triangles), plan, 1))
+
+
+def cells_at(model, points):
+    """(N,) the cell of a model that each point lies in, -1 for none."""
+    return native_module().cells_at(model.native(), points)
+
+
+def blocks_at(closed, points):
+    """ClosedForm.blocks_at."""
+    return run(lambda work: closed.blocks_at(work, points))
+
+
+def compartments_of(entry, points):
+    """ClosedForm.compartments_of, of a RockInput that `prepared` returned."""
+    return run(lambda work: closed_form_of(entry).compartments_of(work, np.asarray(points, float)))
 
 
 def closed_form_of(entry):

@@ -67,7 +67,7 @@ def test_cleaned_cells_and_their_report(tmp_path):
         (("--cell-tolerance", 1), "--cell-tolerance goes with --export or --cut to a file with cells"),
         (("--cell-tolerance", 1, "--export", "m.obj"), "--cell-tolerance goes with --export or --cut to a"),
         (("--cell-tolerance", 0, "--export", "m.vtu"), "'0' is not a length above 0"),
-        (("--mesh", "m.vtu", "--estimate"), "--estimate builds nothing"),
+        (("--mesh", "m.vtu", "--estimate"), "--estimate goes without --mesh"),
         (("--mesh", "m.vtu", "--surfaces-only"), "--surfaces-only goes without --mesh"),
         (("--mesh", "m.vtu", "--export", "m.vtu"), "two outputs have this name"),
         (("--mesh", "m.vtu", "--mesh-layers", 0), "layers must be whole numbers from 1"),

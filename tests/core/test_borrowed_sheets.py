@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, PointFile, Project, Rock, Surface, build
 from realmodel.core.ensembles import ensemble
-from realmodel.core.proof.closed_form import heights_at
 from realmodel.core.structures.sheets.displacement import displacements
-from structure_cases import closed_form_of, plane_fault, prepared
+from structure_cases import compartments_of, heights_at, plane_fault, prepared
 
 SQUARE = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0], [0.0, 1000.0]])
 
@@ -34,7 +33,7 @@ def project(surfaces, faults, edge_length=60.0, **more):
 
 def compartment(entry, *point):
     """The number of the compartment in which a point lies."""
-    return int(closed_form_of(entry).compartments_of(np.array([point], float))[0])
+    return int(compartments_of(entry, [point])[0])
 
 
 def heights(entry, number, surface, plan):
@@ -431,7 +430,7 @@ def test_a_block_of_a_real_reservoir_held_out(where):
     points = {name: picks(name) for name in ("TopVolon", "TopTherys", "TopVolantis")}
     whole = made({"TopTherys": points["TopTherys"]})
     at = whole.structure.names.index(where)
-    out = closed_form_of(whole).compartments_of(points["TopTherys"]) == at
+    out = compartments_of(whole, points["TopTherys"]) == at
     entry = made({**points, "TopTherys": points["TopTherys"][~out]})
     given = points["TopTherys"][out]
     off = heights(entry, at, 1, given[:, :2]) - given[:, 2]

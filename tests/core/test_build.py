@@ -338,8 +338,8 @@ def counted_after_cancel(project, share, monkeypatch):
     controls, fractions, asked = [], [0.0], []
     control = _native.Execution
 
-    def recorded():
-        controls.append(control())
+    def recorded(*arguments):
+        controls.append(control(*arguments))
         return controls[-1]
 
     def counted():

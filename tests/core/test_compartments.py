@@ -8,7 +8,7 @@ from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.cells.joining import blocks_divided
 from realmodel.core.cells.reach import Reach
-from realmodel.core.proof.closed_form import winding_numbers
+from realmodel.core.proof.closed_form import BodyOfRock
 from realmodel.core.structures.parts.parts import divide, structures_of
 from realmodel.core.structures.shapes.branches import require_meeting
 from realmodel.core.surfaces.sides import fault_sides
@@ -59,9 +59,8 @@ def sides_at(structures, points):
     sides = np.column_stack(columns)
     faults = structures.of_rock(0)
     sides = faults.without_dropped(sides)
-    inside = [
-        np.where(winding_numbers(points, b.vertices, b.triangles) != 0, -1, 1) for b in structures.bodies
-    ]
+    bodies = [BodyOfRock((body.vertices, body.triangles), 0, 0) for body in structures.bodies]
+    inside = [np.where(run(lambda work, b=b: b.holds(work, points, 1)), -1, 1) for b in bodies]
     return np.column_stack([sides, *inside]).astype(np.int8)
 
 

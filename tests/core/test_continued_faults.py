@@ -6,11 +6,10 @@ import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface, build
 from realmodel.core.base.triangles import border_loops, meet, open_edges
 from realmodel.core.base.work import run
-from realmodel.core.structures.setup import structured_inputs
 from realmodel.core.structures.shapes.continued import border_of, continued, extended
 from realmodel.core.structures.shapes.reading import read_structures
 from realmodel.core.structures.sheets import interpolated_sheets
-from structure_cases import SQUARE, plane_fault
+from structure_cases import SQUARE, plane_fault, with_structures
 
 
 def grid(x, y, height=lambda x, y: 0 * x, left_out=()):
@@ -159,8 +158,8 @@ def test_a_fault_that_reaches_the_wall_is_used_as_it_is():
 
 def test_a_model_in_tiles_is_made_from_the_continued_fault():
     project = faulted(Fault("F", *leaning((0.003, 11.0))))
-    _, structures, warnings = run(lambda work: structured_inputs(work, project, 1))
-    assert sum("it is continued to it" in warning.text for warning in warnings) == 1
+    (entry,), structures = with_structures(project)
+    assert sum("it is continued to it" in warning.text for warning in entry.warnings) == 1
     assert np.array_equal(structures.faults[0].vertices, build(project).surface(2)[0])
 
 

@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from realmodel.core import Boreholes, InputRefused, build, load_project
 from realmodel.core.readers import read_boreholes
-from realmodel.core.readers.tables.hole_path import HolePath, bend_between, direction
+from realmodel.core.readers.tables.well_trajectory import WellTrajectory, direction, dogleg_angles
 
 NEAR = {"rtol": 0, "atol": 1e-9}
 
 
 def path(*stations):
     """(depth, inclination, azimuth) each."""
-    return HolePath([s[0] for s in stations], [direction(*s[1:]) for s in stations])
+    return WellTrajectory([s[0] for s in stations], [direction(*s[1:]) for s in stations])
 
 
 def test_a_quarter_of_a_circle_to_the_north():
@@ -64,10 +64,10 @@ def test_arcs(first, second, length, share):
     """The way is as long as the depths say, has their directions at its ends, and stays the same where a
     station is put on it; backwards it is the same way."""
     begin, end = np.array(direction(*first)), np.array(direction(*second))
-    bend = bend_between(begin, end)
+    bend = dogleg_angles(begin, end)
     if bend > 3.1:
         return
-    hole = HolePath([0, length], [begin, end])
+    hole = WellTrajectory([0, length], [begin, end])
     steps = np.array([hole.offset(depth) for depth in np.linspace(0, length, 65)])
     chords = np.linalg.norm(np.diff(steps, axis=0), axis=1)
     half = bend / 64 / 2
@@ -77,16 +77,16 @@ def test_arcs(first, second, length, share):
     away = 1e-5 * length
     towards = hole.offset(share * length + away) - hole.offset(share * length - away)
     towards /= np.linalg.norm(towards)
-    split = HolePath([0, share * length, length], [begin, towards, end])
+    split = WellTrajectory([0, share * length, length], [begin, towards, end])
     np.testing.assert_allclose(split.offset(length), hole.offset(length), atol=1e-6 * length)
-    back = HolePath([0, length], [-end, -begin])
+    back = WellTrajectory([0, length], [-end, -begin])
     np.testing.assert_allclose(back.offset(length), -hole.offset(length), atol=1e-9 * length)
 
 
 def test_a_bend_of_nothing_is_as_exact_as_a_straight_hole():
     hole = path((0, 30, 10), (1000, 30 + 1e-7, 10))
     np.testing.assert_allclose(hole.offset(1000), 1000 * np.array(direction(30, 10)), atol=1e-5)
-    assert bend_between(direction(30, 10), direction(30 + 1e-7, 10)) == pytest.approx(np.radians(1e-7), 1e-6)
+    assert dogleg_angles(direction(30, 10), direction(30 + 1e-7, 10)) == pytest.approx(np.radians(1e-7), 1e-6)
 
 
 COLLARS = "hole,x,y,z\nB1,500,700,50\nB2,100,200,60\n"

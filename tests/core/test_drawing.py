@@ -18,7 +18,7 @@ RED, BLUE = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 def test_a_filled_rectangle_covers_its_exact_part_of_each_pixel():
     drawing = Drawing(4.0, 3.0)
-    drawing.rectangle(0.75, 1.0, 2.0, 1.0, fill=RED)
+    drawing.rectangle((0.75, 1.0, 2.0, 1.0), fill=RED)
     green = rasterize(drawing, 1.0)[..., 1]
     assert green == pytest.approx(np.array([[1, 1, 1, 1], [0.75, 0, 0.25, 1], [1, 1, 1, 1]]), abs=1e-6)
 
@@ -49,7 +49,7 @@ def test_lines_have_their_width_and_dashes_their_length():
 
 def test_a_transparent_picture_is_put_over_another_one():
     drawing = Drawing(2.0, 1.0)
-    drawing.rectangle(1, 0, 1, 1, fill=(*RED, 0.5))
+    drawing.rectangle((1, 0, 1, 1), fill=(*RED, 0.5))
     pixels = rasterize(drawing, 1.0, background=None)
     assert pixels[0, :, 3].tolist() == [0.0, 0.5]
     assert pixels[0, 1, :3].tolist() == [1.0, 0.0, 0.0]
@@ -89,7 +89,7 @@ def chart():
     drawing.line([(10, 20), (30, 40)], BLUE, layer="upper clay + sand")
     drawing.text(10, 110, "Ж")
     drawing.polygon([(0, 0), (1, 0), (1, 1)], fill=BLUE, layer="Grès à Voltzia")
-    legend(drawing, 150, 100, "Block", [("Clay", RED), ("Sand", BLUE)])
+    legend(drawing, (150, 100), "Block", [("Clay", RED), ("Sand", BLUE)])
     color_bar(drawing, (150, 20, 8, 40), (0.0, 1.0), np.eye(3))
     return drawing
 

@@ -14,7 +14,7 @@ from faulted.generate import random_case
 from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project, open_tiles
 from realmodel.core.base.mapped_arrays import MappedArrays
 from realmodel.core.base.work import run
-from realmodel.core.structures.setup import structured_inputs
+from realmodel.core.cells.cell_complex import CellComplex
 from realmodel.core.tiles import faulted_windows as windows_module
 from realmodel.core.tiles.faulted_windows import Windows
 from realmodel.core.tiles.grid import TileGrid
@@ -73,7 +73,7 @@ def cell_keys(model):
                 cells[cell].append(key)
     names = [model.compartment_names[number] for number in model.cell_compartment]
     return [
-        (b"".join(sorted(own)), block, name)
+        (tuple(sorted(own)), block, name)
         for own, block, name in zip(cells, model.cell_block.tolist(), names, strict=True)
     ]
 
@@ -238,7 +238,7 @@ def test_plan_coordinates_are_made_equal_once():
     project = faulted()
     x = project.rocks[0].surfaces[1].vertices[:, 0]
     x[x == 1000] = np.nextafter(1000, 2000)
-    inputs, structures, _ = run(lambda work: structured_inputs(work, project, 2))
+    inputs, structures = structure_cases.with_structures(project, 2)
     windows = run(lambda work: Windows(work, inputs, structures, 2))
     assert windows.snapped.startswith("plan coordinates merged that differ only by rounding")
     east = [
@@ -253,7 +253,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
 
     def kept(n):
         with MappedArrays(tmp_path / str(n)) as arrays:
-            inputs, structures, _ = run(lambda work: structured_inputs(work, faulted(n), 2, keep=arrays.keep))
+            inputs, structures = structure_cases.with_structures(faulted(n), 2, arrays.keep)
             tracemalloc.start()
             windows = run(lambda work: Windows(work, inputs, structures, 2, arrays.keep))
             windows.divide((251, 262))
@@ -413,35 +413,31 @@ def test_paraview_opens_all_of_them_at_once(tmp_path):
 
 
 def test_owners_and_seams():
-    class Two:
-        """Two cubes beside each other."""
-
-        vertices = np.array([[x, y, z] for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)], float)
-        face_offsets = np.array([0, 4, 8, 12])
-        face_vertices = np.array([4, 5, 7, 6, 0, 1, 3, 2, 8, 10, 11, 9])
-        face_cells = np.array([[0, 1], [0, -1], [1, -1]])
-        face_surface = np.array([-1, 2, -1])
-        cell_block = np.array([3, 4])
-
+    two = CellComplex(  # cubes beside each other
+        vertices=np.array([[x, y, z] for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)], float),
+        face_offsets=np.array([0, 4, 8, 12]),
+        face_vertices=np.array([4, 5, 7, 6, 0, 1, 3, 2, 8, 10, 11, 9], np.int32),
+        face_cells=np.array([[0, 1], [0, -1], [1, -1]], np.int32),
+        face_surface=np.array([-1, 2, -1], np.int32),
+        cell_block=np.array([3, 4], np.int32),
+        cell_kind="columns",
+    )
     grid = TileGrid(np.array([-0.5, 0.5, 2.5]), np.array([-1.0, 2.0]))
-    assert owners(Two, grid).tolist() == [[0, 0], [1, 0]]
+    assert owners(two, grid).tolist() == [[0, 0], [1, 0]]
     parts = np.array([[0, 0]])
     given = np.array([0]), np.array([0]), parts, np.array([True])
-    one = Seam.of(Two, *given)
-
-    class Turned(Two):
-        face_vertices = np.array([6, 7, 5, 4, 0, 1, 3, 2, 8, 10, 11, 9])
-        face_cells = np.array([[1, 0], [0, -1], [1, -1]])
-
-    other = Seam.of(Turned, *given)
+    one = Seam.of(two, *given)
+    turned = replace(
+        two,
+        face_vertices=np.array([6, 7, 5, 4, 0, 1, 3, 2, 8, 10, 11, 9], np.int32),
+        face_cells=np.array([[1, 0], [0, -1], [1, -1]], np.int32),
+    )
+    other = Seam.of(turned, *given)
     assert one.matches(other) and one.is_one.all() and one.block.tolist() == [[3, 4]]
     assert Seam.of_arrays(one.arrays("a"), "a").matches(other)
-
-    class Moved(Turned):
-        vertices = np.nextafter(Two.vertices, 9.0)
-
-    moved = Seam.of(Moved, *given)
+    moved = Seam.of(replace(turned, vertices=np.nextafter(two.vertices, 9.0)), *given)
     assert not one.matches(moved) and one.first_difference(moved) == (1.0, 0.0, 0.0)
+    assert not one.matches(Seam.of(replace(two, face_surface=two.face_surface + 1), *given))
     assert not one.matches(Seam.of_arrays({}, "none"))
 
 

@@ -68,8 +68,8 @@ def test_the_same_in_files(tmp_path, monkeypatch):
     monkeypatch.setattr(mis_ties, "_AT_ONCE", 10_000)
     with MappedArrays(tmp_path / "arrays") as arrays:
         kept = arrays.keep(points)
-        found, warning = without_mis_ties(kept, arrays.room, arrays.gather)
-        once, warning_of_once, are_apart = each_place_once(kept, arrays.room, arrays.gather)
+        found, warning = without_mis_ties(kept, arrays.zeros, arrays.gather)
+        once, warning_of_once, are_apart = each_place_once(kept, arrays.zeros, arrays.gather)
         in_files = [np.array(found), np.array(once)]
     monkeypatch.undo()
     expected = without_mis_ties(points)

@@ -46,7 +46,7 @@ def texts(drawing):
 def test_ticks_stand_where_their_coordinates_are():
     for factor in (1.0, 4.0):
         looking = eye(180, 0)  # from the south: x to the right, heights up
-        drawing = draw_overlay(looking, shown(factor), (), False, False, True)
+        drawing = draw_overlay(looking, shown(factor), (), ["axes"])
         found = texts(drawing)
         heights = [
             text
@@ -71,7 +71,7 @@ def test_ticks_stand_where_their_coordinates_are():
 def test_the_box_never_lies_before_the_model(azimuth, elevation):
     """Its lines are edges of the outline: all corners of the box are on one side of each."""
     looking = eye(azimuth, elevation)
-    drawing = draw_overlay(looking, shown(), (), False, False, True)
+    drawing = draw_overlay(looking, shown(), (), ["axes"])
     box = shown()
     corners = looking.at(
         box.world(np.array(np.meshgrid(*zip(box.low, box.high, strict=True))).reshape(3, -1).T)
@@ -89,19 +89,19 @@ def test_the_box_never_lies_before_the_model(azimuth, elevation):
 
 
 def test_the_scale_bar_is_as_long_as_it_says():
-    drawing = draw_overlay(eye(152, 27), shown(), (), False, True, False)
+    drawing = draw_overlay(eye(152, 27), shown(), (), ["scale"])
     label = next(text for text in texts(drawing) if text.endswith(" m"))
     bars = [i.rings[0] for i in drawing.items if isinstance(i, Polygon) and i.fill is None]
     length = np.ptp(bars[-1][:, 0])
     assert length == pytest.approx(float(label.removesuffix(" m")) * SIZE[0] / 600.0)
-    shown_texts = texts(draw_overlay(eye(152, 27, perspective=True), shown(3.0), (), False, True, False))
+    shown_texts = texts(draw_overlay(eye(152, 27, perspective=True), shown(3.0), (), ["scale"]))
     assert "at the center of the model" in shown_texts
     assert "vertical exaggeration 3\u00d7" in shown_texts
 
 
 def test_the_arrow_points_north():
     for azimuth, expected in ((180, (0, 1)), (90, (1, 0)), (270, (-1, 0)), (0, (0, -1))):
-        drawing = draw_overlay(eye(azimuth, 50), shown(), (), True, False, False)
+        drawing = draw_overlay(eye(azimuth, 50), shown(), (), ["north"])
         letter = texts(drawing)["N"]
         paper = drawing.items[0].rings[0]
         away = np.array([letter.x, letter.y + 3]) - paper.mean(axis=0)
@@ -110,19 +110,19 @@ def test_the_arrow_points_north():
 
 def test_legends_fit_and_are_drawn():
     entries = [(f"Rock {n}", (n / 99, 0.5, 0.1)) for n in range(99)]
-    drawing = draw_overlay(eye(152, 27), shown(), [ColorKey("Property", entries)], False, False, False)
+    drawing = draw_overlay(eye(152, 27), shown(), [ColorKey("Property", entries)], [])
     assert "Rock 0" in texts(drawing)
     assert any(text.endswith(" more") for text in texts(drawing))
     assert max(item.y for item in texts(drawing).values()) < SIZE[1]
     key = ColorKey("Elevation (m)", limits=(80.0, 120.0), colors=layer_values.RISING)
-    pixels = rasterize(draw_overlay(eye(152, 27), shown(), [key], False, False, False), 1.0, None)
+    pixels = rasterize(draw_overlay(eye(152, 27), shown(), [key], []), 1.0, None)
     for color in layer_values.RISING:
         assert (np.abs(pixels[..., :3] - color).max(axis=2) < 0.02).any()
 
 
 def test_what_the_eye_does_not_see_is_left_out():
     within = eye(152, 27, reach=10.0, perspective=True)
-    draw_overlay(within, shown(), (), True, True, True)
+    draw_overlay(within, shown(), (), ["north", "scale", "axes"])
 
 
 def test_thickness_is_vertical():

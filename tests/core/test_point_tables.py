@@ -50,7 +50,7 @@ POINTS = [[1.5, 2.25, 3.125], [4.0, 5.0, -6.0]]
     ],
 )
 def test_tables_in_every_spelling(write, text, keys):
-    assert read_point_rows(write("p.txt", text), **keys).points.tolist() == POINTS
+    assert read_point_rows(PointFile(write("p.txt", text), **keys)).points.tolist() == POINTS
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_tables_in_every_spelling(write, text, keys):
 def test_tables_refused(write, text, keys, line, words):
     path = write("p.csv", text)
     with pytest.raises(InputRefused) as raised:
-        read_point_rows(path, **keys)
+        read_point_rows(PointFile(path, **keys))
     assert words in str(raised.value)
     assert (raised.value.file, raised.value.line) == (path, line)
 
@@ -101,7 +101,7 @@ def test_lines_are_counted_over_pieces(write):
     lines[5] = "# comment"
     lines[59_998] = "123456.25, 7654321.5, -98,x"
     with pytest.raises(InputRefused) as raised:
-        read_point_rows(write("p.csv", "\r\n".join(lines)), columns=[1, 2, 4])
+        read_point_rows(PointFile(write("p.csv", "\r\n".join(lines)), columns=[1, 2, 4]))
     assert "values are needed" in str(raised.value)
     assert raised.value.line == 1
     lines[59_998] = "123456.25, 7654321.5, x"

@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.base.triangles import crossing_pairs, pairs_at_planes
 from realmodel.core.project.project import check_project
-from realmodel.core.proof.closed_form import heights_at, nearest_side
-from structure_cases import closed_form_of, plane_fault, prepared
+from realmodel.core.structures.sheets.tips import on_fault
+from realmodel.core.surfaces.sides import FaultShape
+from structure_cases import compartments_of, heights_at, plane_fault, prepared
 
 
 def strip(x, height, n=10, y=(0.0, 10.0)):
@@ -34,7 +34,7 @@ def made(mesh, *faults, **options):
 
 def sheets_by_place(entry, *points):
     """The sheet of the only surface in the compartments of some points."""
-    found = closed_form_of(entry).compartments_of(np.array(points, float))
+    found = compartments_of(entry, points)
     return [entry.structure.sheets[number][0] for number in found]
 
 
@@ -132,16 +132,13 @@ def test_a_gap_at_a_normal_fault_is_covered():
         strip([0, 1, 2, 3, 4, 4.5], lambda x, y: 0 * x + 1),
         strip([6, 7, 8, 9, 10], lambda x, y: 0 * x - 2, n=7),
     )
-    assert np.abs(nearest_side(mesh[0], *shape)[mesh[0][:, 0] == 4.5]).max() == 0
+    assert on_fault(mesh[0], FaultShape(*shape))[mesh[0][:, 0] == 4.5].all()
     entry = made(mesh, Fault("F", *shape))
     left, right = sheets_by_place(entry, [-9, 5, 0], [19, 5, 0])
     for sheet, height in ((left, 1.0), (right, -2.0)):
         assert_single_valued(sheet, 100.0)
-        assert np.abs(sheet.vertices[:, 2] - height).max() < 1e-9
-    closed = closed_form_of(entry)
-    assert closed.compartments_of(np.array([[5.2, 5, 0.9]])) == closed.compartments_of(
-        np.array([[9.0, 5, 0]])
-    )
+        assert np.abs(sheet[0][:, 2] - height).max() < 1e-9
+    assert compartments_of(entry, [[5.2, 5, 0.9]]) == compartments_of(entry, np.array([[9.0, 5, 0]]))
 
 
 def test_parts_that_do_not_reach_the_fault():
@@ -275,19 +272,3 @@ def test_two_faults_and_a_branch():
     for sheet, height, place in zip(sheets_by_place(entry, *places), (0.0, 1.0, 2.0), places, strict=True):
         assert_single_valued(sheet, 100.0)
         assert heights_at(np.array([place[:2]], float), *sheet) == height
-
-
-def test_what_is_left_out_by_planes_is_far():
-    random = np.random.default_rng(5)
-    first = random.uniform(0, 0.3, (300, 3, 3)) + random.uniform(0, 3, (300, 1, 3))
-    second = random.uniform(0, 3, (7, 3, 3))
-    all_pairs = {tuple(pair) for pair in crossing_pairs(first, second).tolist()}
-    near = 0.05
-    kept = {tuple(pair) for pair in pairs_at_planes(first, second, near).tolist()}
-    left_out = np.array(sorted(all_pairs - kept))
-    assert kept <= all_pairs and len(kept) > 50 and len(left_out) > 50
-    a, b, c = second[left_out[:, 1]].transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    off = np.einsum("kij,kj->ki", first[left_out[:, 0]] - a[:, None], normal)
-    assert (np.abs(off) > near).all() and (np.sign(off) == np.sign(off[:, :1])).all()

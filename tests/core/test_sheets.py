@@ -4,13 +4,22 @@
 import numpy as np
 import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
-from realmodel.core.proof.closed_form import heights_at, nearest_side
+from realmodel.core.base.work import run
 from realmodel.core.surfaces.rock_structure import joined
-from structure_cases import SQUARE, closed_form_of, plane_fault, prepared
+from realmodel.core.surfaces.sides import FaultShape, fault_sides
+from structure_cases import (
+    SQUARE,
+    blocks_at,
+    closed_form_of,
+    compartments_of,
+    heights_at,
+    plane_fault,
+    prepared,
+)
 
 
 def side_of(shape, *points):
-    return nearest_side(np.array(points, float), *shape[:2])
+    return run(lambda work: fault_sides(work, np.array(points, float), FaultShape(*shape[:2])))
 
 
 def points_of(height, seed=1, count=300):
@@ -65,7 +74,7 @@ def test_younger_surfaces_ignore_the_fault():
     assert entry.surfaces[2] is one[2]
     closed = closed_form_of(entry)
     points = np.array([[x, 5.1, z] for x in (2, 8) for z in (-3, -1.5, -0.5, 0.5, 2)])
-    assert closed.blocks_at(points).tolist() == [-1, 1, 2, 2, 2, -1, -1, -1, 1, 2]
+    assert blocks_at(closed, points).tolist() == [-1, 1, 2, 2, 2, -1, -1, -1, 1, 2]
 
 
 def test_a_compartment_without_points_goes_on_as_its_neighbor():
@@ -79,9 +88,8 @@ def test_a_compartment_without_points_goes_on_as_its_neighbor():
         faults=[Fault(n, *s) for n, s in zip("FG", shapes, strict=True)],
     )
     (entry,) = prepared(project)
-    closed = closed_form_of(entry)
-    middle = int(closed.compartments_of(np.array([[5.0, 5, 0]]))[0])
-    left = int(closed.compartments_of(np.array([[1.0, 5, 0]]))[0])
+    middle = int(compartments_of(entry, [[5.0, 5, 0]])[0])
+    left = int(compartments_of(entry, [[1.0, 5, 0]])[0])
     assert entry.structure.sheets[middle][0] is entry.structure.sheets[left][0]
     warnings = [text.text for members, text in entry.structure.warnings if middle in members]
     assert len(warnings) == 1 and warnings[0].startswith(

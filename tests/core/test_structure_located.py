@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from realmodel.core import Project, Rock, Surface, build
-from realmodel.core.proof.located import OUTSIDE, Locator
+from structure_cases import cells_at
 
 UP = np.nextafter(1.0, 2.0)
 
@@ -35,15 +35,15 @@ PLACES = [(0.25, 0.5), (0.3, 0.9), (1.7, 0.1), (0.5, 0.5), (1.0, 0.5), (0.25, 1.
 @pytest.mark.parametrize("place", PLACES)
 def test_above_and_below_a_cell_thinner_than_the_precision_of_doubles(model, place):
     points = np.array([(*place, z) for z in (-0.5, 0.5, 1.5, 2.5)])
-    cells = Locator(model).cells(points)
-    assert cells[0] == cells[3] == OUTSIDE
+    cells = cells_at(model, points)
+    assert cells[0] == cells[3] == -1
     names = [model.blocks[block].name for block in model.cell_block[cells[1:3]]]
     assert names == ["S1 block", "S3 block"]
 
 
 def test_a_point_on_a_face_is_above_it(model):
     points = np.array([(0.25, 0.5, z) for z in (0.0, 1.0, 2.0)])
-    cells = Locator(model).cells(points)
-    assert cells[2] == OUTSIDE
+    cells = cells_at(model, points)
+    assert cells[2] == -1
     names = [model.blocks[block].name for block in model.cell_block[cells[:2]]]
     assert names == ["S1 block", "S2 block"]

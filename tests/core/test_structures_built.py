@@ -22,15 +22,14 @@ from realmodel.core import (
     build_surfaces,
     estimate,
 )
+from realmodel.core.ensembles import blocks_at
 from realmodel.core.exporters.report import model_report
-from realmodel.core.proof.located import OUTSIDE, Locator
-from realmodel.core.proof.random_points import closed_forms
 from realmodel.core.results.residuals import residuals
 from realmodel.core.results.volume_uncertainty import volume_deviations
 from realmodel.core.settings.rules import RULES
 from realmodel.core.structures import setup
 from realmodel.core.structures.sheets.displacement import displacements
-from structure_cases import SQUARE, ball, box_body, plane_fault
+from structure_cases import SQUARE, ball, box_body, cells_at, plane_fault
 
 CHECK = Path(__file__).resolve().parents[3] / "shared" / "check"
 
@@ -77,12 +76,8 @@ def assert_blocks(model, count=4000, seed=5):
     random = np.random.default_rng(seed)
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     points = random.uniform(low - 0.05 * (high - low), high + 0.05 * (high - low), (count, 3))
-    cells = Locator(model).cells(points)
-    blocks = np.where(cells == OUTSIDE, -1, np.append(model.cell_block, -1)[cells])
-    expected = np.full(count, -1)
-    for form in closed_forms(model):
-        at = form.blocks_at(points)
-        expected = np.where(at >= 0, at, expected)
+    blocks = np.append(model.cell_block, -1)[cells_at(model, points)]
+    expected = blocks_at(model, points)
     wrong = np.flatnonzero(blocks != expected)
     assert len(wrong) == 0, [(points[n].tolist(), blocks[n], expected[n]) for n in wrong[:5]]
     volumes = np.bincount(model.cell_block, model.cell_volumes, len(model.blocks))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.base.errors import InputRefused, UsageError
 from ..core.base.text import read_text
-from ..core.exporters import format_for, write_model
+from ..core.exporters import ExportOptions, format_for, write_model
 from ..core.exporters.boreholes import borehole_writer
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.exporters.sections import section_writer
@@ -160,14 +160,7 @@ class CutRequest:
                 progress(1.0, f"cleaning cells of {path.name}")
                 cells = half.cleaned_cells(self.tolerance, threads=threads, progress=step)
                 lines.append(f"{path.name}: {cleaned_line(cells)}")
-            write_model(
-                half,
-                path,
-                outputs,
-                cell_size=self.cell_size,
-                contour_interval=self.contour_interval,
-                cells=cells,
-            )
+            write_model(half, path, outputs, ExportOptions(self.cell_size, self.contour_interval, cells))
         low, high = ("inside", "outside") if isinstance(self.cutter, tuple) else ("below", "above")
         line = f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
         return "\n".join([line, *lines])

@@ -19,9 +19,9 @@ from ..core import (
     load_project,
 )
 from ..core.base.atomic import Outputs, make_folder
-from ..core.exporters import FORMATS, format_for, output_target, write_model
+from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
 from ..core.exporters.mesh_request import MeshRequest, cleaned_line
-from ..core.exporters.report import write_report
+from ..core.exporters.report import model_report, write_report
 from ..core.exporters.surfaces import surface_writer_for, write_surfaces_report
 from ..core.proof.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 from ..core.surfaces.prepare import with_arrays
@@ -72,7 +72,12 @@ def run(options: argparse.Namespace) -> None:
             erosion = _erosion(options, model, progress)
             mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
             cells = _cleaned_cells(options, model, progress)
-            _write(options, project, model, outputs, progress, validation, erosion, mesh, cells)
+            _export(options, model, outputs, progress, cells)
+            if options.blend is not None or options.render is not None:
+                _write_with_blender(options, project, model, outputs, progress)
+            if options.report is not None:
+                with outputs.file(options.report) as file:
+                    write_report(model_report(model, options.stage, validation, erosion, mesh, cells), file)
             if mesh is not None:
                 mesh_request.write(mesh, outputs, project.units, progress)
             lines = [request.run(model, outputs, options.threads, progress) for request in requests]
@@ -277,24 +282,12 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")
 
 
-def _write(
-    options: argparse.Namespace, project, model, outputs, progress, validation, erosion, mesh, cells
-) -> None:
+def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
+    given = ExportOptions(options.cell_size, options.contour_interval, cells)
     for path in options.export:
         write_model(
-            model,
-            path,
-            outputs,
-            lambda share, path=path: progress(1.0, f"writing {path.name}"),
-            options.cell_size,
-            options.contour_interval,
-            cells,
+            model, path, outputs, given, lambda share, path=path: progress(1.0, f"writing {path.name}")
         )
-    if options.blend is not None or options.render is not None:
-        _write_with_blender(options, project, model, outputs, progress)
-    if options.report is not None:
-        with outputs.file(options.report) as file:
-            write_report(model, options.report, file, options.stage, validation, erosion, mesh, cells)
 
 
 def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:

@@ -37,7 +37,7 @@ from . import (
     settings,
     shapes,
     structure_settings,
-    surface_figures,
+    surface_statistics,
     uncertainty,
     viewports,
     weathering,
@@ -53,8 +53,8 @@ class Prepared:
 
     interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
     PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
-    and the stamp of the file. figures: for each surface the text of surface_figures. attributes: by place the
-    attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
+    and the stamp of the file. figures: for each surface the text of surface_statistics. attributes: by place
+    the attributes of an interface's vertices (Model.surface_attributes). compartments: the text of
     `compartments`. stage: the argument of `shown_models.remember_stage`, or None.
     """
 
@@ -101,7 +101,7 @@ def prepare(model, composed, stage=None, threads=0):
     for place in composed.edited:  # the digits lost in Blender's 32 bits
         entry = project_settings.entry_at(model.project, place)
         prepared.stored[place] = (project_settings.packed(entry), "")
-    prepared.figures = surface_figures.of_model(model)
+    prepared.figures = surface_statistics.of_model(model)
     prepared.compartments = compartments.of_model(model)
     if stage is not None:
         at_stage = build_stage(model, stage, cells="blocks")
@@ -334,28 +334,31 @@ def _tree(current, project):
     """The model's collections, linked where they were taken out, new where there are none: for each rock mass
     (interfaces, blocks), and that of the faults and bodies under None."""
     group = current.realmodel
-    top = _collection(current, current.collection, group, "collection", project.name, "project")
+    top = _collection(current, current.collection, group, "collection", project.name, {scene.TAG: "project"})
     rocks = {}
     for number, row in enumerate(group.rocks):
-        parent = _collection(current, top, row, "collection", row.name, "rock", row.name)
+        tags = {scene.TAG: "rock", scene.ROCK: row.name}
+        parent = _collection(current, top, row, "collection", row.name, tags)
         pair = []
         for kind in ("interfaces", "blocks"):
-            pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", kind, row.name))
+            own = tags | {scene.TAG: kind}
+            pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", own))
         rocks[number] = tuple(pair)
     if len(group.faults) or len(group.bodies):
-        rocks[None] = _collection(current, top, group, "structures", "faults and bodies", "structures")
+        rocks[None] = _collection(
+            current, top, group, "structures", "faults and bodies", {scene.TAG: "structures"}
+        )
     return rocks
 
 
-def _collection(current, parent, row, pointer, name, kind, rock_name=None):
+def _collection(current, parent, row, pointer, name, tags):
     collection = getattr(row, pointer)
     if collection is None or collection.library is not None:
         collection = bpy.data.collections.new(name)
-        collection.hide_render = kind in ("interfaces", "structures")
+        collection.hide_render = tags[scene.TAG] in ("interfaces", "structures")
         setattr(row, pointer, collection)
-    collection[scene.TAG] = kind
-    if rock_name is not None:
-        collection[scene.ROCK] = rock_name
+    for key, value in tags.items():
+        collection[key] = value
     if not scene.is_name_of(collection.name, name):
         scene.give_name(bpy.data.collections, collection, name)
     if collection not in list(current.collection.children_recursive):

@@ -15,7 +15,7 @@ from . import (
     region_size,
     settings,
     structure_settings,
-    surface_figures,
+    surface_statistics,
     units,
     viewports,
     weathering,
@@ -45,7 +45,7 @@ section = _unless_filling(display.section_changed)  # another plane, or none
 def name(row, _context):
     """A rock mass, a surface, a fault or a body was renamed."""
     if not settings.is_filling():
-        names.follow(row)
+        names.update_references(row)
         live.touch(row.id_data)
 
 
@@ -157,7 +157,7 @@ def fit_variogram(surface, context):
     """The fitting of the variogram was switched off: the settings begin with the fitted one."""
     if settings.is_filling():
         return
-    fitted = (surface_figures.read(surface) or {}).get("variogram")
+    fitted = (surface_statistics.read(surface) or {}).get("variogram")
     if not surface.fit_variogram and fitted is not None:
         with settings.filling():
             method_settings.take_fitted(surface, fitted)

@@ -14,7 +14,7 @@ def of_model(model):
     names: of the compartments. volumes: {block: [its volume in each compartment]}. centers: (x, y, z) of each
     in model coordinates. faults: [[fault, surface, mean throw, mean heave]].
     """
-    if model.structures is None:
+    if not model.structures.is_divided:
         return ""
     count = len(model.compartment_names)
     kept = {

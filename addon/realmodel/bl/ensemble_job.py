@@ -27,7 +27,7 @@ class EnsembleJob(ThreadJob):
         """Raises InputRefused."""
         self._scene, self._count, self._seed = current.name, realizations, seed
         self._done = 0
-        self._recipe = shown_models.Recipe(current, settings.last_stage(current))
+        self._request = shown_models.StageRequest(current, settings.last_stage(current))
         self._plane = self._line = None
         origin = project_settings.model_origin(current)
         if line is not None:
@@ -51,7 +51,7 @@ class EnsembleJob(ThreadJob):
 
     def _work(self, job):
         with job.part(0.0, _BUILT):
-            model = self._recipe.make()
+            model = self._request.make()
         with job.part(_BUILT, 1.0):
             cut = model.section(*self._plane) if self._line is None else model.fence(self._line)
             samples = section_samples(model, cut)
@@ -70,8 +70,8 @@ class EnsembleJob(ThreadJob):
         current = bpy.data.scenes.get(self._scene)
         if current is None:
             raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
-        if current.realmodel.built_stamp != self._recipe.stamp or not len(current.realmodel.results):
+        if current.realmodel.built_stamp != self._request.stamp or not len(current.realmodel.results):
             raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
-        self._recipe.keep()
+        self._request.keep()
         ensembles.put(current, *made, self._seed)
         return made[0]

@@ -31,7 +31,7 @@ def touch(scene):
 
 def _look_at(scene):
     """Reports that a scene's model may be another one than its input makes."""
-    names.know(scene)
+    names.store(scene)
     settings.follow_youngest(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)

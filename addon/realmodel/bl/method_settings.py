@@ -142,11 +142,3 @@ def take_fitted(row, fitted):
         fitted = {key: parts[0][key] for key in ("model", "range", "sill")} | {"nugget": nugget}
         fitted["sill"] += nugget  # of a structure it is without the nugget
     set_variogram(row, fitted)
-
-
-def take_up_nested_variogram(row):
-    """A nested variogram that a file of an earlier version has kept as it was gets its rows."""
-    others = json.loads(row.other_options) if row.other_options else {}
-    if "variogram" in others:
-        set_variogram(row, others.pop("variogram"))
-        row.other_options = json.dumps(others) if others else ""

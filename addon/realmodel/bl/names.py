@@ -9,14 +9,14 @@ from . import borehole_picks, settings
 _OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
 
 
-def know(scene):
+def store(scene):
     """Stores the present names of all rows."""
     for row in _named(scene):
         if row.known_name != row.name:
             row.known_name = row.name
 
 
-def follow(row):
+def update_references(row):
     """Updates references to a row when it is renamed, unless another row has the old name."""
     scene, old = row.id_data, row.known_name
     row.known_name = row.name

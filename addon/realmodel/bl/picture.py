@@ -45,23 +45,15 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(
-    current,
-    points,
-    size,
-    space=None,
-    studio=False,
-    left=0.0,
-    sun=(SUN_AZIMUTH, SUN_ELEVATION),
-):
+def set_up(current, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_ELEVATION)):
     """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
     lights of the user stay.
 
     points: (N, 3) that the picture is to show. size: (width, height) of the picture. space: a 3D viewport
-    whose view the camera takes; without one it sees all points. studio: a lamp beside the camera, a uniform
-    sky and no ground, so that faces toward the camera have their own color. left: the share of the picture's
-    width that is left empty for a legend, where the camera sees all points. sun: its azimuth and elevation,
-    radians.
+    whose view the camera takes; without one it sees all points. left: the share of the picture's width that
+    is left empty for a legend, where the camera sees all points. sun: its azimuth and elevation, radians;
+    None: a lamp beside the camera, a uniform sky and no ground, so that faces toward the camera have their
+    own color.
     """
     _remove_turntable(current)
     camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
@@ -77,15 +69,15 @@ def set_up(
     camera.data.clip_start, camera.data.clip_end = away / 1e3, 10.0 * (away + reach)
     current.camera = camera
     lamp = _own(current, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
-    lamp.data.energy, lamp.data.angle = (2.0, 0.0) if studio else (SUN_STRENGTH, SUN_ANGLE)
-    if studio:
+    lamp.data.energy, lamp.data.angle = (2.0, 0.0) if sun is None else (SUN_STRENGTH, SUN_ANGLE)
+    if sun is None:
         lamp.data.color = (1.0, 1.0, 1.0)
         lamp.matrix_world = camera.matrix_world @ Matrix.Rotation(0.5, 4, "Y")
     else:
         lamp.data.color = LOW_SUN + (1.0 - LOW_SUN) * min(1.0, max(0.0, sun[1]) / SUN_ELEVATION)
         lamp.rotation_euler = towards(*sun).to_track_quat("Z", "Y").to_euler()
         _put_ground(current, points, 10.0 * (away + reach))
-    _set_sky(current, *((1.0, 1.0, 1.0), 0.4) if studio else (SKY_COLOR, SKY_STRENGTH))
+    _set_sky(current, *((1.0, 1.0, 1.0), 0.4) if sun is None else (SKY_COLOR, SKY_STRENGTH))
     return camera
 
 
@@ -213,7 +205,7 @@ def render_picture(current, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
         set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(current, size))
         set_renderer(stage, path, size, samples, time_limit)
         stretched = np.diag([1.0, 1.0, factor, 1.0])
-        rendered.put(stage, lambda _, *eye: drawing_for(current, *eye, stretched=stretched))
+        rendered.put(stage, lambda _, view: drawing_for(current, view, stretched=stretched))
         bpy.ops.render.render(write_still=True, scene=stage.name)
     return factor
 

@@ -79,27 +79,14 @@ def _constraints(row, depsgraph, origin):
 
 def fill(row, rock):
     """Sets a row from a realmodel.core.Rock whose constraints are arrays."""
-    set_edges(row, rock.edge_length, rock.triangles)
+    by_points = isinstance(rock.edge_length, str)
+    row.edges_by = "AUTO" if by_points else "LENGTH" if rock.triangles is None else "TRIANGLES"
+    method_settings.set_value(row, "edge_length", ROCK, None if by_points else rock.edge_length)
+    method_settings.set_value(row, "triangles", ROCK, rock.triangles)
     row.mesher = rock.mesher
     for entry in rock.size:
         _fill_size(row.sizes.add(), entry)
     add_constraints(row, rock.constraints)
-
-
-def set_edges(row, edge_length, triangles):
-    """Sets how large the triangles are, as realmodel.core.Rock has it."""
-    by_points = isinstance(edge_length, str)
-    row.edges_by = "AUTO" if by_points else "LENGTH" if triangles is None else "TRIANGLES"
-    method_settings.set_value(row, "edge_length", ROCK, None if by_points else edge_length)
-    method_settings.set_value(row, "triangles", ROCK, triangles)
-
-
-def take_up_sizes(row):
-    """Makes rows of the local edge lengths that files of an earlier version stored as text."""
-    kept = json.loads(row.mesh_options) if row.mesh_options else {}
-    for entry in kept.pop("size", ()):
-        _fill_size(row.sizes.add(), entry)
-    row.mesh_options = json.dumps(kept) if kept else ""
 
 
 def _fill_size(row, entry):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -57,6 +58,14 @@ class Composed:
         return place in self.objects
 
 
+class _Source(NamedTuple):
+    """What a project is composed from, see `compose`."""
+
+    scene: bpy.types.Scene
+    depsgraph: bpy.types.Depsgraph
+    whole: bool
+
+
 def model_origin(scene):
     """(3,) float64: what object coordinates lack to be model coordinates."""
     return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
@@ -89,16 +98,17 @@ def compose(scene, depsgraph, whole=True):
         raise InputRefused("there is no rock mass", advice="add one, or open a project file")
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
+    source = _Source(scene, depsgraph, whole)
     for number, row in enumerate(group.rocks):
         base = method_settings.value(row, "base_elevation", ROCK)
         rock = Rock(row.name, [], base_elevation=base, hole_picks=borehole_picks.of_rock(row))
         plan_mesh.compose(rock, row, depsgraph, origin)
-        _region(composed, number, rock, row, depsgraph, whole)
+        _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
         for at, surface_row in enumerate(row.surfaces):
             surface = _plain_surface(surface_row)
             try:
-                _shape(scene, composed, (number, at), surface, surface_row, depsgraph, whole)
+                _shape(source, composed, (number, at), surface, surface_row)
             except InputRefused as error:
                 raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
@@ -107,7 +117,7 @@ def compose(scene, depsgraph, whole=True):
     for place, row in settings.structure_rows(scene):
         entry = structure_settings.entry_of(place, row)
         try:
-            _shape(scene, composed, place, entry, row, depsgraph, whole)
+            _shape(source, composed, place, entry, row)
         except InputRefused as error:
             raise error.within(structure_settings.item_of(entry)) from error
         (project.faults if place[0] == "fault" else project.bodies).append(entry)
@@ -134,21 +144,21 @@ def region_rings(row, depsgraph, origin):
     return [ring + origin[:2] for ring in shapes.rings(row.region, depsgraph)]
 
 
-def _region(composed, number, rock, row, depsgraph, whole):
+def _region(source, composed, number, rock, row):
     try:
-        rings = region_rings(row, depsgraph, composed.origin)
+        rings = region_rings(row, source.depsgraph, composed.origin)
         if rings is None:
-            rings = _stored_rings(composed, number, rock, row, whole)
+            rings = _stored_rings(source, composed, number, rock, row)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
     if rings:  # holes are not marked: the even-odd rule decides
         rock.region = rings if len(rings) > 1 else rings[0]
 
 
-def _stored_rings(composed, number, rock, row, whole):
+def _stored_rings(source, composed, number, rock, row):
     """The outlines that the .blend keeps of a region's file; None where the file is to be read."""
     path = absolute(row.region_file)
-    if path is not None and (not row.region_stored or (whole and _changed(path, row.region_stamp))):
+    if path is not None and (not row.region_stored or (source.whole and _changed(path, row.region_stamp))):
         rock.region = path
         composed.read[number, None] = stored_arrays.file_stamp(path)
         return None
@@ -164,14 +174,14 @@ def _changed(path, stamp):
     return bool(now) and now != stamp
 
 
-def _shape(scene, composed, place, surface, row, depsgraph, whole):
+def _shape(source, composed, place, surface, row):
     if row.source == "NONE":
         return
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
-        _from_object(composed, place, surface, row, depsgraph)
+        _from_object(source, composed, place, surface, row)
         return
     if row.interface_digest and in_use(row.interface):
-        given, triangles = shapes.triangulation(row.interface, depsgraph)
+        given, triangles = shapes.triangulation(row.interface, source.depsgraph)
         if shapes.digest(given, triangles) != row.interface_digest:
             composed.edited.append(place)
             composed.objects.add(place)
@@ -179,15 +189,15 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
                 surface.method, surface.options = None, {}
                 for key in _OF_INTERPOLATED:
                     setattr(surface, key, None)
-            base = _made_of(scene, place, row)
+            base = _made_of(source.scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             structure_settings.clear_extension(surface)
             return
     if row.source == "TRACE_OBJECT":
-        _trace_of_object(composed, surface, row, depsgraph)
+        _trace_of_object(source, composed, surface, row)
         return
     path, stored = absolute(row.filepath), stored_shape(row)
-    if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
+    if path is not None and (not stored or (source.whole and _changed(path, row.stored_stamp))):
         name_file(surface, row, path)
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
@@ -244,7 +254,7 @@ def _take_stored(surface, text, row):
         setattr(surface, key, array)
 
 
-def _from_object(composed, place, surface, row, depsgraph):
+def _from_object(source, composed, place, surface, row):
     if row.object is None:
         if row.source == "MESH_OBJECT" and row.stored_mesh:
             _take_stored(surface, row.stored_mesh, row)
@@ -256,22 +266,22 @@ def _from_object(composed, place, surface, row, depsgraph):
             advice="undo that, or choose another object",
         )
     if row.source == "POINTS_OBJECT":
-        surface.points = shapes.points(row.object, depsgraph) + composed.origin
+        surface.points = shapes.points(row.object, source.depsgraph) + composed.origin
         if not len(surface.points):
             raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
         return
     if settings.kind_of(row) == "surface" and not row.object.modifiers:
         shapes.require_open(row.object)
-    given, triangles = shapes.triangulation(row.object, depsgraph)
+    given, triangles = shapes.triangulation(row.object, source.depsgraph)
     composed.objects.add(place)
     base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
     _take_mesh(composed, surface, row.object, given, triangles, base)
 
 
-def _trace_of_object(composed, fault, row, depsgraph):
+def _trace_of_object(source, composed, fault, row):
     if row.object is None:
         raise InputRefused("it has no object", advice="choose the curve or mesh along its trace")
-    lines = [line + composed.origin for line in shapes.lines(row.object, depsgraph)]
+    lines = [line + composed.origin for line in shapes.lines(row.object, source.depsgraph)]
     structure_settings.set_trace(fault, row, lines if len(lines) > 1 else lines[0])
 
 
@@ -367,7 +377,7 @@ def fill(scene, project):
             add_rock(group, rock)
         structure_settings.fill(scene, project)
     settings.follow_youngest(scene)
-    names.know(scene)
+    names.store(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)
 

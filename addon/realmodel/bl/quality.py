@@ -29,7 +29,7 @@ _PIXELS = 1.2  # for a point, at least: the texts stay legible
 _found = caches.new(most=64)  # key -> SurfaceQuality
 # Stamp of a model -> {(rock mass, block): upper bound of its volume's standard deviation}.
 _deviations = caches.new()
-_working = {}  # the job, its recipe, and its key, while there is one
+_working = {}  # the job, its request, and its key, while there is one
 _pictures = None  # previews of charts, by their key
 
 
@@ -52,15 +52,15 @@ def volume_deviation(current, row):
 
 def check(current):
     """Computes the quality of the active surface, in this thread. Raises RealModelError."""
-    key, recipe, task = _asked(current)
-    _keep(key, recipe, Job(task).result())
+    key, request, task = _asked(current)
+    _keep(key, request, Job(task).result())
 
 
 def start(current):
     """Starts to compute it in another thread. Raises InputRefused."""
     stop()
-    key, recipe, task = _asked(current)
-    _working.update(key=key, recipe=recipe, job=Job(task))
+    key, request, task = _asked(current)
+    _working.update(key=key, request=request, job=Job(task))
     bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
 
 
@@ -80,11 +80,11 @@ def stop():
 
 def _asked(current):
     rock, surface = settings.active_rock(current), settings.active_surface(current)
-    recipe = shown_models.Recipe(current, settings.last_stage(current))
+    request = shown_models.StageRequest(current, settings.last_stage(current))
 
     def task(_work):
         text_width("0", 1.0)  # loads the letters of charts now, not while a panel is drawn
-        model = recipe.make()
+        model = request.make()
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:
             raise InputRefused(f"surface '{wanted[1]}' is not in the built model", advice="press Build first")
@@ -93,11 +93,11 @@ def _asked(current):
         return found, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
 
     wanted = rock.name, surface.name
-    return _key(current, rock, surface), recipe, task
+    return _key(current, rock, surface), request, task
 
 
-def _keep(key, recipe, made):
-    recipe.keep()
+def _keep(key, request, made):
+    request.keep()
     quality, deviations = made
     _deviations.clear()  # of one model at a time
     _deviations[key[0]] = deviations
@@ -112,10 +112,10 @@ def _look():
     viewports.redraw_sidebars()
     if not job.done:
         return _LOOK_SECONDS
-    key, recipe = _working["key"], _working["recipe"]
+    key, request = _working["key"], _working["request"]
     _working.clear()
     try:
-        _keep(key, recipe, job.result())
+        _keep(key, request, job.result())
     except Cancelled:
         pass
     except RealModelError as error:

@@ -10,7 +10,7 @@ from ..core.project.region_rings import region_rings
 from ..core.readers import read_region
 from ..core.surfaces.planar_mesh import triangulate_rings
 from . import project_settings, settings, stored_arrays
-from .surface_figures import plan_area
+from .surface_statistics import plan_area
 
 
 def expected_triangles(row):

@@ -73,15 +73,6 @@ def remove_unused_materials(besides=()):
             bpy.data.materials.remove(material)
 
 
-def remove_tree(scene):
-    """Remove the objects and collections of a model that no setting refers to."""
-    project = model_collection(scene)
-    if project is not None:
-        remove_objects(model_objects(scene))
-        for collection in [*reversed(project.children_recursive), project]:
-            release_collection(collection)
-
-
 def release_collection(collection):
     """Remove a collection of the model, or None; one that is not empty becomes an ordinary collection of the
     user."""

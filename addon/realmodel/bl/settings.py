@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import preferences
 
-VERSION = 5  # of the settings; versioning.py brings older ones up to it
+VERSION = 5  # of the settings in a .blend
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 

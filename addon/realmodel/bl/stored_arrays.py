@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core import InputRefused
+from ..core.exporters.npz import write_arrays
 from . import caches
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
@@ -21,12 +22,7 @@ _unpacked = caches.new()  # by digest of the text: arrays read lately, not to be
 def pack(**arrays):
     """A compressed .npz in base64. The same arrays give the same text."""
     file = io.BytesIO()
-    with zipfile.ZipFile(file, "w") as archive:
-        for name, array in arrays.items():
-            member = io.BytesIO()
-            np.lib.format.write_array(member, np.ascontiguousarray(array), allow_pickle=False)
-            entry = zipfile.ZipInfo(f"{name}.npy")  # dated 1980
-            archive.writestr(entry, member.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)
+    write_arrays({name: np.asarray(array) for name, array in arrays.items()}, file, level=1)
     return base64.b64encode(file.getvalue()).decode("ascii")
 
 

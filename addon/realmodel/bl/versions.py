@@ -144,9 +144,9 @@ def make_matt(principled):
     principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
 
 
-def add_group_socket(group, name, kind, default=None, low=None, high=None, is_output=False):
+def add_group_socket(group, name, kind, values=(), is_output=False):
     """Adds a socket to a node group. kind: the name of its class; kinds of numbers are subtypes from 4.0
-    on."""
+    on. values: its default, and the lowest and highest one, as far as there are any."""
     if bpy.app.version < (4, 0, 0):
         socket = (group.outputs if is_output else group.inputs).new(kind, name)
     else:
@@ -155,9 +155,8 @@ def add_group_socket(group, name, kind, default=None, low=None, high=None, is_ou
         socket = group.interface.new_socket(name, in_out=way, socket_type=plain)
         if plain != kind:
             socket.subtype = kind[len(plain) :].upper()
-    for key, value in (("default_value", default), ("min_value", low), ("max_value", high)):
-        if value is not None:
-            setattr(socket, key, value)
+    for key, value in zip(("default_value", "min_value", "max_value"), values, strict=False):
+        setattr(socket, key, value)
 
 
 def set_group_input(modifier, name, value):

@@ -7,6 +7,7 @@ layer, and grass and scree lie on level ground. The nodes use the attributes of 
 """
 
 import math
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -26,16 +27,16 @@ FINEST = 6
 
 # name: kind of the socket, default, lowest, highest
 _INPUTS = {
-    "Strength": ("NodeSocketFloatDistance", 0.5, 0.0, None),
+    "Strength": ("NodeSocketFloatDistance", 0.5, 0.0),
     "Edge Rounding": ("NodeSocketFloatFactor", 0.6, 0.0, 1.0),
-    "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6, None),
-    "Bed Thickness": ("NodeSocketFloatDistance", 0.5, 1e-6, None),
-    "Seed": ("NodeSocketInt", 0, 0, None),
+    "Noise Scale": ("NodeSocketFloatDistance", 2.0, 1e-6),
+    "Bed Thickness": ("NodeSocketFloatDistance", 0.5, 1e-6),
+    "Seed": ("NodeSocketInt", 0, 0),
     "Hardness": ("NodeSocketFloatFactor", 0.5, 0.0, 1.0),
     "Grass Slope": ("NodeSocketFloatAngle", math.radians(28.0), 0.0, math.pi / 2),
     "Scree Slope": ("NodeSocketFloatAngle", math.radians(40.0), 0.0, math.pi / 2),
-    "Grass": ("NodeSocketMaterial", None, None, None),
-    "Scree": ("NodeSocketMaterial", None, None, None),
+    "Grass": ("NodeSocketMaterial",),
+    "Scree": ("NodeSocketMaterial",),
     "Detail": ("NodeSocketInt", 2, 0, FINEST),
 }
 
@@ -53,19 +54,32 @@ def modifier_of(item):
     return next(found, None)
 
 
-def put_on(scene, items, strength, rounding, noise, seed, grass, scree, detail):
-    """Adds weathering to blocks, or changes its settings. strength, noise: 1 suits the model. grass, scree:
-    radians, the steepest ground that has them, 0: none. detail: the number of subdivisions of polygons."""
+@dataclass(frozen=True)
+class Weathering:
+    """strength, noise: 1 suits the model. grass, scree: radians, the steepest ground that has them, 0: none.
+    detail: the number of subdivisions of polygons."""
+
+    strength: float
+    rounding: float
+    noise: float
+    seed: int
+    grass: float
+    scree: float
+    detail: int
+
+
+def put_on(scene, items, given):
+    """Adds Weathering to blocks, or changes its settings."""
     group, unit = _group(), looks.diagonal(scene) / looks.UNITS
     values = {
-        "Strength": strength * _UNITS["Strength"] * unit,
-        "Edge Rounding": rounding,
-        "Noise Scale": noise * _UNITS["Noise Scale"] * unit,
-        "Bed Thickness": noise * _UNITS["Bed Thickness"] * unit,
-        "Seed": seed,
-        "Grass Slope": grass,
-        "Scree Slope": scree,
-        "Detail": detail,
+        "Strength": given.strength * _UNITS["Strength"] * unit,
+        "Edge Rounding": given.rounding,
+        "Noise Scale": given.noise * _UNITS["Noise Scale"] * unit,
+        "Bed Thickness": given.noise * _UNITS["Bed Thickness"] * unit,
+        "Seed": given.seed,
+        "Grass Slope": given.grass,
+        "Scree Slope": given.scree,
+        "Detail": given.detail,
         **{name: _cover(name, unit) for name in _COVERS},
     }
     for item in items:
@@ -126,8 +140,8 @@ def _group():
         group[KEY] = _VERSION
         versions.add_group_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
         versions.add_group_socket(group, "Geometry", "NodeSocketGeometry")
-        for name, (kind, *limits) in _INPUTS.items():
-            versions.add_group_socket(group, name, kind, *limits)
+        for name, (kind, *values) in _INPUTS.items():
+            versions.add_group_socket(group, name, kind, values)
         _fill(_Nodes(group))
     except BaseException:
         bpy.data.node_groups.remove(group)

@@ -10,15 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import BuildFailed, BuildWarning
+from ..core import BuildFailed, BuildWarning, Project
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.work import Work, native_module, run
 from ..core.cells.assembly import list_blocks
 from ..core.cells.cell_complex import CellComplex
-from ..core.project.project import Project
-from ..core.structures.setup import structured_inputs
+from ..core.structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..core.tiles import TiledModel
 from ..core.tiles.catalog import CATALOG, Catalog
 from ..core.tiles.faulted_tile import Whole, build_faulted_tile
@@ -42,6 +41,7 @@ from .tile_inputs import SurfaceReader
 from .workers import Workers
 
 _PREPARED, _BUILT = 0.4, 0.97  # of the time
+_READ, _MESHED = 0.2, 0.3  # of that until windows are prepared
 _ROUNDS = 4  # in which tiles are built again from more around them, at last from everything
 _WINDOW = "window"
 
@@ -63,7 +63,11 @@ def _built(
     reader = SurfaceReader(arrays, workers)
 
     def prepared(work: Work):
-        inputs, structures, warnings = structured_inputs(work, project, 0, reader, arrays.keep)
+        with work.phase(0.0, _READ, "reading"):
+            inputs, with_arrays = read_inputs(work, project, 0, reader)
+        mesh_inputs(work, inputs, _READ, _MESHED, arrays.keep)
+        structures = make_surfaces(work, with_arrays, inputs, 0, None, _MESHED, 1.0, arrays.keep, joins=False)
+        warnings = [warning for entry in inputs for warning in entry.warnings]
         return Windows(work, inputs, structures, 0, arrays.keep), structures, warnings
 
     windows, structures, warnings = run(

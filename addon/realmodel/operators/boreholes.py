@@ -9,7 +9,7 @@ from ..bl import borehole_picks, borehole_points, project_settings, reading_text
 from ..core import InputRefused
 from ..core.readers import TABLE_ENDINGS, read_boreholes
 from ..core.settings.boreholes import COLUMNS, Boreholes
-from ..core.settings.point_file import ReadingRefused
+from ..core.settings.point_file import ReadingError
 from ..core.settings.schema import READING
 from ..props_schema import items
 from .imports import arrived
@@ -77,7 +77,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             require_file(file)
         try:
             given.check()
-        except ReadingRefused as error:
+        except ReadingError as error:
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)

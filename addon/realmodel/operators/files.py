@@ -23,7 +23,7 @@ from ..core.base.atomic import Outputs
 from ..core.exporters import FORMATS
 from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.meshes import MESH_FORMATS
-from ..core.exporters.report import write_report
+from ..core.exporters.report import model_report, write_report
 from .background import InBackground
 from .reporting import Reporting, a_model, chosen_path, not_building, object_mode
 
@@ -292,7 +292,7 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
             if is_table:
                 file.write(results.as_text(context.scene).encode())
             else:
-                write_report(model, path, file)
+                write_report(model_report(model), file)
 
 
 CLASSES = (REALMODEL_OT_export, REALMODEL_OT_export_mesh, REALMODEL_OT_export_scene, REALMODEL_OT_report)

@@ -35,7 +35,7 @@ from ..core.readers import (
     read_point_file,
 )
 from ..core.readers.contents import column_values
-from ..core.settings.point_file import ReadingRefused
+from ..core.settings.point_file import ReadingError
 from ..core.surfaces.age_order import age_order
 from .reporting import Reporting, require_file
 from .rocks import add_rock
@@ -258,7 +258,7 @@ def _read(surface, unit):
     given = PointFile(surface.path, **surface.reading)
     try:
         given.check()
-    except ReadingRefused as error:
+    except ReadingError as error:
         raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
         surface.places, warnings = read_point_file(given, unit)

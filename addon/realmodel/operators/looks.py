@@ -118,7 +118,8 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
         values = (self.strength, self.rounding, self.noise_scale, self.seed)
         covers = (self.grass_slope, self.scree_slope)
         items = _blocks(context)
-        weathering.put_on(context.scene, items, *values, *covers, self.detail)
+        given = weathering.Weathering(*values, *covers, self.detail)
+        weathering.put_on(context.scene, items, given)
         self.report({"INFO"}, f"Weathered {len(items)} blocks; the modifier of each has all settings")
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows, method_settings, project_settings, settings, surface_figures, units
+from ..bl import library_rows, method_settings, project_settings, settings, surface_statistics, units
 from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.settings.schema import MESH_READING, READING, SURFACE
 from ..core.settings.variogram import VARIOGRAMS
@@ -86,7 +86,7 @@ def draw_property(layout, context, row, operator):
 
 
 def draw_figures(layout, context, surface):
-    figures = surface_figures.read(surface)
+    figures = surface_statistics.read(surface)
     if figures is None:
         return
     scene, column = context.scene, layout.box().column(align=True)
@@ -162,7 +162,7 @@ class REALMODEL_PT_surface_search(_OfTheMethod, TabPanel, bpy.types.Panel):
 def _draw_variogram(layout, scene, surface):
     layout.row(heading="Variogram").prop(surface, "fit_variogram", text="Fitted")
     if surface.fit_variogram:
-        fitted = (surface_figures.read(surface) or {}).get("variogram")
+        fitted = (surface_statistics.read(surface) or {}).get("variogram")
         if fitted is not None:
             hint(layout, _variogram_text(scene, fitted))
         return

@@ -57,7 +57,7 @@ private:
     std::size_t count_;
 };
 
-/// The same for loops of the same nodes.
+/// A hash that is the same for loops of the same nodes, wherever they begin.
 template <class Node>
 std::uint32_t loop_hash(std::span<const Node> loop) {
     std::uint32_t hash = 0;

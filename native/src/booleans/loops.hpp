@@ -16,6 +16,7 @@ struct Loops {
 
 /// An edge of facets of both surfaces is an intersection edge, but within a part that they share:
 /// there all of its facets are of both.
+/// @param vertices  how many there are
 /// @throws Cancelled
 Loops find_loops(const FacetMesh& mesh, std::size_t vertices, Progress* progress);
 

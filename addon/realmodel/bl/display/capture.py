@@ -65,7 +65,7 @@ def _draw(context, path, size):
                 drawing.draw_items(modes.drawn(context.scene), mode, context.view_layer)
                 gpu.matrix.load_matrix(Matrix.Identity(4))
                 gpu.matrix.load_projection_matrix(overlay.pixel_matrix(*size))
-                overlay.draw_for(context.scene, *size, view, max(size) / WIDTH, projection=frame)
+                overlay.draw_for(context.scene, size, view, max(size) / WIDTH, projection=frame)
             pixels = gpu.state.active_framebuffer_get().read_color(0, 0, *size, 4, 0, "UBYTE")
             pixels.dimensions = size[0] * size[1] * 4
     finally:
@@ -110,7 +110,7 @@ def _render(context, path, size):
             for item in [item for item in stage.collection.objects if picture.KEY in item]:
                 stage.collection.objects.unlink(item)
             stage.world = None
-            picture.set_up(stage, points, size, spaces[0] if spaces else None, studio=True)
+            picture.set_up(stage, points, size, spaces[0] if spaces else None, sun=None)
             picture.set_renderer(stage, path, size, _SAMPLES, picture.TIME_LIMIT)
             with batch.without_chatter():
                 bpy.ops.render.render(write_still=True, scene=stage.name)

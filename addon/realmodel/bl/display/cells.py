@@ -20,9 +20,9 @@ def made_of(scene, stage, apart=False):
     return json.dumps([scene.realmodel.built_stamp, stage, cut] + ["apart"] * bool(apart))
 
 
-class Recipe:
+class CellRequest:
     """Makes the meshes of cells: of the model at a stage, or of its half where the cut is shown. Used like
-    `shown_models.Recipe`. Raises InputRefused."""
+    `shown_models.StageRequest`. Raises InputRefused."""
 
     def __init__(self, scene, stage, apart=False):
         self.made_of = made_of(scene, stage, apart)
@@ -33,7 +33,7 @@ class Recipe:
         if cuts.is_shown(scene):
             self._half = cuts.known_half(scene.realmodel.view.cut, kind)
             self._plane = json.loads(scene.realmodel.view.cut)[:2]
-        self._model = shown_models.Recipe(scene, stage, kind) if self._half is None else None
+        self._model = shown_models.StageRequest(scene, stage, kind) if self._half is None else None
         self._origin = project_settings.model_origin(scene)
 
     @property
@@ -63,9 +63,9 @@ class Recipe:
 
 def of_scene(scene, stage, apart=False):
     """The meshes of the cells, made in this thread if they are not in the cache. Raises RealModelError."""
-    recipe = Recipe(scene, stage, apart)
-    shapes = recipe.make()
-    recipe.keep()
+    request = CellRequest(scene, stage, apart)
+    shapes = request.make()
+    request.keep()
     return shapes
 
 

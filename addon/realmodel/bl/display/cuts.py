@@ -202,25 +202,25 @@ def touch(current):
 def _begun(current, state):
     """A job that makes a cut; its result is what `_take` takes. Raises InputRefused."""
     point, normal, stage, _ = json.loads(state)
-    recipe = shown_models.Recipe(current, stage, _wanted_cells(current))
+    request = shown_models.StageRequest(current, stage, _wanted_cells(current))
     names = compartments.names(current) or None
     half, origin = known_half(state, _wanted_cells(current)), project_settings.model_origin(current)
 
     def task(_):
         model = half
         if model is None:
-            model = recipe.make().cut_by_plane(point, normal, threads()).below
+            model = request.make().cut_by_plane(point, normal, threads()).below
         made = polygon_mesh.of_blocks(model, origin, threads(), compartments=names)
         shapes = block_shapes.by_name(model, made)
-        return state, model, shapes, recipe
+        return state, model, shapes, request
 
     return work.start(task)
 
 
 def _take(current, made):
     """Shows the halves that a job has made, and caches them."""
-    state, model, shapes, recipe = made
-    recipe.keep()
+    state, model, shapes, request = made
+    request.keep()
     _halves[state] = model
     _put(current, shapes, state)
 

@@ -26,7 +26,7 @@ def _is_missing(scene, stage, mode):
     if stage is not None and not shown_models.has_shapes(scene, stage):
         return True
     stage = scene.realmodel.stage if stage is None else stage
-    return modes.needs_cells(scene, mode, stage) and not cells.Recipe(scene, stage).is_ready
+    return modes.needs_cells(scene, mode, stage) and not cells.CellRequest(scene, stage).is_ready
 
 
 def _begin(name, _changed_at):
@@ -35,10 +35,9 @@ def _begin(name, _changed_at):
         return None
     group = scene.realmodel
     try:
-        stage = shown_models.Recipe(scene, group.stage)
-        wanted = (
-            cells.Recipe(scene, group.stage) if modes.needs_cells(scene, group.display, group.stage) else None
-        )
+        stage = shown_models.StageRequest(scene, group.stage)
+        needs_cells = modes.needs_cells(scene, group.display, group.stage)
+        wanted = cells.CellRequest(scene, group.stage) if needs_cells else None
     except RealModelError as error:
         group.view.message = str(error)
         return None

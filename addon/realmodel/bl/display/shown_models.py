@@ -16,11 +16,11 @@ _stages = caches.new()  # (stamp, stage, cells) -> realmodel.core.Model, the one
 _shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
-class Recipe:
+class StageRequest:
     """Makes the model of a scene at a stage: just after surface `stage` of each rock mass.
 
     cells: "columns" or "blocks"; None: whole blocks for a stage, and the cells in the cache for the whole
-    model. The main thread makes the recipe from the scene, any thread runs it (`make`), and the main thread
+    model. The main thread makes the request from the scene, any thread runs it (`make`), and the main thread
     caches the result (`keep`). Without a model in the cache (after a .blend was opened) the model is built
     from the settings; the scene does not change. Raises InputRefused.
     """
@@ -86,10 +86,10 @@ class Recipe:
 
 def at_stage(scene, stage, cells=None):
     """The realmodel.core.Model just after surface `stage` of each rock mass, made in this thread. cells: as
-    for `Recipe`. Raises InputRefused, BuildFailed."""
-    recipe = Recipe(scene, stage, cells)
-    model = recipe.make()
-    recipe.keep()
+    for `StageRequest`. Raises InputRefused, BuildFailed."""
+    request = StageRequest(scene, stage, cells)
+    model = request.make()
+    request.keep()
     return model
 
 
@@ -101,9 +101,9 @@ def whole(scene, cells="columns"):
 
 def shapes_at_stage(scene, stage):
     """{(rock mass, block): PolygonMesh} at a stage, made in this thread. Raises as `at_stage`."""
-    recipe = Recipe(scene, stage)
-    shapes = recipe.make_shapes()
-    recipe.keep(shapes)
+    request = StageRequest(scene, stage)
+    shapes = request.make_shapes()
+    request.keep(shapes)
     return shapes
 
 

@@ -3,7 +3,7 @@
 (`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
 an image."""
 
-import pickle
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,36 +15,43 @@ WIDTH = 900.0  # points across the longer side of a picture
 _drawings = caches.new(most=8)  # by their input, as a viewport is redrawn often
 
 
-def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0, 0.0), stretched=None):
+class View(NamedTuple):
+    """A picture of the world. projection: (4, 4), from the camera's axes to the picture. matrix: (4, 4), from
+    the world to these axes. size: of the picture in points."""
+
+    projection: np.ndarray
+    matrix: np.ndarray
+    is_perspective: bool
+    size: tuple[float, float]
+
+
+def drawing_for(scene, picture, margins=(0.0, 0.0, 0.0), stretched=None):
     """The Drawing of a scene's overlay, or None where nothing is switched on.
 
-    projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
-    size: of the picture in points. margins: what other things cover at the left, at the right and below,
-    in points. stretched: (4, 4), the exaggeration of the vertical, if it is not that of the scene.
+    picture: View. margins: what other things cover at the left, at the right and below, in points. stretched:
+    (4, 4), the exaggeration of the vertical, if it is not that of the scene.
     """
     group = scene.realmodel
     view_settings = group.view
     if not len(group.results):
         return None
     keys = _keys(scene)
-    wanted = (
-        view_settings.show_north,
-        view_settings.show_scale,
-        view_settings.show_axes and not group.explode,
-    )
-    if not keys and not any(wanted):
+    parts = [part for part in ("north", "scale", "axes") if getattr(view_settings, f"show_{part}")]
+    if group.explode and "axes" in parts:
+        parts.remove("axes")
+    if not keys and not parts:
         return None
-    if not any(wanted):
-        view = projection = np.eye(4)  # a legend stays the same when the view turns
-    view = np.array(view, np.float64)
+    if not parts:
+        picture = picture._replace(projection=np.eye(4), matrix=np.eye(4))  # of legends: it may turn
+    view = np.array(picture.matrix, np.float64)
     right, up, back = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
     at = -view[:3, :3].T @ view[:3, 3]
     eye = Eye(
-        np.array(projection, np.float64) @ view,
-        np.array([*at, 1.0] if is_perspective else [*back, 0.0]),
+        np.array(picture.projection, np.float64) @ view,
+        np.array([*at, 1.0] if picture.is_perspective else [*back, 0.0]),
         right,
         up,
-        tuple(size),
+        tuple(picture.size),
     )
     origin = project_settings.model_origin(scene)
     placed = np.array(exaggeration.matrix(scene) if stretched is None else stretched)
@@ -52,10 +59,11 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     placed[:3, 3] -= placed[:3, :3] @ origin
     low, high = explosion.bounds(scene)
     shown = Shown(low + origin, high + origin, placed, group.units, factor)
-    given = (eye, shown, keys, *wanted, margins)
-    name = pickle.dumps(given)
+    arrays = eye.projection, eye.back, eye.right, eye.up, shown.low, shown.high, shown.placed
+    of_keys = tuple((k.title, *k.entries, k.limits, k.colors is None or k.colors.tobytes()) for k in keys)
+    name = (*(a.tobytes() for a in arrays), eye.size, shown.unit, factor, of_keys, *parts, tuple(margins))
     if name not in _drawings:
-        _drawings[name] = draw_overlay(*given)
+        _drawings[name] = draw_overlay(eye, shown, keys, parts, margins)
     return _drawings[name]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core.drawing.raster import rasterize
 from .. import exaggeration, meshes, versions
-from . import WIDTH, drawing_for
+from . import WIDTH, View, drawing_for
 
 KEY = "realmodel_overlay"  # on the plane and the image
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -28,7 +28,8 @@ def put(scene, draw=drawing_for, depsgraph=None):
     )
     scale = max(size) / WIDTH
     view = np.linalg.inv(np.array(matrix.normalized(), np.float64))
-    found = draw(scene, projection, view, camera.data.type == "PERSP", (size[0] / scale, size[1] / scale))
+    seen = View(projection, view, camera.data.type == "PERSP", (size[0] / scale, size[1] / scale))
+    found = draw(scene, seen)
     if found is None:
         remove(scene)
         return

@@ -13,7 +13,7 @@ from ...core.drawing.drawing import ANCHORS, Text
 from ...core.drawing.raster import item_shapes
 from .. import caches, versions
 from ..draw_handler import DrawHandler
-from . import drawing_for
+from . import View, drawing_for
 
 _FONT = 0  # Blender's own
 _PIXELS = 1.25  # for a point, where Blender's interface is not scaled
@@ -28,15 +28,17 @@ def draw():
     if not hasattr(scene, "realmodel") or not space.overlay.show_overlays:
         return
     scale = _PIXELS * context.preferences.system.ui_scale
-    draw_for(scene, region.width, region.height, context.region_data, scale, _margins(context.area, scale))
+    size = region.width, region.height
+    draw_for(scene, size, context.region_data, scale, _margins(context.area, scale))
 
 
-def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0, 0.0), projection=None):
+def draw_for(scene, size, view, scale, margins=(0.0, 0.0, 0.0), projection=None):
     """Draws the overlay of a scene into the bound framebuffer, size in pixels. view: RegionView3D. scale:
     pixels per point. projection: if it is not that of the view."""
     projection = view.window_matrix if projection is None else projection
-    size = width / scale, height / scale
-    found = drawing_for(scene, projection, view.view_matrix, view.is_perspective, size, margins)
+    points = size[0] / scale, size[1] / scale
+    picture = View(projection, view.view_matrix, view.is_perspective, points)
+    found = drawing_for(scene, picture, margins)
     if found is not None:
         draw_items(found, scale)
 

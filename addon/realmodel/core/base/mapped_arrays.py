@@ -20,7 +20,7 @@ from .errors import BuildFailed, OutputFailed
 Keep = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
 # One array of pieces, one after another; the second is empty, and has the type and the columns of all.
 Gather = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
-Room = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
+MakeZeros = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece
 _HEADER = 128  # bytes before an array in a file of NumPy
@@ -46,12 +46,6 @@ class Rows:
         """All pieces, one after another."""
         pieces = self._pieces or [self._empty]
         return np.ascontiguousarray(pieces[0]) if len(pieces) == 1 else np.concatenate(pieces)
-
-    def taken(self) -> np.ndarray:
-        """All pieces, in memory and nowhere else."""
-        found = self.array()
-        self._pieces = []
-        return found
 
 
 MakeRows = Callable[[np.ndarray], Rows]
@@ -112,7 +106,7 @@ class MappedArrays:
         """Gathers pieces in a file, read-only."""
         return _gathered(self.rows(empty), pieces)
 
-    def room(self, shape: tuple[int, ...], dtype) -> np.ndarray:
+    def zeros(self, shape: tuple[int, ...], dtype) -> np.ndarray:
         """Zeros in a file, for the caller to change."""
         file = self._new_file()
         with _disk_errors(file):
@@ -157,14 +151,6 @@ class _MappedRows(Rows):
         with _disk_errors(self._file):
             self._file.unlink()
         return self._empty
-
-    def taken(self) -> np.ndarray:
-        with _disk_errors(self._file), self._file.open("rb") as opened:
-            opened.seek(_HEADER)
-            content = opened.read()
-        with _disk_errors(self._file):
-            self._file.unlink()
-        return np.frombuffer(content, self._empty.dtype).reshape(self._count, *self._empty.shape[1:])
 
     def _write(self, content, mode: str) -> None:
         with _disk_errors(self._file), self._file.open(mode) as out:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import codecs
 import io
 import re
-from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -74,15 +73,6 @@ class FileBytes:
             begin, size = begin + size, BYTES_AT_ONCE
         return -1
 
-    def rfind(self, text: bytes) -> int:
-        """The last position of a short text; -1 where there is none."""
-        for end in range(self._size, 0, -BYTES_AT_ONCE):
-            begin = max(end - BYTES_AT_ONCE, 0)
-            found = self[begin : end + len(text) - 1].rfind(text)
-            if found >= 0:
-                return begin + found
-        return -1
-
     def count(self, text: bytes, begin: int, end: int) -> int:
         """The number of times that a text of one byte occurs between two positions."""
         places = range(begin, end, BYTES_AT_ONCE)
@@ -101,63 +91,24 @@ def _read_of(file: Path) -> Iterator[None]:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
 
 
-@contextmanager
-def _utf_16_of(file: Path) -> Iterator[None]:
-    try:
-        yield
-    except UnicodeDecodeError as error:
-        raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
-
-
-class _Utf16Bytes(FileBytes):
-    """Text in UTF-16 as UTF-8. Raises InputRefused."""
-
-    def __init__(self, file: Path):
-        super().__init__(file)
-        self._codec = "utf-16-le" if super()._read(0, 2) == codecs.BOM_UTF16_LE else "utf-16-be"
-        decoder = codecs.getincrementaldecoder(self._codec)()
-        self._begins, self._places = [2], [0]  # of blocks of whole letters, in the file and as UTF-8
-        for at in range(2, self._size, BYTES_AT_ONCE):
-            end = min(at + BYTES_AT_ONCE, self._size)
-            with _utf_16_of(file):
-                text = decoder.decode(super()._read(at, end), final=end == self._size)
-            self._begins.append(end - len(decoder.getstate()[0]))
-            self._places.append(self._places[-1] + len(text.encode()))
-        self._size = self._places[-1]
-
-    def _read(self, begin: int, end: int) -> bytes:
-        first, last = bisect_right(self._places, begin) - 1, bisect_left(self._places, end)
-        found = super()._read(self._begins[first], self._begins[last]).decode(self._codec).encode()
-        return found[begin - self._places[first] : end - self._places[first]]
-
-
-class _OldLines(FileBytes):
-    """Text whose lines end in \\r, as old Macs have it, with \\n."""
-
-    def __init__(self, content: FileBytes):
-        self._content, self._size = content, len(content)
-        self._block, self._begin = b"", 0
-
-    def _read(self, begin: int, end: int) -> bytes:
-        return self._content[begin:end].replace(b"\r", b"\n")
-
-
-def content_of(file: Path) -> FileBytes:
-    """The content of a file, read piece by piece; text in UTF-16 as UTF-8. Raises InputRefused."""
+def content_of(file: Path) -> Content:
+    """The content of a file, in pieces; text in UTF-16 as UTF-8, as a whole. Raises InputRefused."""
     content = FileBytes(Path(file))
-    return _Utf16Bytes(Path(file)) if content[:2] in _UTF_16 else content
+    return read_bytes(file) if content[:2] in _UTF_16 else content
 
 
-def text_content(file: Path) -> FileBytes:
+def text_content(file: Path) -> Content:
     """content_of a text file, with lines that end in \\n. Raises InputRefused."""
     content = content_of(file)
     require_text(file, content[:4096])
     return with_newlines(content)
 
 
-def with_newlines(content: FileBytes) -> FileBytes:
-    """Text with lines that end in \\n, where all end in \\r; else itself."""
-    return content if content.find(b"\n") >= 0 or content.find(b"\r") < 0 else _OldLines(content)
+def with_newlines(content: Content) -> Content:
+    """Text with lines that end in \\n. Where all end in \\r, as old Macs have it, it is read as a whole."""
+    if content.find(b"\n") >= 0 or content.find(b"\r") < 0:
+        return content
+    return content[:].replace(b"\r", b"\n")
 
 
 def pieces_of(content: Content, begin: int = 0, stop: int | None = None) -> Iterator[tuple[int, bytes]]:
@@ -214,8 +165,10 @@ def read_bytes(file: Path) -> bytes:
     with _read_of(file):
         raw = Path(file).read_bytes()
     if raw[:2] in _UTF_16:
-        with _utf_16_of(file):
+        try:
             return raw.decode("utf-16").encode()
+        except UnicodeDecodeError as error:
+            raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
     return raw
 
 

@@ -9,11 +9,9 @@ import numpy as np
 
 from .algebra import dot, norm
 from .errors import InputRefused, place_text
-from .exact import orient2d
+from .work import native_module
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
-_ROUNDING = 1e-9  # relative: points nearer to a plane may be on it
-_FEW = 16  # triangles: with so many, all others are compared with each
 
 
 def welded(vertices: np.ndarray) -> np.ndarray:
@@ -91,86 +89,17 @@ def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     return [loop for loop in loops if len(loop) > 2]
 
 
-def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(P,) how far the nearest triangle is from each point, up to rounding."""
-    corners = vertices[triangles]
-    found = np.full(len(points), np.inf)
-    for number, point in enumerate(points):
-        found[number] = distances_of_pairs(np.broadcast_to(point, (len(corners), 3)), corners).min()
-    return found
-
-
-def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(K,) how far each point (K, 3) is from the triangle of its row (K, 3, 3), up to rounding of what is
-    near it: long triangles have their plane from their shorter edges, taken from their nearest corner."""
-    rows = np.arange(len(points))
-    edges = np.roll(corners, -1, axis=1) - corners
-    longest = (edges * edges).sum(axis=2).argmax(axis=1)
-    normal = cross(edges[rows, (longest + 1) % 3], edges[rows, (longest + 2) % 3])
-    normal = normal / np.linalg.norm(normal, axis=1)[:, None]
-    apart = points[:, None] - corners
-    nearest = (apart * apart).sum(axis=2).argmin(axis=1)
-    height = (apart[rows, nearest] * normal).sum(axis=1)
-    inside = np.ones(len(points), bool)
-    found = np.full(len(points), np.inf)
-    for first, second in _EDGES:
-        begin, along = corners[:, first], corners[:, second] - corners[:, first]
-        inside &= (cross(along, points - begin) * normal).sum(axis=1) >= 0
-        share = ((points - begin) * along).sum(axis=1) / (along * along).sum(axis=1)
-        nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
-        found = np.minimum(found, np.linalg.norm(points - nearest, axis=1))
-    return np.where(inside, np.abs(height), found)
-
-
 def unit_normals(corners: np.ndarray) -> np.ndarray:
     """(T, 3) the normals of triangles (T, 3, 3), of length 1."""
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return normals / norm(normals)[:, None]
 
 
-def nearest_triangles(
-    points: np.ndarray, reach: np.ndarray, corners: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """(P,) of triangles (T, 3, 3) the nearest to each point (P, 3), the first of equally near ones, and how
-    far it is; -1 and infinite where none is nearer than `reach` (P,)."""
-    boxes = np.stack([points - reach[:, None], points + reach[:, None], points], axis=1)
-    pairs = pairs_at_planes(boxes, corners)
-    away = distances_of_pairs(points[pairs[:, 0]], corners[pairs[:, 1]])
-    within = away < reach[pairs[:, 0]]
-    pairs, away = pairs[within], away[within]
-    order = np.lexsort((pairs[:, 1], away, pairs[:, 0]))
-    pairs, away = pairs[order], away[order]
-    is_nearest = np.diff(pairs[:, 0], prepend=-1) != 0
-    number, distance = np.full(len(points), -1), np.full(len(points), np.inf)
-    number[pairs[is_nearest, 0]] = pairs[is_nearest, 1]
-    distance[pairs[is_nearest, 0]] = away[is_nearest]
-    return number, distance
-
-
-def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
-    if len(first) > len(second):
-        return crossing_pairs(second, first)[:, ::-1]
-    low, high = extents(second)
-    order = np.argsort(low[:, 0], kind="stable")
-    low, high = low[order], high[order]
-    widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
-    lowest, highest = extents(first)
-    begin = np.searchsorted(low[:, 0], lowest[:, 0] - widest, "left")
-    end = np.searchsorted(low[:, 0], highest[:, 0], "right")
-    found = []
-    for number in range(len(first)):
-        some = slice(begin[number], end[number])
-        near = ((high[some] >= lowest[number]) & (low[some] <= highest[number])).all(axis=1)
-        rows = order[some][near]
-        found.append(np.column_stack([np.full(len(rows), number), rows]))
-    return np.concatenate(found) if found else np.empty((0, 2), np.int64)
-
-
 def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(K, 2) rows of triangles in plan (N, 3, 2) and (M, 3, 2) that have a common area (exact): no edge of
     one separates them."""
-    pairs = crossing_pairs(first, second)
+    native = native_module()
+    orient2d, pairs = native.orient2d, native.meeting_boxes(first, second)
     one, other = first[pairs[:, 0]], second[pairs[:, 1]]
     apart = np.zeros(len(pairs), bool)
     for triangle, corners in ((one, other), (other, one)):
@@ -181,44 +110,10 @@ def overlapping_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return pairs[~apart]
 
 
-def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
-    """As crossing_pairs, without pairs in which the box of the first is farther than `near` from the plane of
-    the second."""
-    low, high = extents(first)
-    middle, reach = (low + high) / 2, (high - low) / 2 + near
-    a, b, c = second.transpose(1, 0, 2)
-    normal = cross(b - a, c - a)
-    if len(second) <= _FEW:
-        found = [np.empty((0, 2), np.int64)]
-        low, high, middle, reach = (np.ascontiguousarray(each.T) for each in (low, high, middle, reach))
-        for number, (lowest, highest) in enumerate(zip(*extents(second), strict=True)):
-            kept = _near_planes(a[number, :, None], normal[number, :, None], middle, reach)
-            for k in range(3):
-                kept &= (high[k] >= lowest[k]) & (low[k] <= highest[k])
-            rows = np.flatnonzero(kept)
-            found.append(np.column_stack([rows, np.full(len(rows), number)]))
-        return np.concatenate(found)
-    one, other = crossing_pairs(first, second).T
-    kept = _near_planes(a[other].T, normal[other].T, middle[one].T, reach[one].T)
-    return np.column_stack([one[kept], other[kept]])
-
-
-def _near_planes(a: np.ndarray, normal: np.ndarray, middle: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """(K,) bool: whether boxes, given by their middles and half sizes (3, K), may meet the planes through
-    points a (3, K) or (3, 1)."""
-    off = size = allowed = 0.0
-    for k in range(3):
-        away = normal[k] * (middle[k] - a[k])
-        off = off + away
-        size = size + np.abs(away)
-        allowed = allowed + np.abs(normal[k]) * reach[k]
-    return ~(np.abs(off) > allowed + _ROUNDING * (size + allowed))
-
-
 def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(N,) bool: the triangles of `first` (N, 3, 3) that an edge of one of `second` (M, 3, 3) passes, or
     whose own edge passes one of these; touching counts, up to rounding."""
-    pairs = pairs_at_planes(first, second)
+    pairs = native_module().meeting_boxes(first, second)
     found = np.zeros(len(first), bool)
     for start in range(0, len(pairs), 1 << 16):
         some = pairs[start : start + (1 << 16)]
@@ -262,7 +157,7 @@ def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.
     return low / (low - high)
 
 
-class NoTwoSides(Exception):
+class NoTwoSidesError(Exception):
     """A surface that returns to itself the other way round; edge: its ends (2, 3)."""
 
     def __init__(self, edge: np.ndarray):
@@ -274,7 +169,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """The triangles (T, 3) int32, each turned so that it goes on from its neighbors.
 
     The first triangle of each connected part stays as it is, unless most of the part then faces the other way
-    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSides.
+    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSidesError.
     """
     same = welded(vertices)[triangles]
     edges = edges_of(same)
@@ -306,7 +201,7 @@ def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
                     turned[other], part[other] = wanted, parts
                     waiting.append(other)
                 elif turned[other] != wanted:
-                    raise NoTwoSides(vertices[edges[edge]])
+                    raise NoTwoSidesError(vertices[edges[edge]])
         parts += 1
     result = np.where(turned[:, None] == 1, triangles[:, ::-1], triangles)
     if parts > 1:

@@ -47,7 +47,7 @@ def build_stage(
     project = replace(given, rocks=[entry.rock for entry in inputs])
 
     def task(work: Work) -> SomeModel:
-        structures = None if model.structures is None else model.structures.stage(m)
+        structures = model.structures.stage(m)
         built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
         timings = {"intersect": time.perf_counter() - began}
         return type(model).of(
@@ -65,10 +65,10 @@ def intersect(
     threads: int,
     start: float,
     end: float,
-    structures: Structures | None = None,
+    structures: Structures,
 ) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
-    if structures is not None:
+    if structures.is_divided:
         return build_joined(work, inputs, structures, cells, threads, start, end)
     native = native_module()
     rocks = [entry.native() for entry in inputs]
@@ -90,7 +90,7 @@ def assemble(
     threads: int,
     timings: dict[str, float],
     start: float,
-    structures=None,
+    structures: Structures,
 ) -> ModelData:
     """The model that these cells are of."""
     began = time.perf_counter()
@@ -100,10 +100,7 @@ def assemble(
         work.step(0.8)
         blocks = list_blocks(inputs, built.volumes, own, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
-        kinds = [0] * len(names)
-        if structures is not None:
-            names += structures.names
-            kinds += structures.kinds
+        kinds = [0] * len(names) + structures.kinds
         compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
         model = ModelData(
             own,
@@ -114,7 +111,7 @@ def assemble(
             compartment_names=compartment_names,
             compartment_sides=sides,
             structures=structures,
-            surface_names=names,
+            surface_names=names + structures.names,
             project=project,
             rock_inputs=inputs,
             warnings=_warnings(inputs, built, blocks, structures),
@@ -125,22 +122,21 @@ def assemble(
     return model
 
 
-def _complex(inputs: list[RockInput], built: BuiltCells, structures: Structures | None) -> CellComplex:
+def _complex(inputs: list[RockInput], built: BuiltCells, structures: Structures) -> CellComplex:
     """The cells with blocks numbered without those that cannot exist."""
     exists = [
         number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
     ]
-    if structures is not None:
-        exists += [structures.has_block(number) for number in range(len(structures))]
+    exists += [structures.has_block(number) for number in range(len(structures))]
     block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
     cell_block = block_of_surface[built.complex.cell_block].astype(np.int32, copy=False)
     return replace(built.complex, cell_block=cell_block)
 
 
-def _surfaces(inputs: list[RockInput], structures: Structures | None) -> SurfaceArrays:
+def _surfaces(inputs: list[RockInput], structures: Structures) -> SurfaceArrays:
     """The surfaces, then the structures."""
     surfaces = [entry.surface(number) for entry in inputs for number in range(len(entry.surfaces))]
-    return SurfaceArrays.of(surfaces if structures is None else [*surfaces, *structures.shapes])
+    return SurfaceArrays.of([*surfaces, *structures.shapes])
 
 
 def _first_block(entry: RockInput) -> int:
@@ -149,11 +145,11 @@ def _first_block(entry: RockInput) -> int:
 
 
 def list_blocks(
-    inputs: list[RockInput], volumes: np.ndarray, own: CellComplex, structures: Structures | None
+    inputs: list[RockInput], volumes: np.ndarray, own: CellComplex, structures: Structures
 ) -> list[Block]:
     """The blocks of some cells; without cells those that may be."""
     total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
-    bodies = [] if structures is None else structures.blocks_of_bodies()
+    bodies = structures.blocks_of_bodies()
     total += len(bodies)
     cells, components = own.count_blocks(total)
     blocks: list[Block] = []
@@ -191,15 +187,14 @@ def list_blocks(
 
 
 def _warnings(
-    inputs: list[RockInput], built: BuiltCells, blocks: list[Block], structures: Structures | None
+    inputs: list[RockInput], built: BuiltCells, blocks: list[Block], structures: Structures
 ) -> list[BuildWarning]:
     warnings = [warning for entry in inputs for warning in entry.warnings]
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
     for kind, surface, items, text in built.warnings:
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         warnings.append(BuildWarning(text, kind, rock, named, items))
-    if structures is not None:
-        warnings += warnings_where_rock_is(inputs, built, structures)
+    warnings += warnings_where_rock_is(inputs, built, structures)
     for number, entry in enumerate(inputs):
         if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
             text = "a single surface does not bound a block"

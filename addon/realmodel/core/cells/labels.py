@@ -9,11 +9,9 @@ from ..base.build_warning import BuildWarning
 from ..structures.parts.parts import Structures, compartment_names, compartment_of
 from .built_cells import BuiltCells, CellParts
 
-_NONE = np.empty((0, 0), np.uint8)  # no structure divides a block
-
 
 def cell_compartments(
-    inputs: list, built: BuiltCells, structures: Structures | None
+    inputs: list, built: BuiltCells, structures: Structures
 ) -> tuple[np.ndarray, list[str], np.ndarray]:
     """(C,) int32 the compartment of each cell, the names of the compartments that have cells, and (N, F) int8
     the side of each fault that they lie on, 0 where it does not divide them.
@@ -21,33 +19,32 @@ def cell_compartments(
     A compartment lies on one side of each fault that divides its blocks: where faults die out their two sides
     are one compartment, and what is younger than a fault is not divided by it.
     """
-    if structures is None or built.parts is None:
+    if built.parts is None:
         rock_of = np.repeat(np.arange(len(inputs)), [len(entry.surfaces) for entry in inputs])
         block = built.complex.cell_block
-        return compartments(inputs, CellParts(np.zeros(len(block), np.int32), block, rock_of, _NONE), None)
+        none = np.empty((0, len(rock_of)), np.uint8)  # no structure divides a block
+        own = CellParts(np.zeros(len(block), np.int32), block, rock_of, none)
+        return compartments(inputs, own, structures)
     return compartments(inputs, built.parts, structures)
 
 
 def compartments(
-    inputs: list, own: CellParts, structures: Structures | None
+    inputs: list, own: CellParts, structures: Structures
 ) -> tuple[np.ndarray, list[str], np.ndarray]:
     """As cell_compartments, of the parts of some cells."""
     rock_of, block, part = own.rock, own.own_block, own.part
-    parts = 1 if structures is None else len(structures.sides)
+    parts = len(structures.sides)
     kind = block.astype(np.int64) * parts + part
     has_cells = np.bincount(kind, minlength=1) > 0
     kinds = np.flatnonzero(has_cells)
     block, part = kinds // parts, kinds % parts
-    rows = rock_of[block][:, None]
-    if structures is not None:
-        count = len(structures.faults)
-        divides = own.divided[:count].astype(bool) & ~_dying(structures)[:, None]
-        rows = np.column_stack([rows, np.where(divides.T[block], structures.sides[part, :count], 0)])
-    rows = rows.astype(np.int32)
+    count = len(structures.faults)
+    divides = own.divided[:count].astype(bool) & ~_dying(structures)[:, None]
+    sides = np.where(divides.T[block], structures.sides[part, :count], 0)
+    rows = np.column_stack([rock_of[block], sides]).astype(np.int32)
     distinct, label = np.unique(rows, axis=0, return_inverse=True)
     label = label.ravel()[(np.cumsum(has_cells) - 1)[kind]]
-    faults = [] if structures is None else [fault.name for fault in structures.faults]
-    names = compartment_names(faults, distinct[:, 1:])
+    names = compartment_names([fault.name for fault in structures.faults], distinct[:, 1:])
     rocks = [inputs[number].rock.name for number in distinct[:, 0].tolist()]
     if len(inputs) > 1:
         names = [f"{rock}: {name}" if name else rock for rock, name in zip(rocks, names, strict=True)]
@@ -66,5 +63,5 @@ def warnings_where_rock_is(inputs: list, built: BuiltCells, structures: Structur
     parts = [] if built.parts is None else np.unique(built.parts.part).tolist()
     for entry in inputs:
         held = {compartment_of(structures, entry, part) for part in parts}
-        found += [warning for members, warning in entry.structure.warnings if held.intersection(members)]
+        found += [warning for members, warning in entry.divided().warnings if held.intersection(members)]
     return found

@@ -47,7 +47,7 @@ class ModelData:
     cell_compartment: np.ndarray = None  # type: ignore[assignment]  # likewise: all in one
     compartment_names: list[str] = field(default_factory=list)
     compartment_sides: np.ndarray | None = field(default=None, repr=False)
-    structures: Structures | None = field(default=None, repr=False)
+    structures: Structures = field(default_factory=lambda: Structures([], [], [], []), repr=False)
 
     @classmethod
     def of(cls, data: ModelData) -> Self:

@@ -107,7 +107,6 @@ def bedding_of(
 def _age(model: ModelData, block: int, layer: np.ndarray) -> float:
     if layer[block] != _NO_LAYER:
         return float(layer[block])
-    assert model.structures is not None  # a block that is no layer is a body
     body = model.blocks[block].surface - len(model.surface_names) + len(model.structures.bodies)
     return model.structures.times[body].get(model.blocks[block].rock, 0) + 0.5
 

@@ -5,6 +5,7 @@ polygons."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -80,6 +81,48 @@ class MeshParts:
         return PolygonMesh(coordinates, self.offsets, self.corners, None, self.edges, self.corner_edges)
 
 
+class _Triangles(NamedTuple):
+    """Triangles (M, 3) of an intersection, and where they come from.
+
+    source: (M,), the operand of each; origin: its triangle there; polygon: its polygon there. weights: (M, 3,
+    3), of the corners of the origin at its corners. between: (M, 3), the corners of the operand that it lies
+    between. on_edge: (M, 3), the operand's edge that its edges lie on, -1: none. is_whole: (M,), whether its
+    polygon was not divided.
+    """
+
+    triangles: np.ndarray
+    source: np.ndarray
+    origin: np.ndarray
+    polygon: np.ndarray
+    weights: np.ndarray
+    between: np.ndarray
+    on_edge: np.ndarray
+    is_whole: np.ndarray
+
+
+def _triangles_of(
+    found: Intersection, rows: np.ndarray, is_turned: np.ndarray, operands: tuple[Operand, Operand]
+) -> _Triangles:
+    source, origin = found.source[rows], found.source_triangle[rows]
+    count = len(rows)
+    polygon, is_whole = np.empty(count, np.int64), np.zeros(count, bool)
+    between, on_edge = np.empty((count, 3), np.int64), np.empty((count, 3), np.int64)
+    of = _Triangles(
+        found.triangles[rows], source, origin, polygon, np.empty((count, 3, 3)), between, on_edge, is_whole
+    )
+    for number, operand in enumerate(operands):
+        own = source == number
+        of.weights[own] = _barycentric(
+            found.vertices[of.triangles[own]], operand.vertices[operand.triangles[origin[own]]]
+        )
+        polygon[own] = operand.triangle_polygons[origin[own]]
+        between[own] = operand.triangle_corners[origin[own]]
+        pieces = np.bincount(found.source_triangle[found.source == number], minlength=len(operand.triangles))
+        on_edge[own] = _edges_of(found, number, rows[own], pieces, of.weights[own], operand)
+        is_whole[own] = _whole_polygons(operand, origin[own], pieces, polygon[own], is_turned[own])
+    return of
+
+
 def mesh_of_parts(
     found: Intersection,
     rows: np.ndarray,
@@ -92,41 +135,18 @@ def mesh_of_parts(
     rows: (M,) of the triangles. is_turned: (M,) bool, which are turned around. mirror: all are turned around
     once more. The polygons are in the order of the operands and of their polygons.
     """
-    source, origin = found.source[rows], found.source_triangle[rows]
-    triangles = found.triangles[rows]
-    weights = np.empty((len(rows), 3, 3))
-    polygon = np.empty(len(rows), np.int64)
-    between = np.empty((len(rows), 3), np.int64)  # corners of the operand that a triangle lies between
-    on_edge = np.empty((len(rows), 3), np.int64)
-    is_whole = np.zeros(len(rows), bool)
-    for number, operand in enumerate(operands):
-        own = source == number
-        weights[own] = _barycentric(
-            found.vertices[triangles[own]], operand.vertices[operand.triangles[origin[own]]]
-        )
-        polygon[own] = operand.triangle_polygons[origin[own]]
-        between[own] = operand.triangle_corners[origin[own]]
-        pieces = np.bincount(found.source_triangle[found.source == number], minlength=len(operand.triangles))
-        on_edge[own] = _edges_of(found, number, rows[own], pieces, weights[own], operand)
-        is_whole[own] = _whole_polygons(operand, origin[own], pieces, polygon[own], is_turned[own])
+    triangles, source, origin, polygon, weights, between, on_edge, is_whole = _triangles_of(
+        found, rows, is_turned, operands
+    )
     key = np.lexsort((np.arange(len(rows)), polygon, source))
-    first = np.ones(len(rows), bool)  # of its face: of a whole polygon only one triangle stands for it
     same = (np.diff(source[key]) == 0) & (np.diff(polygon[key]) == 0) & is_whole[key][1:]
-    first[1:] = ~same
-    faces = key[first]
-
+    faces = key[np.append(True, ~same)[: len(key)]]  # of a whole polygon only one triangle stands for it
     turned = is_turned[faces] ^ mirror
     sizes = np.full(len(faces), 3, np.int64)
     for number, operand in enumerate(operands):
         there = is_whole[faces] & (source[faces] == number)
         sizes[there] = np.diff(operand.offsets)[polygon[faces[there]]]
-    offsets = np.concatenate([[0], np.cumsum(sizes)])
-    corner_face = np.repeat(np.arange(len(faces)), sizes)
-    within = np.arange(offsets[-1]) - offsets[corner_face]
-    backward = turned[corner_face]
-    within = np.where(backward, (sizes[corner_face] - within) % sizes[corner_face], within)
-    # where a face is turned around, the edge after a corner is the one before it
-    within_edge = np.where(backward, (within - 1) % sizes[corner_face], within)
+    offsets, corner_face, within, within_edge = _corners_of(sizes, turned)
 
     row = faces[corner_face]
     small = ~is_whole[row]
@@ -160,31 +180,40 @@ def mesh_of_parts(
     corners = corners.ravel().astype(np.int32)
     offsets = offsets.astype(np.int32)
     edges, edge_of_corner = native_module().polygon_edges(offsets, corners, len(used))
-    face_source = source[faces]
-    sources = []
-    for number, operand in enumerate(operands):
-        at = np.flatnonzero(face_source[corner_face] == number)
+
+    def source_of(number: int, operand: Operand) -> Source:
+        at = np.flatnonzero(source[row] == number)
         vertices, first_at = np.unique(corners[at], return_index=True)
         known = at[corner_edge[at] >= 0]
         own_edges, first_edge = np.unique(edge_of_corner[known], return_index=True)
-        own_faces = np.flatnonzero(face_source == number)
-        sources.append(
-            Source(
-                vertices,
-                operand.corner_vertices[corner_of[at[first_at]]],
-                corner_weights[at[first_at]],
-                own_edges,
-                corner_edge[known[first_edge]],
-                own_faces,
-                polygon[faces[own_faces]],
-                at,
-                corner_of[at],
-                corner_weights[at],
-            )
+        own_faces = np.flatnonzero(source[faces] == number)
+        return Source(
+            vertices,
+            operand.corner_vertices[corner_of[at[first_at]]],
+            corner_weights[at[first_at]],
+            own_edges,
+            corner_edge[known[first_edge]],
+            own_faces,
+            polygon[faces[own_faces]],
+            at,
+            corner_of[at],
+            corner_weights[at],
         )
-    meeting = np.intersect1d(*(edge_of_corner[own.corners] for own in sources))
-    one, other = sources
+
+    one, other = (source_of(number, operand) for number, operand in enumerate(operands))
+    meeting = np.intersect1d(edge_of_corner[one.corners], edge_of_corner[other.corners])
     return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, (one, other), meeting)
+
+
+def _corners_of(sizes: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Of the corners (C,) of faces with so many each, some of which are turned around: offsets (F + 1,), the
+    face of each, its number within the face, and that of the edge after it, before the face was turned."""
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    face = np.repeat(np.arange(len(sizes)), sizes)
+    within = np.arange(offsets[-1]) - offsets[face]
+    within = np.where(turned[face], (sizes[face] - within) % sizes[face], within)
+    # where a face is turned around, the edge after a corner is the one before it
+    return offsets, face, within, np.where(turned[face], (within - 1) % sizes[face], within)
 
 
 def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -> np.ndarray:

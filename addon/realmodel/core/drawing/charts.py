@@ -66,7 +66,7 @@ class Axes:
         """The box, ticks with their numbers, and the names of the axes."""
         x, y, width, height = self.box
         size, drawing = self.size, self.drawing
-        drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6, layer=layer)
+        drawing.rectangle((x, y, width, height), stroke=BLACK, line=0.6, layer=layer)
         values, texts, widest = _y_ticks(self.y_range, height, size)
         for value, text in zip(values, texts, strict=True):
             ((_, at),) = self.at([(self.x_range[0], value)]).tolist()
@@ -107,22 +107,19 @@ def left_margin(y_range: tuple[float, float], height: float, size: float) -> flo
 
 def legend(
     drawing: Drawing,
-    x: float,
-    y: float,
+    at: tuple[float, float],
     title: str,
     entries: Sequence[tuple[str, Color]],
     size=8.0,
     layer="",
 ) -> None:
-    """A title, then boxes of color with their names, the first on top.
-
-    x, y: the upper left corner.
-    """
+    """A title, then boxes of color with their names, the first on top. at: the upper left corner."""
+    x, y = at
     drawing.text(x, y - size, title, size, layer=layer)
     y -= TITLE * size
     for number, (name, color) in enumerate(entries):
         base = y - (number + 1) * LINE * size + 0.35 * size
-        drawing.rectangle(x, base - 0.2 * size, 1.6 * size, 1.1 * size, color, GRAY, 0.4, layer)
+        drawing.rectangle((x, base - 0.2 * size, 1.6 * size, 1.1 * size), color, GRAY, 0.4, layer)
         drawing.text(x + 2.2 * size, base, name, size, layer=layer)
 
 
@@ -144,8 +141,8 @@ def color_bar(
     x, y, width, height = box
     step = height / len(colors)
     for number, color in enumerate(np.asarray(colors)[:, :3].tolist()):
-        drawing.rectangle(x, y + number * step, width, height - number * step, tuple(color))
-    drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6)
+        drawing.rectangle((x, y + number * step, width, height - number * step), tuple(color))
+    drawing.rectangle(box, stroke=BLACK, line=0.6)
     values = ticks(*limits, max(3, int(height / (2.5 * size))))
     for value, text in zip(values, tick_texts(values), strict=True):
         at = y + height * ((value - limits[0]) / ((limits[1] - limits[0]) or 1.0))
@@ -155,12 +152,15 @@ def color_bar(
         drawing.text(x, y + height + 0.6 * size, label, size)
 
 
-def scale_bar(drawing: Drawing, x: float, y: float, most: float, scale: float, unit: str, size=8.0) -> None:
-    """A bar of a round length, at most `most` points long, from (x, y) to the right. scale: points for one
+def scale_bar(
+    drawing: Drawing, at: tuple[float, float], most: float, scale: float, unit: str, size=8.0
+) -> None:
+    """A bar of a round length, at most `most` points long, from a place to the right. scale: points for one
     unit."""
+    x, y = at
     length = round_length(most / scale)
     step = length * scale / 2
-    drawing.rectangle(x, y, step, 0.5 * size, BLACK)
-    drawing.rectangle(x, y, 2 * step, 0.5 * size, stroke=BLACK)
+    drawing.rectangle((x, y, step, 0.5 * size), BLACK)
+    drawing.rectangle((x, y, 2 * step, 0.5 * size), stroke=BLACK)
     for share, text in ((0.0, "0"), (1.0, f"{tick_texts(np.array([length]))[0]} {unit}")):
         drawing.text(x + 2 * step * share, y + 0.8 * size, text, size, anchor="middle")

@@ -73,7 +73,9 @@ class Drawing:
         arrays = [np.asarray(ring, np.float64) for ring in ([rings] if single else rings)]
         self.items.append(Polygon(arrays, fill, stroke, width, layer))
 
-    def rectangle(self, x, y, width, height, fill=None, stroke=None, line=0.5, layer="") -> None:
+    def rectangle(self, box, fill=None, stroke=None, line=0.5, layer="") -> None:
+        """box: x, y, width, height."""
+        x, y, width, height = box
         corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
         self.polygon(corners, fill, stroke, line, layer)
 

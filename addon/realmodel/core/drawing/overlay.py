@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,28 +82,26 @@ def draw_overlay(
     eye: Eye,
     shown: Shown,
     keys: Sequence[ColorKey],
-    north: bool,
-    scale: bool,
-    axes: bool,
+    parts: Collection[str],
     margins: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Drawing:
-    """A Drawing as large as the picture. keys: its legends. margins: what is covered at the left and right,
-    and below the legends, in points."""
+    """A Drawing as large as the picture. keys: its legends. parts: those of "north", "scale" and "axes" that
+    it has. margins: what is covered at the left and right, and below the legends, in points."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
-    if axes:
+    if "axes" in parts:
         _axes(drawing, eye, shown)
     for key in keys:
         left = _legend(drawing, key, left, margins[2] + _MARGIN)
-    if scale:
+    if "scale" in parts:
         _scale_bar(drawing, eye, shown, left, right)
-    if north:
+    if "north" in parts:
         _north_arrow(drawing, eye, right)
     return drawing
 
 
 def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) -> None:
-    drawing.rectangle(x, y, width, height, _PAPER, (0.0, 0.0, 0.0, 0.25), 0.6)
+    drawing.rectangle((x, y, width, height), _PAPER, (0.0, 0.0, 0.0, 0.25), 0.6)
 
 
 def legend_extent(key: ColorKey) -> tuple[float, float]:
@@ -132,7 +130,7 @@ def _legend(drawing: Drawing, key: ColorKey, left: float, below: float) -> float
     _paper(drawing, left, below, width, height)
     inner, top = left + _PAD, below + height - _PAD
     if key.colors is None or key.limits is None:
-        legend(drawing, inner, top, key.title, key.entries, SIZE)
+        legend(drawing, (inner, top), key.title, key.entries, SIZE)
     else:
         drawing.text(inner, top - SIZE, key.title, SIZE)
         color_bar(drawing, (inner, below + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
@@ -159,7 +157,7 @@ def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: flo
     height = 2.2 * SIZE + 1.3 * SIZE * len(notes) + 1.2 * pad
     _paper(drawing, left, _MARGIN, width, height)
     base = _MARGIN + height - 2.6 * SIZE
-    scale_bar(drawing, left + pad + ends, base, most, scale, shown.unit, SIZE)
+    scale_bar(drawing, (left + pad + ends, base), most, scale, shown.unit, SIZE)
     for number, note in enumerate(notes):
         drawing.text(left + pad, base - (number + 1.2) * 1.3 * SIZE, note, 0.85 * SIZE)
 
@@ -256,5 +254,5 @@ def _label(drawing: Drawing, at: np.ndarray, text: str, anchor: str) -> None:
     x, y = at.tolist()
     width = text_width(text, SIZE)
     left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
-    drawing.rectangle(left - 1.5, y - 0.25 * SIZE, width + 3, 1.2 * SIZE, (1.0, 1.0, 1.0, 0.7))
+    drawing.rectangle((left - 1.5, y - 0.25 * SIZE, width + 3, 1.2 * SIZE), (1.0, 1.0, 1.0, 0.7))
     drawing.text(x, y, text, SIZE, anchor=anchor)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.work import native_module, on_threads
-from ..proof.closed_form import AIR, history
-from ..proof.random_points import closed_forms
+from ..base.work import run
+from ..proof.closed_form import blocks_of_all, closed_forms
 
 
 def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
@@ -19,30 +18,7 @@ def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
     point that lies on it within a rounding may get either side.
     """
     points = np.ascontiguousarray(points, np.float64)
-    found = np.full(len(points), AIR, np.int64)
-    if model.structures is not None:
-        for form in closed_forms(model):
-            own = form.blocks_at(points)
-            found = np.where(own != AIR, own, found)
-        return found
-    plan = np.ascontiguousarray(points[:, :2])
-    number = {block.surface: n for n, block in enumerate(model.blocks)}
-    first = 0
-    for entry in model.rock_inputs:
-        blocks = [number.get(first + k, AIR) for k in range(len(entry.surfaces))]
-        first += len(entry.surfaces)
-        heights = [_heights(shape, plan, threads) for shape in entry.surfaces]
-        rules = [surface.rule for surface in entry.rock.surfaces]
-        base = entry.rock.base_elevation
-        own = history(points[:, 2], heights, rules, blocks, base is not None)
-        if base is not None:
-            own[points[:, 2] < base] = AIR
-        if entry.region is not None:
-            nodes, triangles = entry.region
-            flat = np.column_stack([nodes, np.zeros(len(nodes))])
-            own[np.isnan(_heights((flat, triangles), plan, threads))] = AIR
-        found = np.where(own != AIR, own, found)
-    return found
+    return run(lambda work: blocks_of_all(work, closed_forms(model), points, threads))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +47,3 @@ class Probabilities:
     def colors(self, block_colors: np.ndarray) -> np.ndarray:
         """(N, 3) the mean of the colors of the blocks (B, 3), white for none."""
         return np.clip(self.probability @ block_colors + self._outside[:, None], 0.0, 1.0)
-
-
-def _heights(shape, plan: np.ndarray, threads: int) -> np.ndarray:
-    vertices, triangles = shape
-    return native_module().surface_heights(vertices, triangles, plan, execution=on_threads(threads))

@@ -14,8 +14,7 @@ from ..cells.assembly import assemble, intersect
 from ..heights.draws import Draw
 from ..heights.turning_bands import Frame, Noise
 from ..model.model import Model
-from ..structures.setup import make_structures
-from ..surfaces.prepare import interpolate_rock
+from ..structures.setup import make_surfaces
 from ..surfaces.rock_input import RockInput
 
 _INTERPOLATED = 0.5  # of the time
@@ -75,18 +74,10 @@ class Realizer:
         return Model.of(assemble(work, project, inputs, built, threads, timings, 0.98, structures))
 
     def _interpolated(self, work: Work, number: int, threads: int) -> tuple:
-        """The rock masses with heights drawn, and the structures or None."""
+        """The rock masses with heights drawn, and the structures."""
         inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
         project = self.model.project
-        structures = None
-        if self.model.structures is not None:
-            structures = make_structures(
-                work, project, project.faults, project.bodies, inputs, threads, None, 0.0, _INTERPOLATED
-            )
-        else:
-            steps = np.linspace(0.0, _INTERPOLATED, len(inputs) + 1).tolist()
-            for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
-                interpolate_rock(work, entry, start, end, threads)
+        structures = make_surfaces(work, project, inputs, threads, None, 0.0, _INTERPOLATED)
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:
@@ -100,7 +91,7 @@ class Realizer:
         draws, noise = [], None
         for each, correlation in enumerate(self.correlations(entry)):
             noise = Noise((self.seed, number, rock, each), noise, correlation)
-            given = None if self.model.structures is not None else entry.interpolations[each]
+            given = None if self.model.structures.is_divided else entry.interpolations[each]
             draws.append(Draw(self._frame, noise, self._known.setdefault((rock, each), {}), given))
         return replace(
             entry,

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from ..base.atomic import Outputs, writable_folder, writable_target
 from ..base.errors import UsageError
@@ -202,22 +203,22 @@ def no_step(_share: float) -> None:
     """For callers without progress."""
 
 
+class ExportOptions(NamedTuple):
+    """What some formats of models take. cell_size: of regular grids; contour_interval: of maps; cells: of
+    formats with the model's cells, in place of the exact ones."""
+
+    cell_size: float | Sequence[float] | None = None
+    contour_interval: float | None = None
+    cells: PolyhedralMesh | None = None
+
+
 def write_model(
-    model,
-    path: str | Path,
-    outputs: Outputs,
-    step: Step = no_step,
-    cell_size: float | Sequence[float] | None = None,
-    contour_interval: float | None = None,
-    cells: PolyhedralMesh | None = None,
+    model, path: str | Path, outputs: Outputs, options: ExportOptions, step: Step = no_step
 ) -> None:
-    """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
-    regular grids; contour_interval: of maps; cells: of formats with the model's cells, in place of the exact
-    ones."""
+    """Writes a model in the format of the path's ending; it appears with the other outputs."""
     known = format_for(path)
-    more: list = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
-    more += [cells] * known.has_cells
-    known.write(model, path, outputs, step, *more)
+    taken = zip(options, (known.has_cell_size, known.has_contours, known.has_cells), strict=True)
+    known.write(model, path, outputs, step, *(option for option, is_taken in taken if is_taken))
 
 
 def save_model(
@@ -234,11 +235,12 @@ def save_model(
     check_tolerance(path, tolerance)
     cells = None if tolerance is None else model.cleaned_cells(tolerance, threads=model.threads)
     with Outputs() as outputs:
-        write_model(model, path, outputs, step, cell_size, contour_interval, cells)
+        write_model(model, path, outputs, ExportOptions(cell_size, contour_interval, cells), step)
 
 
 __all__ = [
     "FORMATS",
+    "ExportOptions",
     "ModelFormat",
     "check_tolerance",
     "format_for",

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import numpy as np
 
 from ..base.atomic import Outputs
+from ..base.vendored import vendored
 from ..results.regular_cells import plan_grids, regular_cells
 from ..simulation.patches import solver_names
 from .encodings.text_rows import write_rows
@@ -18,7 +20,6 @@ from .encodings.vtk_xml import write_image
 from .shapes.parts import distinct_names
 
 _NO_HEIGHT = -9999.0
-_TIFF_TYPES = {"s": 2, "H": 3, "I": 4, "d": 12, "Q": 16}
 
 
 def write_block_table(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
@@ -97,62 +98,37 @@ def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], Non
 
 def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
     """A GeoTIFF (OGC 19-008) with a band for each grid, 64-bit numbers, uncompressed, named by GDAL's
-    metadata.
-    It has no coordinate system: a project has none."""
+    metadata. It has no coordinate system: a project has none."""
+    tifffile = vendored("tifffile", "tifffile", "writing GeoTIFF")
     grids, bands = _grids(model, size)
     step(0.5)
     rows, columns = grids.top.shape
     (west, north), (dx, dy) = grids.north_west, grids.size
     items = "".join(
-        f'<Item name="DESCRIPTION" sample="{k}" role="description">{_xml(name)}</Item>'
+        f'<Item name="DESCRIPTION" sample="{k}" role="description">{escape(name)}</Item>'
         for k, (name, _) in enumerate(bands)
     )
-    count, plane = len(bands), 8 * rows * columns
-    tags = [
-        (256, "I", [columns]),
-        (257, "I", [rows]),
-        (258, "H", [64] * count),
-        (259, "H", [1]),
-        (262, "H", [1]),
-        (273, "Q", [0] * count),  # filled in below
-        (277, "H", [count]),
-        (278, "I", [rows]),
-        (279, "Q", [plane] * count),
-        (284, "H", [2]),  # band after band
-        (338, "H", [0] * (count - 1)),
-        (339, "H", [3] * count),
-        (33550, "d", [dx, dy, 0.0]),
-        (33922, "d", [0.0, 0.0, 0.0, west, north, 0.0]),
-        (34735, "H", [1, 1, 0, 1, 1025, 0, 1, 1]),  # heights are of areas
-        (42112, "s", f"<GDALMetadata>{items}</GDALMetadata>\0".encode()),
-        (42113, "s", b"nan\0"),
+    metadata = f"<GDALMetadata>{items}</GDALMetadata>".encode()
+    tags = [  # code, type, count, values
+        (33550, "d", 3, (dx, dy, 0.0)),
+        (33922, "d", 6, (0.0, 0.0, 0.0, west, north, 0.0)),
+        (34735, "H", 8, (1, 1, 0, 1, 1025, 0, 1, 1)),  # heights are of areas
+        (42112, "s", len(metadata) + 1, metadata),
+        (42113, "s", 4, b"nan"),
     ]
-    tags = [tag for tag in tags if len(tag[2])]
-    size_of = 16 + 8 + 20 * len(tags) + 8
-    for _ in range(2):  # BigTIFF: the second time with the places that the first one found
-        directory, more = b"", b""
-        for code, kind, values in tags:
-            form = {"s": "u1", "H": "<u2", "I": "<u4", "Q": "<u8"}.get(kind, "<f8")
-            raw = np.array(list(values), form).tobytes()
-            entry = (
-                np.array([code, _TIFF_TYPES[kind]], "<u2").tobytes()
-                + np.array([len(values)], "<u8").tobytes()
-            )
-            if len(raw) <= 8:
-                entry += raw.ljust(8, b"\0")
-            else:
-                entry += np.array([size_of + len(more)], "<u8").tobytes()
-                more += raw + b"\0" * (-len(raw) % 8)
-            directory += entry
-        begin = size_of + len(more)
-        tags = [(c, k, [begin + plane * n for n in range(count)] if c == 273 else v) for c, k, v in tags]
     with outputs.file(path) as file:
-        file.write(b"II+\0" + np.array([8, 0], "<u2").tobytes() + np.array([16, len(tags)], "<u8").tobytes())
-        file.write(directory + bytes(8) + more)
-        for _, values in bands:
-            file.write(np.ascontiguousarray(values, "<f8"))
+        tifffile.imwrite(
+            file,
+            (np.ascontiguousarray(values, "<f8") for _, values in bands),
+            shape=(len(bands), rows, columns),
+            dtype="<f8",
+            bigtiff=True,
+            byteorder="<",
+            photometric="minisblack",
+            planarconfig="separate",
+            rowsperstrip=rows,
+            extratags=[(*tag, True) for tag in tags],
+            metadata=None,
+            software=False,
+        )
     step(1.0)
-
-
-def _xml(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import platform
 import sys
-from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -70,7 +70,7 @@ def model_report(
         "peak_memory": _peak_memory(),
         "versions": versions(),
     }
-    if model.structures is not None:
+    if model.structures.is_divided:
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
         report["bodies"] = [body_entry(body) for body in model.structures.bodies]
@@ -266,16 +266,6 @@ def _peak_memory() -> int | None:
     return peak if sys.platform == "darwin" else 1024 * peak
 
 
-def write_report(
-    model,
-    path: str | Path,
-    file,
-    stage: int | None = None,
-    validation: ValidationReport | None = None,
-    erosion: Erosion | None = None,
-    mesh=None,
-    cells=None,
-) -> None:
-    """Writes the report as UTF-8 JSON to an open binary file."""
-    report = model_report(model, stage, validation, erosion, mesh, cells)
+def write_report(report: dict, file: BinaryIO) -> None:
+    """Writes a report as UTF-8 JSON."""
     file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

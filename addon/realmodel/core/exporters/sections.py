@@ -22,9 +22,11 @@ import numpy as np
 from .. import drawing
 from ..results.section_data import FenceData
 from ..results.section_drawing import draw_section
+from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_grid
 from .endings import by_ending
 from .npz import write_arrays
+from .shapes.obj import write_polygons
 from .shapes.part_formats import part_writers
 from .shapes.parts import section_parts
 
@@ -72,21 +74,14 @@ def write_section_vtu(section, file: BinaryIO) -> None:
 
 def write_section_obj(section, file: BinaryIO) -> None:
     """Polygons by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
-    text = io.StringIO()
-    text.write("# section of a RealModel model: groups are blocks, materials are library ids\n")
-    for vertex in section.vertices.tolist():
-        text.write(f"v {vertex[0]!r} {vertex[1]!r} {vertex[2]!r}\n")
-    order = np.argsort(section.block, kind="stable")
-    last = None
-    for k in order.tolist():
-        block = int(section.block[k])
-        if block != last:
-            name = re.sub(r"\s+", "_", section.block_names[block].strip())
-            text.write(f"g block_{block}_{name}\nusemtl property_{int(section.property[k])}\n")
-            last = block
-        corners = section.polygon_vertices[section.offsets[k] : section.offsets[k + 1]] + 1
-        text.write(f"f {' '.join(map(str, corners.tolist()))}\n")
-    file.write(text.getvalue().encode("utf-8"))
+    file.write(b"# section of a RealModel model: groups are blocks, materials are library ids\n")
+    write_rows(file, "v %r %r %r", section.vertices)
+    sizes = np.diff(section.offsets)
+    for block in np.unique(section.block).tolist():
+        own = section.block == block
+        name = re.sub(r"\s+", "_", section.block_names[block].strip())
+        file.write(f"g block_{block}_{name}\nusemtl property_{section.property[own][0]}\n".encode())
+        write_polygons(file, sizes[own], section.polygon_vertices[np.repeat(own, sizes)] + 1)
 
 
 def write_section_csv(section, file: BinaryIO) -> None:

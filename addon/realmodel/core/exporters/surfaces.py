@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
@@ -14,7 +13,7 @@ from ..base.atomic import Outputs
 from ..base.errors import UsageError
 from .encodings.vtk_xml import write_grid
 from .npz import joined_attributes, texts, write_arrays
-from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries
+from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries, write_report
 from .shapes.part_formats import part_writers
 from .shapes.parts import surface_parts
 
@@ -109,4 +108,4 @@ def write_surfaces_report(surfaces, file: BinaryIO) -> None:
         "warnings": warning_entries(surfaces),
         "versions": versions(),
     }
-    file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())
+    write_report(report, file)

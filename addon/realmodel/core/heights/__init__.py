@@ -5,7 +5,7 @@ Comes in: points (N, 3), nodes (M, 2), a method with its options. Goes out: an `
 nodes, with variances and warnings; or heights drawn at random that the points allow.
 """
 
-from .interpolation import Interpolation
+from .interpolation import Interpolation, Task
 from .run import chosen, heights, left_out_heights
 
-__all__ = ["Interpolation", "chosen", "heights", "left_out_heights"]
+__all__ = ["Interpolation", "Task", "chosen", "heights", "left_out_heights"]

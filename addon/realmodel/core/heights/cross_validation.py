@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..base.errors import InputRefused, UsageError
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
-from . import left_out_heights
+from . import Task, left_out_heights
 from .interpolate import checked_nodes, checked_points, checked_triangles, method_settings
 from .mis_ties import without_mis_ties
 from .run import heights
@@ -112,24 +112,25 @@ def cross_validate(
 
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
-            return validate(work, points, method, settings, threads, int(folds), mesh)
+            nodes, triangles = (np.empty((0, 2)), None) if mesh is None else mesh
+            return validate(method, Task(work, points, nodes, settings, threads, triangles), int(folds))
 
     return run(task, progress, cancel)
 
 
-def validate(
-    work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh=None
-) -> CrossValidation:
-    """cross_validate within a work that is already running, from checked arrays and settings."""
-    points = distinct_points(points)
+def validate(method: str, task: Task, folds: int) -> CrossValidation:
+    """cross_validate within a work that is already running. task: with the nodes and triangles of a mesh for
+    a method that works on one."""
+    points = distinct_points(task.points)
+    task = replace(task, points=points)
     if len(points) < 2:
         raise InputRefused("cross-validation needs at least two points", item="points")
     variance, variogram = None, None
     if METHODS[method].leaves_one_out:
-        result = left_out_heights(work, points, method, settings, threads)
+        result = left_out_heights(method, task)
         z, variance, variogram = result.z, result.variance, result.variogram
     else:
-        z = _in_folds(work, points, method, settings, threads, min(folds, len(points)), mesh)
+        z = _in_folds(method, task, min(folds, len(points)))
     errors = z - points[:, 2]
     standardised = None
     if variance is not None:
@@ -147,20 +148,17 @@ def distinct_points(points: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(points[np.sort(first)])
 
 
-def _in_folds(work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh) -> np.ndarray:
+def _in_folds(method: str, task: Task, folds: int) -> np.ndarray:
+    points = task.points
     z = np.empty(len(points))
     for fold in range(folds):
-        work.step(fold / folds)
+        task.work.step(fold / folds)
         out = np.zeros(len(points), bool)
         out[fold::folds] = True
         places, others = np.ascontiguousarray(points[out, :2]), np.ascontiguousarray(points[~out])
-        if mesh is None:
-            z[out] = heights(work, others, places, method, settings, threads).z
+        if task.triangles is None:
+            z[out] = heights(method, replace(task, points=others, nodes=places)).z
         else:
-            nodes, triangles = mesh
-            shape = np.column_stack(
-                [nodes, heights(work, others, nodes, method, settings, threads, triangles).z]
-            )
-            surface_heights = native_module().surface_heights
-            z[out] = work.native(surface_heights, shape, triangles, places, execution=on_threads(threads))
+            shape = np.column_stack([task.nodes, heights(method, replace(task, points=others)).z])
+            z[out] = task.run(native_module().surface_heights, shape, task.triangles, places)
     return z

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.work import Work
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights
@@ -23,7 +22,7 @@ from .interpolation import Task
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
 from .surface_reference import heights_of
-from .turning_bands import Frame, Noise, gaussian_field
+from .turning_bands import Frame, GaussianField, Noise
 
 _LEAST_POINTS = 3  # fewer show no variogram: their heights count as exact
 _NUGGET = -1  # where a noise has the numbers of the nugget; those of lines count from 0
@@ -52,44 +51,38 @@ class Draw:
     known: dict[bytes, _Known]
     given: Interpolation | None = None
 
-    def heights(
-        self, work: Work, points, nodes, method: str, settings: dict, threads: int, triangles, surfaces
-    ) -> Interpolation:
+    def heights(self, method: str, task: Task) -> Interpolation:
         """As heights.heights, with a random error added, which is 0 at the points."""
-        own = self._known(work, points, nodes, method, settings, threads, triangles, surfaces)
+        own = self._known(method, task)
         if own.variogram is None:
             return own.result
-        points, _ = without_mis_ties(points[own.counts])
-        anisotropy = own.settings.get("anisotropy")
-        at_points, at_nodes = self._field(work, own.variogram, anisotropy, points[:, :2], nodes, threads)
+        points, _ = without_mis_ties(task.points[own.counts])
+        field = GaussianField(own.variogram, own.settings.get("anisotropy"), self.frame, self.noise)
+        at_points, at_nodes = self._field(task, field, points[:, :2])
         drawn = np.column_stack([points[:, :2], at_points])
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
-        interpolated = heights(work, drawn, nodes, own.method, plain, threads, triangles)
+        interpolated = heights(own.method, replace(task, points=drawn, settings=plain, surfaces={}))
         z = own.result.z + (at_nodes - interpolated.z)
-        bounded = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
-        return replace(own.result, z=within_bounds(bounded, z, own.result.z))
+        return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
 
-    def _known(self, work, points, nodes, method, settings, threads, triangles, surfaces) -> _Known:
+    def _known(self, method: str, task: Task) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on
         others, as those change, too."""
-        if any(isinstance(settings.get(option), str) for option in SURFACE_OPTIONS):
-            result = heights(work, points, nodes, method, settings, threads, triangles, surfaces)
-            return self._found(work, points, nodes, method, settings, threads, surfaces, result)
-        key = hashlib.sha256(np.ascontiguousarray(points)).digest() + hashlib.sha256(nodes).digest()
+        if any(isinstance(task.settings.get(option), str) for option in SURFACE_OPTIONS):
+            return self._of_result(method, task, heights(method, task))
+        points, nodes = np.ascontiguousarray(task.points), task.nodes
+        key = hashlib.sha256(points).digest() + hashlib.sha256(nodes).digest()
         if key not in self.known:
-            result = self.given or heights(
-                work, points, nodes, method, settings, threads, triangles, surfaces
-            )
-            self.known[key] = self._found(work, points, nodes, method, settings, threads, surfaces, result)
+            self.known[key] = self._of_result(method, task, self.given or heights(method, task))
         return self.known[key]
 
-    def _found(self, work, points, nodes, method, settings, threads, surfaces, result) -> _Known:
+    def _of_result(self, method: str, task: Task, result: Interpolation) -> _Known:
+        points, settings = task.points, task.settings
         counts = np.ones(len(points), bool)
         if "thickness_method" in settings:
             if settings["thickness"] is not None:
                 return _Known(result, method, settings, None, counts)
-            task = Task(work, points, nodes, settings, threads, surfaces=surfaces or {})
             under = heights_of(task, settings["to"], np.ascontiguousarray(points[:, :2]), "to")
             counts = np.isfinite(under)
             points = points - np.column_stack([np.zeros((len(points), 2)), under])
@@ -102,7 +95,7 @@ class Draw:
         plain, _ = without_mis_ties(points[counts])
         if variogram is None and len(np.unique(plain[:, :2], axis=0)) >= _LEAST_POINTS:
             asked = checked_options("kriging", {})
-            variogram = structure(Task(work, plain, nodes, asked, threads)).variogram
+            variogram = structure(replace(task, points=plain, settings=asked)).variogram
         if variogram is not None and "variogram" in settings:
             settings = {**settings, "variogram": variogram.settings()}
             if result.neighbours is not None:
@@ -111,18 +104,14 @@ class Draw:
             variogram = None
         return _Known(result, method, settings, variogram, counts)
 
-    def _field(
-        self, work, variogram: Variogram, anisotropy: dict | None, points, nodes, threads
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """S at points (P, 2) and nodes (N, 2); at equal positions it is equal."""
-        at_points, at_nodes = (
-            gaussian_field(work, variogram, anisotropy, self.frame, places, self.noise, threads)
-            for places in (points, nodes)
-        )
-        if variogram.nugget > 0:
+    def _field(self, task: Task, field: GaussianField, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S at points (P, 2) and the nodes; at equal positions it is equal."""
+        nodes = task.nodes
+        at_points, at_nodes = (field.at(task.work, places, task.threads) for places in (points, nodes))
+        if field.variogram.nugget > 0:
             _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
             noise = self.noise.normal(_NUGGET, len(points) + len(nodes))
-            noise *= math.sqrt(variogram.nugget)
+            noise *= math.sqrt(field.variogram.nugget)
             of_points, of_nodes = noise[: len(points)][first[place.reshape(-1)]], noise[len(points) :]
             number = {tuple(point): n for n, point in enumerate(points.tolist())}
             for node in np.flatnonzero(np.isin(nodes[:, 0], points[:, 0])):

@@ -10,7 +10,7 @@ from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS, check_method, checked_options
-from . import Interpolation, heights
+from . import Interpolation, Task, heights
 
 
 def interpolate(
@@ -49,7 +49,7 @@ def interpolate(
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            return heights(work, points, nodes, method, settings, threads, triangles)
+            return heights(method, Task(work, points, nodes, settings, threads, triangles))
 
     return run(task, progress, cancel)
 

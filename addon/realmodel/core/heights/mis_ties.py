@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.errors import place_text
-from ..base.mapped_arrays import ROWS_AT_ONCE, Gather, Room, in_memory, in_pieces
+from ..base.mapped_arrays import ROWS_AT_ONCE, Gather, MakeZeros, in_memory, in_pieces
 
 # of the height range of all points: beyond this it is a mistake in the data, and interpolation refuses it
 LARGEST_SHARE = 0.05
@@ -16,22 +16,24 @@ _AT_ONCE = 1 << 18  # points among which those at one place are looked for
 
 
 def without_mis_ties(
-    points: np.ndarray, room: Room = np.zeros, gather: Gather = in_memory
+    points: np.ndarray, zeros: MakeZeros = np.zeros, gather: Gather = in_memory
 ) -> tuple[np.ndarray, str | None]:
     """Points with one height at each position, and a warning (None: nothing was changed).
 
     points: (P, 3) float64, which may be in a file. Where heights at one position differ by no more than a
     twentieth of the height range of all points, their mean replaces the first of them; larger contradictions
-    are left in. room, gather: where arrays are kept.
+    are left in. zeros, gather: where arrays are kept.
     """
-    found = _Places(points, room, is_once=False)
+    found = _Places(points, zeros, is_once=False)
     return found.kept(gather), found.warning()
 
 
-def each_place_once(points: np.ndarray, room: Room, gather: Gather) -> tuple[np.ndarray, str | None, bool]:
+def each_place_once(
+    points: np.ndarray, zeros: MakeZeros, gather: Gather
+) -> tuple[np.ndarray, str | None, bool]:
     """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
-    found = _Places(points, room, is_once=True)
+    found = _Places(points, zeros, is_once=True)
     return found.kept(gather), found.warning(), not found.has_contradictions
 
 
@@ -39,14 +41,14 @@ class _Places:
     """Selects the points that are left when those at one position are merged. is_once: also those with equal
     heights."""
 
-    def __init__(self, points: np.ndarray, room: Room, is_once: bool):
+    def __init__(self, points: np.ndarray, zeros: MakeZeros, is_once: bool):
         self._points = points
-        self._keeps = room((len(points),), bool)
+        self._keeps = zeros((len(points),), bool)
         self._changed: list[tuple[np.ndarray, np.ndarray]] = []  # numbers and heights
         self._count, self._worst = 0, (0.0, 0.0, 0.0)  # how far apart, and where
         self.has_contradictions = False
         most = LARGEST_SHARE * float(np.ptp(points[:, 2])) if len(points) else 0.0
-        for numbers, rows in _by_place(points, room):
+        for numbers, rows in _by_place(points, zeros):
             self._settle(numbers, rows, most, is_once)
 
     def _settle(self, numbers: np.ndarray, rows: np.ndarray, most: float, is_once: bool) -> None:
@@ -96,7 +98,7 @@ class _Places:
         return f"{places} several heights, {most}: their mean is used"
 
 
-def _by_place(points: np.ndarray, room: Room) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _by_place(points: np.ndarray, zeros: MakeZeros) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Numbers of points, ascending, and the points, so that all at one place come together: all at once, or
     sorted by what their coordinates are mixed to."""
     if len(points) <= _AT_ONCE:
@@ -107,7 +109,12 @@ def _by_place(points: np.ndarray, room: Room) -> Iterator[tuple[np.ndarray, np.n
     for piece in in_pieces(points):
         ends[1:] += np.bincount(_mixed(piece, groups), minlength=groups)
     ends = np.cumsum(ends)
-    rows, numbers, at, begin = room(points.shape, float), room((len(points),), np.int64), ends[:-1].copy(), 0
+    rows, numbers, at, begin = (
+        zeros(points.shape, float),
+        zeros((len(points),), np.int64),
+        ends[:-1].copy(),
+        0,
+    )
     for piece in in_pieces(points):
         group = _mixed(piece, groups)
         order = np.argsort(group, kind="stable")

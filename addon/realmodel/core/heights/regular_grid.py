@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.elementary import hypot
 from ..base.errors import InputRefused, place_text
-from ..base.mapped_arrays import ROWS_AT_ONCE, Room, in_pieces
+from ..base.mapped_arrays import ROWS_AT_ONCE, MakeZeros, in_pieces
 from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 
@@ -93,10 +93,10 @@ def bilinear(task: Task, grid: RegularGrid | None = None) -> Result:
 
 
 def _heights(
-    points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, room: Room = np.zeros
+    points: np.ndarray, grid: RegularGrid, low: np.ndarray, high: np.ndarray, zeros: MakeZeros = np.zeros
 ) -> np.ndarray:
     """The heights of the nodes from `low` to `high`; NaN where there is no point."""
-    z = room(tuple((high - low + 1).tolist()), float)
+    z = zeros(tuple((high - low + 1).tolist()), float)
     z.fill(np.nan)
     for piece in in_pieces(points):
         node = grid.nodes(piece)
@@ -106,12 +106,12 @@ def _heights(
 
 
 def require_one_height(
-    points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None, room: Room = np.zeros
+    points: np.ndarray, grid: RegularGrid, z: np.ndarray | None = None, zeros: MakeZeros = np.zeros
 ) -> None:
     """Raises InputRefused where two points that are one node have different heights. z: of all nodes, of one
-    point each, where they are known. room: for them where they are not."""
+    point each, where they are known. zeros: for them where they are not."""
     if z is None:
-        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1, room)
+        z = _heights(points, grid, np.zeros(2, np.int64), np.array(grid.shape) - 1, zeros)
     for piece in in_pieces(points):
         differs = z[tuple(grid.nodes(piece).T)] != piece[:, 2]
         for bad in piece[differs][:1]:
@@ -122,9 +122,9 @@ def require_one_height(
             )
 
 
-def has_each_node_once(points: np.ndarray, grid: RegularGrid, room: Room) -> bool:
-    """Whether no two points are one node of their grid. room: where it is noted which ones there are."""
-    seen = room(grid.shape, bool).reshape(-1)
+def has_each_node_once(points: np.ndarray, grid: RegularGrid, zeros: MakeZeros) -> bool:
+    """Whether no two points are one node of their grid. zeros: where it is noted which ones there are."""
+    seen = zeros(grid.shape, bool).reshape(-1)
     for piece in in_pieces(points):
         i, j = grid.nodes(piece).T
         node = i * grid.shape[1] + j

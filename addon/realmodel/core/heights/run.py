@@ -17,18 +17,13 @@ from .interpolation import Interpolation, Result, Task, run_method
 from .mis_ties import without_mis_ties
 
 
-def heights(
-    work: Work, points, nodes, method: str, settings: dict, threads: int, triangles=None, surfaces=None
-) -> Interpolation:
-    """interpolate within a work that is already running, from checked arrays and complete settings.
-
-    surfaces: what options may name, (vertices (V, 3), triangles (T, 3)) by name.
-    """
-    native = native_module()
-    if not len(points) and METHODS[method].needs_points(settings):
+def heights(method: str, task: Task) -> Interpolation:
+    """interpolate within a work that is already running. Points may contradict one another."""
+    native, settings, nodes = native_module(), task.settings, task.nodes
+    if not len(task.points) and METHODS[method].needs_points(settings):
         raise InputRefused("there are no points", item="points")
-    points, mis_ties = without_mis_ties(points)
-    task = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
+    points, mis_ties = without_mis_ties(task.points)
+    task = replace(task, points=points)
     reason = ""
     try:
         if method == "auto":
@@ -123,11 +118,10 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
     ]
 
 
-def left_out_heights(work: Work, points, method: str, settings: dict, threads: int) -> Result:
+def left_out_heights(method: str, task: Task) -> Result:
     """The height of each point, estimated from the others by a method that leaves one out."""
     native = native_module()
-    task = Task(work, points, np.empty((0, 2)), settings, threads)
     try:
-        return run_method(method, replace(task, left_out=True))
+        return run_method(method, replace(task, nodes=np.empty((0, 2)), left_out=True))
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error

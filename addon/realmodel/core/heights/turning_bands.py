@@ -76,66 +76,63 @@ class Frame:
     high: np.ndarray
 
 
-def gaussian_field(
-    work: Work,
-    variogram: Variogram,
-    anisotropy: dict | None,
-    frame: Frame,
-    nodes: np.ndarray,
-    noise: Noise,
-    threads: int,
-) -> np.ndarray:
-    """(N,) float64: a field of mean 0 at nodes (N, 2) in a frame, with the variogram's covariance without its
-    nugget.
+@dataclass(frozen=True)
+class GaussianField:
+    """A random field of mean 0 in a frame, with the variogram's covariance without its nugget. anisotropy:
+    {ratio, azimuth} of structures that have none of their own."""
 
-    anisotropy: {ratio, azimuth} of structures that have none of their own.
-    """
-    local = np.ascontiguousarray(nodes - (frame.low + frame.high) / 2)
-    field = np.zeros(len(nodes))
-    for number, part in enumerate(variogram.parts()):
-        if part.sill > 0:
-            field += _of_structure(work, part, anisotropy, frame, local, noise, number, threads)
-    return field
+    variogram: Variogram
+    anisotropy: dict | None
+    frame: Frame
+    noise: Noise
 
+    def at(self, work: Work, nodes: np.ndarray, threads: int) -> np.ndarray:
+        """(N,) float64: the field at nodes (N, 2)."""
+        local = np.ascontiguousarray(nodes - (self.frame.low + self.frame.high) / 2)
+        field = np.zeros(len(nodes))
+        for number, part in enumerate(self.variogram.parts()):
+            if part.sill > 0:
+                field += self._of_structure(work, number, part, local, threads)
+        return field
 
-def _of_structure(
-    work, part: Structure, anisotropy, frame, local, noise: Noise, number, threads
-) -> np.ndarray:
-    east, north = _directions().T[:, :, None]
-    along, across = _to_isotropic(part.anisotropy or anisotropy or NO_ANISOTROPY)
-    directions = east * along + north * across
-    reach = hypot(*(frame.high - frame.low)) / 2
-    reach *= float(norm(directions).max())  # how far lines go, both ways
-    # half of it is as far as covariances count; a process as smooth as these needs them to end near 0
-    length = 2 * max(2 * reach, _ENDS * part.range)
-    samples = int(min(_MOST_SAMPLES, 2 ** math.ceil(math.log2(length / part.range * _STEPS))))
-    step = length / samples
-    distance = np.minimum(np.arange(samples), samples - np.arange(samples)) * step / part.range
-    covariance = _ON_LINE[part.model](distance)
-    spectrum = np.sqrt(np.maximum(np.fft.rfft(covariance).real, 0.0))
-    # between two samples interpolation loses a third of what they differ, on average
-    lost = (1.0 - _ON_LINE[part.model](np.array(step / part.range))) / 3
-    scale = math.sqrt(part.sill / LINES / (1.0 - lost))
-    starts = np.full(_LINES_AT_ONCE, -reach)
-    kept = min(samples, math.ceil(2 * reach / step) + 2)
-    field = np.zeros(len(local))
-    for batch in range(LINES // _LINES_AT_ONCE):
-        work.check()
-        lines = slice(batch * _LINES_AT_ONCE, (batch + 1) * _LINES_AT_ONCE)
-        values = np.empty((_LINES_AT_ONCE, kept))
-        for row in range(_LINES_AT_ONCE):
-            line = number * LINES + lines.start + row
-            values[row] = _process(spectrum, samples, noise, line)[:kept]
-        field += work.native(
-            native_module().line_sums,
-            local,
-            np.ascontiguousarray(directions[lines]),
-            starts,
-            values,
-            step,
-            execution=on_threads(threads),
-        )
-    return scale * field
+    def _of_structure(
+        self, work: Work, number: int, part: Structure, local: np.ndarray, threads: int
+    ) -> np.ndarray:
+        east, north = _directions().T[:, :, None]
+        along, across = _to_isotropic(part.anisotropy or self.anisotropy or NO_ANISOTROPY)
+        directions = east * along + north * across
+        reach = hypot(*(self.frame.high - self.frame.low)) / 2
+        reach *= float(norm(directions).max())  # how far lines go, both ways
+        # half of it is as far as covariances count; a process as smooth as these needs them to end near 0
+        length = 2 * max(2 * reach, _ENDS * part.range)
+        samples = int(min(_MOST_SAMPLES, 2 ** math.ceil(math.log2(length / part.range * _STEPS))))
+        step = length / samples
+        distance = np.minimum(np.arange(samples), samples - np.arange(samples)) * step / part.range
+        covariance = _ON_LINE[part.model](distance)
+        spectrum = np.sqrt(np.maximum(np.fft.rfft(covariance).real, 0.0))
+        # between two samples interpolation loses a third of what they differ, on average
+        lost = (1.0 - _ON_LINE[part.model](np.array(step / part.range))) / 3
+        scale = math.sqrt(part.sill / LINES / (1.0 - lost))
+        starts = np.full(_LINES_AT_ONCE, -reach)
+        kept = min(samples, math.ceil(2 * reach / step) + 2)
+        field = np.zeros(len(local))
+        for batch in range(LINES // _LINES_AT_ONCE):
+            work.check()
+            lines = slice(batch * _LINES_AT_ONCE, (batch + 1) * _LINES_AT_ONCE)
+            values = np.empty((_LINES_AT_ONCE, kept))
+            for row in range(_LINES_AT_ONCE):
+                line = number * LINES + lines.start + row
+                values[row] = _process(spectrum, samples, self.noise, line)[:kept]
+            field += work.native(
+                native_module().line_sums,
+                local,
+                np.ascontiguousarray(directions[lines]),
+                starts,
+                values,
+                step,
+                execution=on_threads(threads),
+            )
+        return scale * field
 
 
 def _process(spectrum: np.ndarray, samples: int, noise: Noise, line: int) -> np.ndarray:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,9 +14,7 @@ from ..cells.assembly import assemble, intersect
 from ..project.build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
-from ..structures.setup import make_structures
-from ..structures.shapes.reading import read_structures
-from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks
+from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
 from .estimate import require_memory
 from .model import Model
@@ -73,33 +70,22 @@ def _build(
         timings[name] += time.perf_counter() - began
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
-        inputs = read_rocks(work, project)
-        faults, bodies, warnings = read_structures(work, project, threads, inputs)
-    for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
-        with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
-            mesh_rock(work, entry)
+        inputs, project = read_inputs(work, project, threads)
+    with timed("mesh"):
+        mesh_inputs(work, inputs, ends["read"], ends["mesh"])
 
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
-    require_memory(taken(), cells, memory, len(faults) + len(bodies))
-    structures = None
+    require_memory(taken(), cells, memory, len(project.faults) + len(project.bodies))
+    start, end = ends["mesh"], ends["interpolate"]
     with timed("interpolate"):
-        if faults or bodies:
-            structures = make_structures(
-                work, project, faults, bodies, inputs, threads, stage, ends["mesh"], ends["interpolate"]
-            )
-        else:
-            parts = _parts(ends["mesh"], ends["interpolate"], len(inputs))
-            for entry, (start, end) in zip(inputs, parts, strict=True):
-                interpolate_rock(work, entry, start, end, threads, stage)
+        structures = make_surfaces(work, project, inputs, threads, stage, start, end)
     inputs = taken()
-    if structures is not None:
-        inputs[0].warnings += warnings
-        structures = structures if stage is None else structures.stage(stage)
+    structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
         built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
-    given = replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+    given = replace(project, rocks=[entry.rock for entry in inputs])
     return Model.of(assemble(work, given, inputs, built, threads, timings, ends["intersect"], structures))
 
 
@@ -114,9 +100,3 @@ def _phase_ends(project: Project) -> dict[str, float]:
     }
     ends = np.cumsum(list(shares.values())) / sum(shares.values())
     return dict(zip(shares, ends.tolist(), strict=True))
-
-
-def _parts(start: float, end: float, count: int) -> list[tuple[float, float]]:
-    """The stretch from `start` to `end` in equal parts."""
-    steps = np.linspace(start, end, count + 1).tolist()
-    return list(itertools.pairwise(steps))

@@ -12,7 +12,8 @@ from ..base.work import Cancel, Progress, Work, native_module, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project, check_project
 from ..settings.method_options import check_threads
-from ..surfaces.prepare import mesh_rock, read_rocks
+from ..structures.setup import mesh_inputs
+from ..surfaces.prepare import read_rocks
 from ..surfaces.rock_input import RockInput
 
 # Bytes for each triangle of the surfaces: a little more than the dearest benchmark took, by cells
@@ -87,9 +88,7 @@ def estimate(
         began = time.perf_counter()
         with work.phase(0.0, 0.7, "reading"):
             inputs = read_rocks(work, project)
-        with work.phase(0.7, 1.0, "meshing"):
-            for entry in inputs:
-                mesh_rock(work, entry)
+        mesh_inputs(work, inputs, 0.7, 1.0)
         read = time.perf_counter() - began
         if stage is not None:
             inputs = [entry.stage(stage) for entry in inputs]

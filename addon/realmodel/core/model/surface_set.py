@@ -18,16 +18,13 @@ from ..heights import Interpolation
 from ..project.build_options import check_stage
 from ..project.project import Project, Rock, check_project
 from ..settings.method_options import check_threads
-from ..structures.parts.parts import Structures, structures_of
-from ..structures.setup import make_structures
-from ..structures.shapes.reading import read_structures
-from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
+from ..structures.parts.parts import Structures
+from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
 from ..surfaces.surface_input import Reader, read_each
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
-_CHOSEN = 0.3  # of the rest of the progress
 
 
 @dataclass(eq=False)
@@ -107,25 +104,9 @@ def _build(
     work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader, flat
 ) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project, reader)
-        faults, bodies, warnings = read_structures(work, project, threads, inputs)
-        inputs[0].warnings += warnings
-    count = len(inputs)
-    for number, entry in enumerate(inputs):
-        begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))
-        with work.phase(begin, end, f"meshing the region of {entry.rock.name}"):
-            mesh_rock(work, entry)
-    structures = structures_of(project, faults, bodies)
-    if faults:
-        structures = make_structures(work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0)
-    else:
-        for number, entry in enumerate(inputs):
-            begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
-            numbers = ()
-            if flat is not None:
-                settle_methods(work, entry, begin, begin + _CHOSEN * (end - begin), threads)
-                numbers = flat(entry.rock)
-            interpolate_rock(work, entry, begin, end, threads, stage, keep, numbers)
+        inputs, with_arrays = read_inputs(work, project, threads, reader)
+    mesh_inputs(work, inputs, _READ, _MESHED, keep)
+    structures = make_surfaces(work, with_arrays, inputs, threads, stage, _MESHED, 1.0, keep, flat)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

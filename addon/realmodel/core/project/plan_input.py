@@ -16,7 +16,7 @@ from ..readers.maps.shapes import Shapes
 from ..readers.maps.wkt import parse_wkt
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.mesh_sizes import AT_WORDS
-from ..settings.point_file import ReadingRefused
+from ..settings.point_file import ReadingError
 from .region_rings import NamedRing, checked_region, given_rings, is_several, rings_of_shapes
 
 Refuse = Callable[..., InputRefused]
@@ -44,7 +44,7 @@ def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]
         return
     try:
         layer.check()
-    except ReadingRefused as error:
+    except ReadingError as error:
         raise refuse(error.what, key, error.advice) from error
     if not is_file(Path(layer.file)):
         raise refuse(f"file not found: {layer.file}", key, "check the path")

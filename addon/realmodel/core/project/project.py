@@ -28,7 +28,7 @@ from ..settings.methods import (
     check_method,
     checked_options,
 )
-from ..settings.point_file import MeshFile, PointFile, ReadingRefused
+from ..settings.point_file import MeshFile, PointFile, ReadingError
 from ..settings.rules import DEFAULT_RULE
 from ..settings.schema import ROCK, SURFACE
 from .library import Library
@@ -330,7 +330,7 @@ def _check_boreholes(rock: Rock, refuse) -> None:
         return
     try:
         rock.boreholes.check()
-    except ReadingRefused as error:
+    except ReadingError as error:
         raise refuse(f"boreholes: {error.what}", "boreholes", error.advice) from error
     for file in rock.boreholes.files:
         if not is_file(file):
@@ -399,7 +399,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
         try:
             if surface.mesh_file is not None:
                 surface.mesh_file.check()
-        except ReadingRefused as error:
+        except ReadingError as error:
             raise refuse(error.what, error.key, error.advice) from error
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given = [] if continues else given
@@ -413,7 +413,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     try:
         if surface.point_file is not None:
             surface.point_file.check()
-    except ReadingRefused as error:
+    except ReadingError as error:
         raise refuse(error.what, error.key, error.advice) from error
     _check_method(surface, refuse, no_points)
     length = rock.edge_length if rock.triangles is None else rock.triangles

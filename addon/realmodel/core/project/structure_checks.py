@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..settings.method_options import OptionRefused, checked, is_name
-from ..settings.point_file import ReadingRefused
+from ..settings.point_file import ReadingError
 from ..settings.schema import FAULT
 from .structure_entries import Body, Fault, body_item, fault_item
 from .structure_history import displaced_surfaces
@@ -120,7 +120,7 @@ def _check_shape(entry, refuse, files: tuple[str, ...]) -> None:
         for file in (entry.mesh_file, *(getattr(entry, key, None) for key in ("point_file", "trace_file"))):
             if file is not None:
                 file.check()
-    except ReadingRefused as error:
+    except ReadingError as error:
         raise refuse(error.what, error.key, error.advice) from error
     file = entry.input_file
     if file is not None and not _is_file(file):

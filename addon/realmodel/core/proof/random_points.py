@@ -9,84 +9,42 @@ import numpy as np
 
 from ..base.errors import place_text
 from ..base.sheet import Sheet
-from ..base.triangles import crossing_pairs, distances_of_pairs
-from ..base.work import Work
-from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
-from .located import OUTSIDE, Locator
+from ..base.work import Work, native_module, on_threads
+from ..surfaces.wrong_sides import heights_at
+from .closed_form import AIR, blocks_of_all, closed_forms
 
 _ROUNDING = 64  # units in the last place of the largest coordinate: nearer points are left undecided
 _LOOKED_AT = 200  # disagreeing points that are tested for rounding
 _SHOWN = 5  # offenders of each test
-_AT_ONCE = 2000  # points between two looks at cancel()
 
 
-def closed_forms(model) -> list[ClosedForm]:
-    """The closed form of each rock mass of a model with structures; blocks have the model's numbers."""
-    structures = model.structures
-    number = {block.surface: n for n, block in enumerate(model.blocks)}
-    count = sum(len(entry.surfaces) for entry in model.rock_inputs)
-    found, first = [], 0
-    for rock, entry in enumerate(model.rock_inputs):
-        own = range(first, first + len(entry.surfaces))
-        bodies = [
-            BodyOfRock(
-                Sheet(body.vertices, body.triangles),
-                structures.times[n][rock],
-                number.get(count + len(structures.faults) + n, AIR),
-            )
-            for n, body in enumerate(structures.bodies)
-            if rock in structures.times[n]
-        ]
-        found.append(
-            ClosedForm(
-                [surface.rule for surface in entry.rock.surfaces],
-                entry.structure.faults,
-                entry.structure.compartments,
-                entry.structure.sheets,
-                [number.get(surface, AIR) for surface in own],
-                entry.rock.base_elevation,
-                bodies,
-                entry.region,
-            )
-        )
-        first += len(entry.surfaces)
-    return found
-
-
-def check_points(work: Work, model, places: int, seed: int) -> list[dict]:
+def check_points(work: Work, model, arrays: dict, places: int, seed: int, threads: int) -> list[dict]:
     """The tests "places" and "surfaces" of a model with structures, as the native part gives those of others:
-    about so many points spread in the model, beside its faces, and beside faults and bodies."""
+    about so many points spread in the model, beside its faces, and beside faults and bodies. arrays: of the
+    model, as native tests take it."""
     random = np.random.default_rng(seed)
     began = time.perf_counter()
     points = _points(model, places, random)
     forms = closed_forms(model)
-    locator = Locator(model)
-    wrong, undecided, looked_at = [], 0, 0
-    for start in range(0, len(points), _AT_ONCE):
-        work.step(start / max(1, len(points)))
-        some = points[start : start + _AT_ONCE]
-        cells = locator.cells(some)
-        is_block = np.where(cells == OUTSIDE, AIR, np.append(model.cell_block, AIR)[cells])
-        said = _said(forms, some)
-        off = np.flatnonzero(is_block != said)
-        near = np.zeros(len(off), bool)
-        left = max(0, _LOOKED_AT - looked_at)
-        if len(off) and left:
-            near[:left] = _are_near(model, forms, locator, some[off[:left]])
-        looked_at += len(off)
-        undecided += int(near.sum())
-        wrong += [(some[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in off[~near]]
-    offenders = [_offender(model, *each) for each in wrong[:_SHOWN]]
-    found = [_entry("places", "points", len(points), len(wrong), undecided, began, offenders)]
-    return [*found, _check_faces(model, places, random)]
 
+    def looked_up(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        cells = work.native(native_module().cells_at, arrays, points, execution=on_threads(threads))
+        return cells, blocks_of_all(work, forms, points, threads)
 
-def _said(forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:
-    blocks = np.full(len(points), AIR, np.int64)
-    for form in forms:
-        own = form.blocks_at(points)
-        blocks = np.where(own != AIR, own, blocks)
-    return blocks
+    cells, said = looked_up(points)
+    is_block = np.where(cells < 0, AIR, np.append(model.cell_block, AIR)[cells])
+    wrong = np.flatnonzero(is_block != said)
+    some = wrong[:_LOOKED_AT]
+    moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
+    moved = [each.reshape(-1, len(moves)) for each in looked_up((points[some, None] + moves).reshape(-1, 3))]
+    # a face or surface that divides rock is nearer than rounding moves the point
+    near = np.any([(each != each[:, :1]).any(axis=1) for each in moved], axis=0)
+    wrong = np.setdiff1d(wrong, some[near])
+    offenders = [
+        _offender(model, points[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in wrong[:_SHOWN]
+    ]
+    found = [_entry("places", "points", len(points), len(wrong), int(near.sum()), began, offenders)]
+    return [*found, _check_faces(work, model, places, random, threads)]
 
 
 def _points(model, places: int, random) -> np.ndarray:
@@ -117,14 +75,6 @@ def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
     return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
 
 
-def _are_near(model, forms: list[ClosedForm], locator: Locator, points: np.ndarray) -> np.ndarray:
-    """(N,) bool: whether a face or surface that divides rock is nearer to a point than rounding moves it."""
-    moves = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) * _rounding(model)
-    moved = (points[:, None] + moves).reshape(-1, 3)
-    found = [each.reshape(-1, len(moves)) for each in (_said(forms, moved), locator.cells(moved))]
-    return np.any([(each != each[:, :1]).any(axis=1) for each in found], axis=0)
-
-
 def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
     names = [f"block '{each.name}'" for each in model.blocks]
     text = f"the model has {names[block] if block >= 0 else 'nothing'}, the closed form "
@@ -139,7 +89,7 @@ def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dic
     }
 
 
-def _check_faces(model, places: int, random) -> dict:
+def _check_faces(work: Work, model, places: int, random, threads: int) -> dict:
     """Whether the middles of some faces lie on the surface, fault or body that the faces name."""
     began = time.perf_counter()
     faces = np.flatnonzero(model.face_surface >= 0)
@@ -153,10 +103,12 @@ def _check_faces(model, places: int, random) -> dict:
         vertices, triangles = model.surface(number)
         if model.surface_kind[number] == 0:
             for sheet in model.sheet_triangles(number):
-                off = np.abs(heights_at(points[own, :2], vertices, sheet) - points[own, 2])
+                z = heights_at(work, Sheet(vertices, sheet), points[own, :2], threads)
+                off = np.abs(z - points[own, 2])
                 away[own] = np.fmin(away[own], off)
         else:
-            away[own] = _distances_within(points[own], vertices[triangles], allowed)
+            nearest, run = native_module().nearest_triangles, on_threads(threads)
+            _, away[own] = work.native(nearest, vertices[triangles], points[own], execution=run)
     wrong = np.flatnonzero(away > allowed)
     slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
     wrong = wrong[~slivers]
@@ -181,18 +133,6 @@ def _width(model, face: int) -> float:
     apart = corners - corners[0]
     area = np.linalg.norm(np.cross(apart[1:-1], apart[2:]).sum(axis=0)) / 2
     return float(area / np.linalg.norm(apart, axis=1).max())
-
-
-def _distances_within(points: np.ndarray, triangles: np.ndarray, allowed: float) -> np.ndarray:
-    """(N,) how far points (N, 3) are from the nearest of triangles (T, 3, 3), up to rounding; of those that
-    are farther than `allowed` only some are measured, and the others infinitely far."""
-    boxes = np.stack([points - allowed, points, points + allowed], axis=1)
-    pairs = crossing_pairs(boxes, triangles)
-    found = np.full(len(points), np.inf)
-    np.minimum.at(found, pairs[:, 0], distances_of_pairs(points[pairs[:, 0]], triangles[pairs[:, 1]]))
-    for n in np.flatnonzero(found > allowed)[:_SHOWN]:
-        found[n] = distances_of_pairs(np.broadcast_to(points[n], (len(triangles), 3)), triangles).min()
-    return found
 
 
 def _rounding(model) -> float:

@@ -204,8 +204,8 @@ def validate(
             found = work.native(native.check_topology, arrays, execution=on_threads(threads))
         if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
-                if model.structures is not None:
-                    found += check_points(work, model, int(places), int(seed))
+                if model.structures.is_divided:
+                    found += check_points(work, model, arrays, int(places), int(seed), threads)
                 else:
                     found += work.native(
                         native.check_samples,
@@ -272,7 +272,7 @@ def _bases(model) -> np.ndarray:
     for block in model.blocks:
         rocks = [block.rock] if block.surface == oldest[block.rock] else []
         if block.surface >= oldest[-1]:
-            if model.structures is None:
+            if not model.structures.times:
                 return np.empty(0)
             rocks = model.structures.times[block.surface - oldest[-1] - len(model.structures.faults)]
         stands = {bases[rock] for rock in rocks} - {np.nan}
@@ -293,7 +293,7 @@ def _block_of_surface(model) -> np.ndarray:
 def _test(entry: dict, model) -> ValidationTest:
     """A test from the dictionary of the native module, in which -1 means no number."""
     number, says = _SAYS[entry["name"]]
-    if model.structures is not None:
+    if model.structures.is_divided:
         says = _SAYS_OF_STRUCTURES.get(entry["name"], says)
     if model.cell_kind == "blocks":
         says = _SAYS_OF_BLOCKS.get(entry["name"], says)

@@ -13,6 +13,7 @@ from .maps.map_input import is_map_layer, read_shapes
 from .maps.shapes import NothingSelected
 from .point_input import RASTER_FORMATS, head_of
 from .tables.points import KNOWN, body_rows, open_table
+from .tables.table_layout import Expected
 
 _NOTHING = "\0"  # no attribute is called so, and none has it
 
@@ -25,7 +26,7 @@ def column_names(file: Path, layer: str | None = None) -> list[str]:
         return []
     if is_map_layer(file, head):
         return list(_nothing_selected(file, layer, _NOTHING).names)
-    table = open_table(file, None, (), {}, KNOWN)
+    table = open_table(file, Expected(known=KNOWN))
     row = next(body_rows(table), [])
     names = table.layout.names or ()
     return [name or str(n) for n, name in enumerate(names, 1)] or [str(n + 1) for n in range(len(row))]
@@ -35,7 +36,7 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
     """The different values of a column, or attribute, in the order of the file. Raises InputRefused."""
     if is_map_layer(file, head_of(file)):
         return list(_nothing_selected(file, layer, column).values)
-    table = open_table(file, None, (column,), {}, KNOWN)
+    table = open_table(file, Expected(None, (column,), KNOWN))
     at = table.column(column)
     return list(dict.fromkeys(row[at] for row in body_rows(table) if at < len(row) and row[at]))
 

@@ -17,7 +17,7 @@ from ..settings.point_file import PointFile
 from .maps.map_input import is_map_layer
 from .point_input import RASTER_FORMATS, head_of, in_model, read_point_file
 from .tables.points import KNOWN, body_rows, open_table
-from .tables.table_layout import plain_name
+from .tables.table_layout import Expected, plain_name
 
 _END_OF_STICK = 999.0  # in all three columns
 _END_LINE = re.compile(rb"^\s*(?:999(?:\.0*)?\s+){2}999(?:\.0*)?\s*$", re.MULTILINE)
@@ -81,7 +81,9 @@ def _pol_sticks(file: Path, step: Step) -> list[np.ndarray]:
 def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str | None:
     """The column of sticks as `where` of a PointFile names it; None where there is none."""
     wanted = () if stick is None else (stick,)
-    table = open_table(file, given.separator, (*(given.columns or ()), *wanted), given.where, KNOWN)
+    table = open_table(
+        file, Expected(given.separator, (*(given.columns or ()), *wanted, *given.where), KNOWN)
+    )
     if stick is not None:
         return str(table.column(stick) + 1)
     names = [plain_name(name) for name in table.layout.names or ()]
@@ -91,7 +93,7 @@ def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str 
 def _table_sticks(
     given: PointFile, file: Path, column: str, model_unit: str
 ) -> tuple[list[np.ndarray], list[str]]:
-    table = open_table(file, given.separator, given.columns or (), given.where, KNOWN)
+    table = open_table(file, Expected(given.separator, (*(given.columns or ()), *given.where), KNOWN))
     at = int(column) - 1
     names = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
     sticks, warnings = [], []

@@ -17,7 +17,7 @@ from ..settings.directions import checked_direction
 from ..settings.map_layer import MapLayer
 from ..settings.method_options import OptionRefused
 from ..settings.point_file import PointFile
-from .maps.map_input import shapes_in_turn
+from .maps.map_input import read_shapes
 from .maps.shapes import Heights, Shapes
 from .maps.wkt import parse_wkt
 from .point_input import OFTEN_NO_VALUE, in_model, refuse_keys
@@ -76,10 +76,8 @@ def read_fault_trace(
         return FaultLines(_lines(parse_wkt(given, None, True), None))
     file = Path(given.file)
     refuse_keys(file, "has lines", given.only_for_tables)
-    shapes = Shapes()
     layer = MapLayer(file, given.layer, given.where)
-    for found in shapes_in_turn(layer, step, Heights(given.height, with_attributes=True)):
-        shapes = found
+    shapes = read_shapes(layer, step=step, heights=Heights(given.height, with_attributes=True))
     missing = [float(value) for value in given.nodata_values if not isinstance(value, str)]
     lines = _lines(shapes, file)
     for line in lines:

@@ -94,8 +94,7 @@ def read_point_file(
         points, warnings = read_map_points(given, step, kept)
     else:
         refuse_keys(file, "is a table", given.only_for_shapes)
-        reading = given.columns, given.where, given.separator, given.decimal, given.nodata_values
-        rows = read_point_rows(file, *reading, step, kept)
+        rows = read_point_rows(given, step, kept)
         points, warnings = rows.points, []
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)

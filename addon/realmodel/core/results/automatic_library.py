@@ -81,8 +81,7 @@ def model_with_library(model: SomeModel) -> SomeModel:
         for entry, rock in zip(model.rock_inputs, project.rocks, strict=False)
     ]
     numbers = [surface.property for rock in project.rocks for surface in rock.surfaces]
-    if model.structures is not None:
-        made.structures = replace(model.structures, bodies=project.bodies)
-        numbers += [0] * len(project.faults) + [body.property for body in project.bodies]
+    made.structures = replace(model.structures, bodies=project.bodies)
+    numbers += [0] * len(project.faults) + [body.property for body in project.bodies]
     made.blocks = [replace(block, property=numbers[block.surface]) for block in model.blocks]
     return made

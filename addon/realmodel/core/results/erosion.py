@@ -96,8 +96,6 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
 
 def _arrivals_of_bodies(model) -> list[tuple[int, int]]:
     """(m, body): that a body came after surface m of some rock mass, oldest first."""
-    if model.structures is None:
-        return []
     return sorted({(m, n) for n, times in enumerate(model.structures.times) for m in times.values()})
 
 
@@ -125,8 +123,6 @@ def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
 
 def _bodies_before(model, rock: int, k: int) -> list[int]:
     """The blocks of bodies that were in a rock mass before its surface k."""
-    if model.structures is None:
-        return []
     first, times = _first_surfaces(model)[-1] + len(model.structures.faults), model.structures.times
     return [
         b
@@ -141,7 +137,8 @@ def _stage_volumes(
     """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
-    bodies = None if model.structures is None else _with_bodies(model.structures, until or (m + 1, 0))
+    structures = model.structures
+    bodies = _with_bodies(structures, until or (m + 1, 0)) if structures.is_divided else None
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)

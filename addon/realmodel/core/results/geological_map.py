@@ -11,7 +11,6 @@ import numpy as np
 
 from ..base.algebra import dot, norm
 from ..base.errors import BuildFailed, InputRefused
-from ..base.exact import orient2d
 from ..base.work import native_module
 from ..project.region_rings import checked_region, given_rings
 from .booleans import intersect
@@ -139,7 +138,7 @@ def _outside(model):
 
 def _rises(corners: np.ndarray) -> np.ndarray:
     """Whether triangles (T, 3, 2 or 3) are counter-clockwise in plan."""
-    return orient2d(*corners[:, :, :2].transpose(1, 0, 2)) > 0
+    return native_module().orient2d(*corners[:, :, :2].transpose(1, 0, 2)) > 0
 
 
 def _edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

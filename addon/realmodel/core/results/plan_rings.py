@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.algebra import dot
 from ..base.errors import BuildFailed
-from ..base.exact import orient2d
+from ..base.work import native_module
 
 Polygon = list[np.ndarray]  # its outline, counter-clockwise, then its holes, clockwise: vertex numbers, open
 
@@ -134,7 +134,7 @@ def _half(points: np.ndarray, at: int, origin: int, way: int) -> int:
 
 
 def _side(points: np.ndarray, a: int, b: int, p: int) -> int:
-    return int(orient2d(points[[a]], points[[b]], points[[p]])[0])
+    return int(native_module().orient2d(points[[a]], points[[b]], points[[p]])[0])
 
 
 def _simple_rings(walk: list[int]) -> list[list[int]]:
@@ -170,5 +170,5 @@ def _contains(points: np.ndarray, outline: np.ndarray, ring: np.ndarray) -> bool
     a, b = points[outline], points[np.roll(outline, -1)]
     crosses = (a[:, 1] <= place[1]) != (b[:, 1] <= place[1])
     a, b = a[crosses], b[crosses]
-    side = orient2d(a, b, np.broadcast_to(place, a.shape))
+    side = native_module().orient2d(a, b, np.broadcast_to(place, a.shape))
     return bool(((side > 0) == (b[:, 1] > a[:, 1])).sum() % 2)

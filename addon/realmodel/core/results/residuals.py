@@ -40,7 +40,7 @@ class Residuals:
 
 def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
     """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
-    if model.structures is None:
+    if not model.structures.is_divided:
         return at_places(*model.surface(number), points[:, :2], model.threads)
     entry = model.rock_inputs[rock]
     structure = entry.divided()

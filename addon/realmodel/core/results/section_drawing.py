@@ -88,7 +88,7 @@ def draw_section(
     _draw_faults(drawing, axes, section)
     axes.frame(*_axis_names(section), layer="Axes")
     _draw_ends(drawing, axes, section, ends, are_beside)
-    legend(drawing, _LEFT + width + _GAP, base + height, _LEGEND, entries, _SIZE, layer="Legend")
+    legend(drawing, (_LEFT + width + _GAP, base + height), _LEGEND, entries, _SIZE, layer="Legend")
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
     drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")

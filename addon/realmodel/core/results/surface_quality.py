@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.work import Cancel, Progress, Work, run
+from ..heights import Task
 from ..heights.cross_validation import CrossValidation, distinct_points, validate
 from ..plots import smallest_angles
 from ..settings.methods import METHODS, checked_options
@@ -76,9 +77,11 @@ def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[Cro
     if len(points) < 2 or len(distinct_points(points)) < 2:
         return None, "it takes two points or more"
     vertices, triangles = model.surface(number)
-    mesh = (np.ascontiguousarray(vertices[:, :2]), triangles) if METHODS[method].on_mesh else None
+    on_mesh = METHODS[method].on_mesh
+    nodes = np.ascontiguousarray(vertices[:, :2]) if on_mesh else np.empty((0, 2))
+    task = Task(work, points, nodes, settings, threads, triangles if on_mesh else None)
     try:
-        return validate(work, points, method, settings, threads, DEFAULT_FOLDS, mesh), ""
+        return validate(method, task, DEFAULT_FOLDS), ""
     except InputRefused as error:
         return None, str(error)
 

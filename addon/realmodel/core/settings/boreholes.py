@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .point_file import ReadingRefused, check_units
+from .point_file import ReadingError, check_units
 
 COLUMNS = ("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination")
 DOWNWARD_DIPS = ("negative", "positive")
@@ -43,19 +43,19 @@ class Boreholes:
         return [Path(file) for file in (self.collars, self.survey, self.picks) if file is not None]
 
     def check(self) -> None:
-        """Raises ReadingRefused for a key that makes no sense."""
+        """Raises ReadingError for a key that makes no sense."""
         if not isinstance(self.columns, Mapping):
             what = f"'columns' must be a table of column names, not {self.columns!r}"
-            raise ReadingRefused("columns", what, 'write columns = { hole = "BHID" }')
+            raise ReadingError("columns", what, 'write columns = { hole = "BHID" }')
         for name, column in self.columns.items():
             if name not in COLUMNS:
                 what = f"'columns' has an unknown column '{name}'"
-                raise ReadingRefused("columns", what, f"there are {', '.join(COLUMNS)}")
+                raise ReadingError("columns", what, f"there are {', '.join(COLUMNS)}")
             is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
             if not is_number and not (isinstance(column, str) and column.strip()):
                 what = f"column '{name}' must be a name or a number from 1, not {column!r}"
-                raise ReadingRefused("columns", what)
+                raise ReadingError("columns", what)
         if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
             what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
-            raise ReadingRefused("downward_dip", what)
+            raise ReadingError("downward_dip", what)
         check_units(self.units)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base.units import METERS
-from .point_file import ReadingRefused, check_where
+from .point_file import ReadingError, check_where
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -41,9 +41,9 @@ class MapLayer:
     units: str | None = None
 
     def check(self) -> None:
-        """Raises ReadingRefused for a key that makes no sense."""
+        """Raises ReadingError for a key that makes no sense."""
         if self.layer is not None and not (isinstance(self.layer, str) and self.layer.strip()):
-            raise ReadingRefused("layer", f"'layer' must be a name, not {self.layer!r}")
+            raise ReadingError("layer", f"'layer' must be a name, not {self.layer!r}")
         check_where(self.where)
         if self.units is not None and self.units not in METERS:
-            raise ReadingRefused("units", f"unknown unit {self.units!r}", f"there are {', '.join(METERS)}")
+            raise ReadingError("units", f"unknown unit {self.units!r}", f"there are {', '.join(METERS)}")

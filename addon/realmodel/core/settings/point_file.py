@@ -12,7 +12,7 @@ from pathlib import Path
 from ..base.units import METERS, factor
 
 
-class ReadingRefused(ValueError):
+class ReadingError(ValueError):
     """A wrong value of a key of PointFile: the key, what is wrong, what to do."""
 
     def __init__(self, key: str, what: str, advice: str | None = None):
@@ -71,7 +71,7 @@ class PointFile:
         return [key for key in ("height", "layer") if getattr(self, key)]
 
     def check(self) -> None:
-        """Raises ReadingRefused for a key that makes no sense."""
+        """Raises ReadingError for a key that makes no sense."""
         if self.columns is not None:
             check_columns(self.columns)
         check_where(self.where)
@@ -82,17 +82,17 @@ class PointFile:
             and not self.separator.isalnum()
             and self.separator not in '.+-"#\n\r'
         ):
-            raise ReadingRefused("separator", f"'separator' must be one character, not {self.separator!r}")
+            raise ReadingError("separator", f"'separator' must be one character, not {self.separator!r}")
         if self.decimal not in (None, ".", ","):
-            raise ReadingRefused("decimal", f'\'decimal\' must be "." or ",", not {self.decimal!r}')
+            raise ReadingError("decimal", f'\'decimal\' must be "." or ",", not {self.decimal!r}')
         if self.decimal == "," == self.separator:
-            raise ReadingRefused("decimal", "a comma cannot be both 'separator' and 'decimal'")
+            raise ReadingError("decimal", "a comma cannot be both 'separator' and 'decimal'")
         if not all(_is_value(value) for value in self.nodata_values):
-            raise ReadingRefused("nodata", f"'nodata' must be a number or text, not {self.nodata!r}")
+            raise ReadingError("nodata", f"'nodata' must be a number or text, not {self.nodata!r}")
         for key in ("height", "layer"):
             name = getattr(self, key)
             if name is not None and not (isinstance(name, str) and name.strip()):
-                raise ReadingRefused(key, f"'{key}' must be a name, not {name!r}")
+                raise ReadingError(key, f"'{key}' must be a name, not {name!r}")
         check_units(self.units)
         check_z_axis(self.z_axis)
 
@@ -106,7 +106,7 @@ class MeshFile:
     z_axis: str = "up"
 
     def check(self) -> None:
-        """Raises ReadingRefused for a unit or an axis that is not known."""
+        """Raises ReadingError for a unit or an axis that is not known."""
         check_units(self.units)
         check_z_axis(self.z_axis)
 
@@ -126,22 +126,22 @@ def check_columns(columns) -> None:
     said = "'columns' must be the names or numbers of three columns"
     advice = 'write columns = ["X", "Y", "Z"]'
     if not isinstance(columns, (list, tuple)) or len(columns) != 3:
-        raise ReadingRefused("columns", f"{said}, not {columns!r}", advice)
+        raise ReadingError("columns", f"{said}, not {columns!r}", advice)
     for column in columns:
         if isinstance(column, str) and column.strip():
             continue
         if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
-            raise ReadingRefused("columns", f"{said}, not {column!r}", "column numbers start at 1")
+            raise ReadingError("columns", f"{said}, not {column!r}", "column numbers start at 1")
 
 
 def check_where(where) -> None:
     advice = "write where = { val = 60 }"
     if not isinstance(where, Mapping):
-        raise ReadingRefused("where", f"'where' must be a table of columns and values, not {where!r}", advice)
+        raise ReadingError("where", f"'where' must be a table of columns and values, not {where!r}", advice)
     for column, values in where.items():
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'where' must give a number or text for '{column}', not {values!r}"
-            raise ReadingRefused("where", what, advice)
+            raise ReadingError("where", what, advice)
 
 
 def check_units(units) -> None:
@@ -149,14 +149,14 @@ def check_units(units) -> None:
     for part, unit in parts.items():
         if part not in ("xy", "z"):
             what = f"'units' has a part {part!r}"
-            raise ReadingRefused("units", what, 'its parts are xy and z: units = { z = "ft" }')
+            raise ReadingError("units", what, 'its parts are xy and z: units = { z = "ft" }')
         if unit is not None and unit not in METERS:
-            raise ReadingRefused("units", f"unknown unit {unit!r}", f"there are {', '.join(METERS)}")
+            raise ReadingError("units", f"unknown unit {unit!r}", f"there are {', '.join(METERS)}")
 
 
 def check_z_axis(axis) -> None:
     if axis not in ("up", "down"):
-        raise ReadingRefused("z_axis", f'\'z_axis\' must be "up" or "down", not {axis!r}')
+        raise ReadingError("z_axis", f'\'z_axis\' must be "up" or "down", not {axis!r}')
 
 
 def _is_value(value) -> bool:

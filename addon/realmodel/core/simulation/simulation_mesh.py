@@ -14,7 +14,7 @@ from ..base.finite import is_number
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..settings.mesh_sizes import check_mesher, local_lengths
 from ..settings.method_options import check_threads
-from ..surfaces.planar_mesh import mesh_rings
+from ..surfaces.planar_mesh import MeshOptions, mesh_rings
 from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
 from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals
@@ -85,29 +85,16 @@ def simulation_mesh(
     check_mesher(mesher)
     if elements not in ELEMENTS:
         raise UsageError(f"elements {elements!r} is unknown; use {', '.join(map(repr, ELEMENTS))}")
-    for name, value in (("edge_length", edge_length), ("minimum_thickness", minimum_thickness)):
-        if not is_number(value) or value <= 0:
-            raise UsageError(f"{name} must be a finite number above 0, not {value!r}")
-    if layer_thickness is not None and not (is_number(layer_thickness) and layer_thickness > 0):
-        raise UsageError(f"layer_thickness must be a finite number above 0, not {layer_thickness!r}")
+    lengths = {"edge_length": edge_length, "minimum_thickness": minimum_thickness}
+    _check_lengths(lengths if layer_thickness is None else lengths | {"layer_thickness": layer_thickness})
     numbers = layer_numbers(model, layers, layer_thickness)
     if not len(model.cell_block):
         raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
     sizes = local_lengths(size, [ALL_LINES], None)
     without_columns = _without_columns(model)
-    if without_columns and elements != "tetrahedra":
-        raise InputRefused(
-            f"{without_columns} cannot be meshed in columns of prisms",
-            advice='use elements "tetrahedra" (--mesh-elements tetrahedra)',
-        )
-    if without_columns and (layers is not None or layer_thickness is not None):
-        raise UsageError(f"layers and layer_thickness are for meshes of columns; {without_columns} has none")
-    largest = float(np.abs(model.vertices).max(initial=0.0))
-    if minimum_thickness < _THINNEST * largest:
-        raise UsageError(
-            f"minimum_thickness {minimum_thickness:g} is too small for coordinates of {largest:g}; "
-            f"use {_THINNEST * largest:g} or more"
-        )
+    if without_columns:
+        _check_without_columns(without_columns, elements, layers is not None or layer_thickness is not None)
+    _check_thinnest(model, minimum_thickness)
 
     def fill(work: Work) -> SimulationMesh:
         with work.phase(0.0, 1.0, "filling with tetrahedra"):
@@ -122,33 +109,44 @@ def simulation_mesh(
                 work, threads, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes
             )
         inner = lines.inner_lines
+        plan_sizes = _of_plan(sizes, inner)
         with work.phase(0.2, 0.5, "meshing the plan"):
-            vertices, triangles = mesh_rings(
-                work,
-                lines.rings,
-                float(edge_length),
-                mesher,
-                size=_of_plan(sizes, inner),
-                constraints=inner,
-            )
+            options = MeshOptions(float(edge_length), mesher, size=plan_sizes, constraints=inner)
+            vertices, triangles = mesh_rings(work, lines.rings, options)
+        thickest = 0.0 if layer_thickness is None else float(layer_thickness)
+        layering = float(minimum_thickness), numbers, thickest, elements == "tetrahedra"
         with work.phase(0.5, 1.0, "filling columns"):
-            made = call_native(
-                work,
-                threads,
-                native_module().layered_mesh,
-                arrays,
-                rocks,
-                lines,
-                vertices,
-                triangles,
-                float(minimum_thickness),
-                numbers,
-                0.0 if layer_thickness is None else float(layer_thickness),
-                elements == "tetrahedra",
-            )
+            function = native_module().layered_mesh
+            made = call_native(work, threads, function, arrays, rocks, lines, vertices, triangles, *layering)
         return _assembled(model, made, elements, numbers)
 
     return run(fill if without_columns else task, progress, cancel)
+
+
+def _check_lengths(lengths: dict[str, float]) -> None:
+    for name, value in lengths.items():
+        if not is_number(value) or value <= 0:
+            raise UsageError(f"{name} must be a finite number above 0, not {value!r}")
+
+
+def _check_without_columns(what: str, elements: str, has_layers: bool) -> None:
+    """what: the reason why a model has no columns."""
+    if elements != "tetrahedra":
+        raise InputRefused(
+            f"{what} cannot be meshed in columns of prisms",
+            advice='use elements "tetrahedra" (--mesh-elements tetrahedra)',
+        )
+    if has_layers:
+        raise UsageError(f"layers and layer_thickness are for meshes of columns; {what} has none")
+
+
+def _check_thinnest(model, minimum_thickness: float) -> None:
+    largest = float(np.abs(model.vertices).max(initial=0.0))
+    if minimum_thickness < _THINNEST * largest:
+        raise UsageError(
+            f"minimum_thickness {minimum_thickness:g} is too small for coordinates of {largest:g}; "
+            f"use {_THINNEST * largest:g} or more"
+        )
 
 
 def layer_numbers(model, layers, layer_thickness) -> list[int]:
@@ -179,8 +177,6 @@ def _without_columns(model) -> str | None:
     """The reason why the model has no columns, or None."""
     if model.is_cut:
         return "a cut model"
-    if model.structures is None:
-        return None
     if model.structures.bodies:
         return "a model with bodies"
     for fault in model.structures.faults:

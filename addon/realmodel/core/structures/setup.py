@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the sheets in compartments, from rock masses that are read and meshed, and faults and bodies with
-arrays."""
+"""From a project to surfaces: reads it, meshes and interpolates; with faults and bodies the sheets in
+compartments."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed
 from ..base.mapped_arrays import Keep, as_it_is
-from ..base.sheet import Sheet
 from ..base.work import Work, native_module
-from ..project.project import Project
-from ..project.structure_entries import Body, Fault
-from ..surfaces.prepare import mesh_rock, read_rocks
+from ..project.project import Project, Rock
+from ..project.structure_entries import Fault
+from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
@@ -27,16 +27,71 @@ from .parts.refusals import refused_structure
 from .shapes.reading import read_structures
 from .sheets.sheets import make_sheets, warn_of_doubts
 
-_READ, _MESHED = 0.2, 0.3  # of the time
 _DIVIDED = 0.1  # of the rest of the progress: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
+_CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
+
+
+def read_inputs(
+    work: Work, project: Project, threads: int, reader: Reader = read_each
+) -> tuple[list[RockInput], Project]:
+    """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
+    surfaces are read. Raises InputRefused."""
+    inputs = read_rocks(work, project, reader)
+    faults, bodies, warnings = read_structures(work, project, threads, inputs)
+    if warnings:
+        inputs[0].warnings += warnings
+    return inputs, replace(project, faults=faults, bodies=bodies)
+
+
+def mesh_inputs(work: Work, inputs: list[RockInput], start: float, end: float, keep: Keep = as_it_is) -> None:
+    """Meshes the regions of rock masses. Progress goes from `start` to `end`. keep: where the meshes are
+    kept. Raises InputRefused."""
+    for entry, (begin, finish) in _in_parts(inputs, start, end):
+        with work.phase(begin, finish, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+        if entry.region is not None:
+            entry.region = Sheet(*map(keep, entry.region))
+
+
+def make_surfaces(
+    work: Work,
+    project: Project,
+    inputs: list[RockInput],
+    threads: int,
+    stage: int | None,
+    start: float,
+    end: float,
+    keep: Keep = as_it_is,
+    flat: Callable[[Rock], Collection[int]] | None = None,
+    joins: bool = True,
+) -> Structures:
+    """Interpolates the surfaces of rock masses that are read and meshed, and divides these by the faults and
+    bodies of the project, as read_inputs gives it. Progress goes from `start` to `end`.
+
+    keep, flat: as of interpolate_rock; flat(rock) is asked once the methods "auto" have made their choice.
+    joins: as of make_structures. Raises InputRefused, BuildFailed.
+    """
+    if project.faults or project.bodies:
+        return make_structures(work, project, inputs, threads, stage, start, end, joins, keep)
+    for entry, (begin, finish) in _in_parts(inputs, start, end):
+        numbers: Collection[int] = ()
+        if flat is not None:
+            settle_methods(work, entry, begin, begin + _CHOSEN * (finish - begin), threads)
+            numbers = flat(entry.rock)
+        interpolate_rock(work, entry, begin, finish, threads, stage, keep, numbers)
+    return structures_of(project, [], [])
+
+
+def _in_parts(inputs: list[RockInput], start: float, end: float) -> Iterator[tuple]:
+    """Each with its equal part of the progress from `start` to `end`."""
+    steps = np.linspace(start, end, len(inputs) + 1).tolist()
+    return zip(inputs, itertools.pairwise(steps), strict=True)
 
 
 def make_structures(
     work: Work,
     project: Project,
-    faults: list[Fault],
-    bodies: list[Body],
     inputs: list[RockInput],
     threads: int,
     stage: int | None,
@@ -48,14 +103,14 @@ def make_structures(
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space. Progress goes from `start` to `end`.
 
-    faults, bodies: those of the project, with arrays. joins: whether `entry.surfaces` gets the sheets of each
+    project: as of read_inputs. joins: whether `entry.surfaces` gets the sheets of each
     surface, one after another. keep: where the arrays of sheets are kept. Raises InputRefused, and
     BuildFailed where the parts never settle.
     """
     first = start + _DIVIDED * (end - start)
     with work.phase(start, first, "dividing by faults and bodies"):
-        faults = [_facing_up(work, fault) for fault in faults]
-        structures = structures_of(project, faults, bodies)
+        faults = [_facing_up(work, fault) for fault in project.faults]
+        structures = structures_of(project, faults, project.bodies)
         box = box_around(inputs, structures)
         structures = _without_gaps(work, structures, inputs, box, threads)
         structures = divide(work, structures, box, threads)
@@ -103,8 +158,7 @@ def _make_all(
     work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, start, end, threads, stage, keep
 ):
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
-    steps = np.linspace(start, end, len(inputs) + 1).tolist()
-    for number, (entry, begin, finish) in enumerate(zip(inputs, steps[:-1], steps[1:], strict=True)):
+    for number, (entry, (begin, finish)) in enumerate(_in_parts(inputs, start, end)):
         some = numbers[number] if numbers else None
         make_sheets(work, entry, begin, finish, threads, stage, keep, some)
 
@@ -119,27 +173,6 @@ def _without_gaps(
         return structures
     inputs[0].warnings += warnings
     return replace(structures, faults=faults)
-
-
-def structured_inputs(
-    work: Work, project: Project, threads: int, reader: Reader = read_each, keep: Keep = as_it_is
-) -> tuple[list[RockInput], Structures, list[BuildWarning]]:
-    """Reads, meshes and interpolates a project with faults or bodies: its rock masses with sheets in the
-    place of surfaces, its structures, and warnings. reader: how surfaces are read. keep: where the arrays of
-    sheets and regions are kept. Raises InputRefused."""
-    with work.phase(0.0, _READ, "reading"):
-        inputs = read_rocks(work, project, reader)
-        faults, bodies, warnings = read_structures(work, project, threads, inputs)
-    steps = np.linspace(_READ, _MESHED, len(inputs) + 1).tolist()
-    for entry, start, end in zip(inputs, steps[:-1], steps[1:], strict=True):
-        with work.phase(start, end, f"meshing the region of {entry.rock.name}"):
-            mesh_rock(work, entry)
-        if entry.region is not None:
-            entry.region = Sheet(*map(keep, entry.region))
-    structures = make_structures(
-        work, project, faults, bodies, inputs, threads, None, _MESHED, 1.0, joins=False, keep=keep
-    )
-    return inputs, structures, warnings + [warning for entry in inputs for warning in entry.warnings]
 
 
 def _facing_up(work: Work, fault: Fault) -> Fault:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.algebra import dot
 from ..base.errors import number_list
+from ..base.work import native_module, on_threads
 from .shared_places import places_of
 
 _MOST_SHARED = 5000  # places at which two surfaces are compared
@@ -130,8 +131,8 @@ def _at_nearest(first: np.ndarray, second: np.ndarray) -> tuple[int, int]:
     lower = higher = total = 0
     for own, other, sign in ((first, second, 1), (second, first, -1)):
         asked = own[:: -(-len(own) // _ASKED)]
-        away = (asked[:, None, 0] - other[None, :, 0]) ** 2 + (asked[:, None, 1] - other[None, :, 1]) ** 2
-        difference = sign * (asked[:, 2] - other[away.argmin(axis=1), 2])
+        nearest = native_module().nearest_points(other[:, :2], asked[:, :2], execution=on_threads(1))[0][:, 0]
+        difference = sign * (asked[:, 2] - other[nearest, 2])
         lower += int((difference < 0).sum())
         higher += int((difference > 0).sum())
         total += len(asked)

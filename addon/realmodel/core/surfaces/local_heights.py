@@ -228,18 +228,18 @@ def local_heights(
     parts are interpolated from, one at each position in plan; and warnings. extent: (2, 2), of all nodes.
     arrays: where arrays as long as the points are kept; None: in memory. Raises InputRefused."""
     native = native_module()
-    room, gather = (np.zeros, in_memory) if arrays is None else (arrays.room, arrays.gather)
+    zeros, gather = (np.zeros, in_memory) if arrays is None else (arrays.zeros, arrays.gather)
     given, grid, mis_ties, are_apart = points, None, None, False
     try:
         if method == "grid":  # a raster rarely has several points at a node
             grid = find_grid(points)
-            are_apart = has_each_node_once(points, grid, room)
+            are_apart = has_each_node_once(points, grid, zeros)
         if not are_apart:
-            points, mis_ties, are_apart = each_place_once(given, room, gather)
+            points, mis_ties, are_apart = each_place_once(given, zeros, gather)
             if method == "grid":  # repeated points count for its position and spacing
-                counted, _ = without_mis_ties(given, room, gather)
+                counted, _ = without_mis_ties(given, zeros, gather)
                 grid = find_grid(counted)
-                require_one_height(counted, grid, room=room)
+                require_one_height(counted, grid, zeros=zeros)
             elif _compares_points(method) and not (are_apart and _are_usable(points)):
                 native.mean_spacing(without_mis_ties(given)[0])  # it refuses them
         warnings = [

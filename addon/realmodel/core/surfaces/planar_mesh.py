@@ -24,7 +24,33 @@ class MeshEstimate:
     memory: int
 
 
-_Asked = tuple[list[np.ndarray], dict]  # rings and request
+@dataclass(frozen=True)
+class MeshOptions:
+    """How a region is meshed, as the arguments of mesh_region say."""
+
+    edge_length: float | str | None
+    mesher: str = DEFAULT_MESHER
+    triangles: int | None = None
+    size: Iterable[Mapping] = ()
+    constraints: Iterable = ()
+    constraint_points: np.ndarray | None = None
+    points: np.ndarray | None = None
+
+    def request(self) -> dict:
+        """What the native mesher is asked for. Raises InputRefused and UsageError."""
+        lines = [places_of(line, f"constraint {number}") for number, line in enumerate(self.constraints)]
+        given = self.constraint_points
+        given = None if given is None else places_of(given, "constraint_points")
+        length, wanted, density = size_of_edges(self.edge_length, self.triangles, self.points)
+        return {
+            "edge_length": length,
+            "mesher": self.mesher,
+            "triangles": wanted,
+            "sizes": local_lengths(self.size, lines, given),
+            "constraints": lines,
+            "constraint_points": given,
+            "density": density,
+        }
 
 
 def mesh_region(
@@ -70,13 +96,12 @@ def mesh_region(
     constraint is none, or where the mesh would not fit the memory; UsageError; Cancelled.
     """
     check_mesher(mesher)
-    asked = _checked(
-        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
-    )
+    options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
+    rings, request = region_rings(outline, holes), options.request()
 
     def task(work: Work) -> tuple[np.ndarray, np.ndarray]:
         with work.phase(0.0, 1.0, "meshing"):
-            return _native_call(work, native_module().mesh_region, asked)
+            return _native_call(work, native_module().mesh_region, rings, request)
 
     return run(task, progress, cancel)
 
@@ -96,28 +121,16 @@ def estimate_mesh(
     """The expected size of the mesh of mesh_region with the same arguments. Raises the same errors, as far as
     they come before meshing."""
     check_mesher(mesher)
-    asked = _checked(
-        outline, holes, edge_length, mesher, triangles, size, constraints, constraint_points, points
-    )
-    made, memory = run(lambda work: _native_call(work, native_module().estimate_region_mesh, asked))
+    options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)
+    rings, request = region_rings(outline, holes), options.request()
+    estimate = native_module().estimate_region_mesh
+    made, memory = run(lambda work: _native_call(work, estimate, rings, request))
     return MeshEstimate(round(made), round(memory))
 
 
-def mesh_rings(
-    work: Work,
-    rings: list[np.ndarray],
-    edge_length: float | str | None,
-    mesher: str,
-    *,
-    triangles: int | None = None,
-    size: Iterable[Mapping] = (),
-    constraints: Iterable = (),
-    constraint_points=None,
-    points=None,
-):
+def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions):
     """mesh_region within a work that is already running, from checked rings."""
-    asked = _asked(rings, edge_length, mesher, triangles, size, constraints, constraint_points, points)
-    return _native_call(work, native_module().mesh_region, asked)
+    return _native_call(work, native_module().mesh_region, rings, options.request())
 
 
 def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -150,41 +163,10 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
         raise refused_region(error) from error
 
 
-def _checked(outline, holes, *others) -> _Asked:
-    return _asked(region_rings(outline, holes), *others)
-
-
-def _asked(
-    rings: Sequence[np.ndarray],
-    edge_length,
-    mesher: str,
-    triangles,
-    size,
-    constraints,
-    constraint_points,
-    points,
-) -> _Asked:
-    """The arguments of the native mesher. Raises InputRefused and UsageError."""
-    lines = [places_of(line, f"constraint {number}") for number, line in enumerate(constraints)]
-    given = None if constraint_points is None else places_of(constraint_points, "constraint_points")
-    length, wanted, density = size_of_edges(edge_length, triangles, points)
-    request = {
-        "edge_length": length,
-        "mesher": mesher,
-        "triangles": wanted,
-        "sizes": local_lengths(size, lines, given),
-        "constraints": lines,
-        "constraint_points": given,
-        "density": density,
-    }
-    return list(rings), request
-
-
-def _native_call(work: Work, function, asked: _Asked):
+def _native_call(work: Work, function, rings: Sequence[np.ndarray], request: dict):
     native = native_module()
     try:
-        rings, request = asked
-        return work.native(function, rings, request)
+        return work.native(function, list(rings), request)
     except native.InputError as error:
         raise refused_region(error) from error
 

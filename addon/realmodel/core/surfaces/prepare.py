@@ -22,7 +22,7 @@ from ..readers import Picks, read_boreholes
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
-from .planar_mesh import mesh_rings, triangulate_rings
+from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order, settle_method
 from .surface_input import Reader, SurfaceInput, read_each
@@ -149,19 +149,16 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         return
     try:
         if rock.interpolates:
-            entry.region = Sheet(
-                *mesh_rings(
-                    work,
-                    rock.rings(),
-                    rock.edge_length,
-                    rock.mesher,
-                    triangles=rock.triangles,
-                    size=rock.size,
-                    constraints=rock.constraint_lines(),
-                    constraint_points=rock.constraint_points(),
-                    points=_density_points(rock) if rock.edge_length == AUTO else None,
-                )
+            options = MeshOptions(
+                rock.edge_length,
+                rock.mesher,
+                rock.triangles,
+                rock.size,
+                rock.constraint_lines(),
+                rock.constraint_points(),
+                _density_points(rock) if rock.edge_length == AUTO else None,
             )
+            entry.region = Sheet(*mesh_rings(work, rock.rings(), options))
         else:
             entry.region = Sheet(*triangulate_rings(rock.rings()))
     except InputRefused as error:
@@ -202,8 +199,6 @@ def interpolate_rock(
     `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
     attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
     these, and looks for points on wrong sides, too."""
-    if keep is not as_it_is and entry.region is not None:
-        entry.region = Sheet(*map(keep, entry.region))
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()

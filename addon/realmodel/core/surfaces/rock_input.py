@@ -15,6 +15,7 @@ from ..heights.draws import Draw
 from ..project.project import Rock
 from ..settings.methods import SURFACE_OPTIONS
 from .rock_structure import RockStructure
+from .sides import RockFaults
 
 
 @dataclass
@@ -62,8 +63,9 @@ class RockInput:
         return result
 
     def divided(self) -> RockStructure:
-        """The structure of a rock mass with faults, once its compartments are found."""
-        assert self.structure is not None
+        """The compartments and their sheets; a rock mass without faults is one, with its surfaces."""
+        if self.structure is None:
+            return RockStructure(RockFaults([], [], []), np.zeros((1, 0), np.int8), [""], [self.surfaces])
         return self.structure
 
     def native(self) -> tuple:

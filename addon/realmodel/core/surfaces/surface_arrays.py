@@ -53,10 +53,7 @@ def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
     found = [np.zeros(0, np.int64)]
     for entry in inputs:
         for number in range(len(entry.surfaces)):
-            if entry.structure is None:
-                sizes = [len(entry.surface(number).triangles)]
-            else:
-                sizes = [len(own) for _, own in entry.structure.distinct(number)]
+            sizes = [len(own) for _, own in entry.divided().distinct(number)]
             found.append(np.repeat(np.arange(len(sizes)), sizes))
     return np.concatenate(found).astype(np.int32)
 

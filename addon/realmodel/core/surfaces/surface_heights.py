@@ -93,13 +93,14 @@ def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend:
     rock, surface = entry.rock, entry.rock.surfaces[number]
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
-    others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
+    others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
         if trend is not None:
             result = _on_trend(work, entry, number, trend, others, threads)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            result = give(work, surface.points, nodes, method, settings, threads, triangles, others)
+            task = Task(work, surface.point_array(), nodes, settings, threads, triangles, surfaces=others)
+            result = give(method, task)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
@@ -133,7 +134,7 @@ def _on_trend(
         # of an ensemble the trend is drawn, too: nothing is the same in the next realization
         give = heights if entry.draws is None else replace(entry.draws[number], known={}).heights
         settings = checked_options(trend.method, trend.options)
-        result = give(work, away, nodes, trend.method, settings, threads, triangles, {})
+        result = give(trend.method, Task(work, away, nodes, settings, threads, triangles))
         result = replace(result, z=trend.z + result.z)
     task = Task(work, points, nodes, surface.method_options()[1], threads, triangles, surfaces=others)
     border = result.z

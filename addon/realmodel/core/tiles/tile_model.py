@@ -27,6 +27,7 @@ from ..exporters.npz import model_arrays, write_arrays
 from ..model.model import Model
 from ..project.project import Project, Rock, Surface
 from ..project.structure_entries import Body, Fault
+from ..structures.parts.parts import structures_of
 from ..surfaces.local_heights import LocalHeights, PartHeights
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import SurfaceArrays
@@ -371,7 +372,8 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
     built = BuiltCells.of(arrays, frame.cell_kind)
-    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8))
+    no_structures = structures_of(project, [], [])
+    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8, no_structures))
     model.warnings = _warnings(inputs, built, numbers)
     wrong = _wrong_points(work, frame, parts, folder, threads)
     above = {(r, k - 1): each.above for (r, k), each in made.items() if each.above is not None}

@@ -35,3 +35,11 @@ def write_rows(
         file.write((line * rows % tuple(flat)).encode("utf-8"))
         if step is not None:
             step((begin + rows) / count)
+
+
+def write_wrapped(file: BinaryIO, form: str, values: np.ndarray, a_line: int) -> None:
+    """Writes values (N,), so many on a line. form: of each."""
+    whole = len(values) // a_line * a_line
+    write_rows(file, form * a_line, values[:whole].reshape(-1, a_line))
+    if whole < len(values):
+        write_rows(file, form * (len(values) - whole), values[None, whole:])

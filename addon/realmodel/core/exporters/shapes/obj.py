@@ -24,19 +24,20 @@ def write_obj(
         file.write(f"g {word}\n".encode())
         file.write(f"usemtl {_material(part)}\n".encode() if materials else b"")
         write_rows(file, "v %r %r %r", part.vertices)
-        corners = part.corners + first
-        sizes = np.diff(part.offsets)
-        begin = 0
-        while begin < len(sizes):  # runs of polygons of one size
-            change = np.flatnonzero(sizes[begin:] != sizes[begin])
-            end = begin + int(change[0]) if len(change) else len(sizes)
-            size = int(sizes[begin])
-            run = corners[part.offsets[begin] : part.offsets[end]].reshape(-1, size)
-            write_rows(file, "f" + " %d" * size, run)
-            begin = end
+        write_polygons(file, np.diff(part.offsets), part.corners + first)
         first += len(part.vertices)
         step(number / len(parts))
     step(1.0)
+
+
+def write_polygons(file: BinaryIO, sizes: np.ndarray, corners: np.ndarray) -> None:
+    """Writes polygons with so many corners each, numbers of vertices from 1."""
+    ends = np.cumsum(sizes)
+    starts = np.flatnonzero(np.diff(sizes, prepend=-1))  # of runs of polygons of one size
+    for begin, end in zip(starts, [*starts[1:], len(sizes)], strict=True):
+        size = int(sizes[begin])
+        run = corners[ends[begin] - size : ends[end - 1]].reshape(-1, size)
+        write_rows(file, "f" + " %d" * size, run)
 
 
 def write_mtl(parts: Sequence[Part], file: BinaryIO) -> None:

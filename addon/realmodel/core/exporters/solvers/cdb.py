@@ -13,7 +13,7 @@ import numpy as np
 from ...simulation import VolumeMesh
 from ...simulation.element_faces import ElementFaces
 from ...simulation.patches import solver_names
-from ..encodings.text_rows import write_rows
+from ..encodings.text_rows import write_rows, write_wrapped
 
 # Of a brick with repeated corners.
 _AS_BRICK = {
@@ -68,7 +68,4 @@ def _component(file: BinaryIO, name: str, kind: str, numbers: np.ndarray) -> Non
     items = np.column_stack([first, -last])
     items = items.ravel()[np.column_stack([np.ones(len(first), bool), last > first]).ravel()]
     file.write(f"CMBLOCK,{name.upper():8s},{kind},{len(items):8d}\n(8i10)\n".encode())
-    whole = len(items) // 8 * 8
-    write_rows(file, "%10d" * 8, items[:whole].reshape(-1, 8))
-    if whole < len(items):
-        write_rows(file, "%10d" * (len(items) - whole), items[None, whole:])
+    write_wrapped(file, "%10d", items, 8)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...simulation import VolumeMesh
 from ...simulation.element_faces import ElementFaces
-from ..encodings.text_rows import write_rows
+from ..encodings.text_rows import write_rows, write_wrapped
 from ..shapes.parts import distinct_names
 
 # What kinds are called there, and the order of their corners.
@@ -62,7 +62,4 @@ def write_f3grid(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]
 def _group(file: BinaryIO, keyword: str, name: str, numbers: np.ndarray) -> None:
     quoted = name.replace('"', "'")
     file.write(f'{keyword} "{quoted}" SLOT 1\n'.encode())
-    whole = len(numbers) // _A_LINE * _A_LINE
-    write_rows(file, " %d" * _A_LINE, numbers[:whole].reshape(-1, _A_LINE))
-    if whole < len(numbers):
-        write_rows(file, " %d" * (len(numbers) - whole), numbers[None, whole:])
+    write_wrapped(file, " %d", numbers, _A_LINE)

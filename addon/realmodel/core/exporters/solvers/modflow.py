@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import UsageError
 from ...simulation import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 from ...simulation.element_faces import OUTWARD
-from ..encodings.text_rows import write_rows
+from ..encodings.text_rows import write_rows, write_wrapped
 from .vtu import CellFaces
 
 _A_LINE = 10
@@ -205,8 +205,4 @@ def _array(file: BinaryIO, values: np.ndarray) -> None:
 
 
 def _numbers(file: BinaryIO, values: np.ndarray) -> None:
-    form = " %d" if values.dtype.kind in "iu" else " %r"
-    whole = len(values) // _A_LINE * _A_LINE
-    write_rows(file, form * _A_LINE, values[:whole].reshape(-1, _A_LINE))
-    if whole < len(values):
-        write_rows(file, form * (len(values) - whole), values[None, whole:])
+    write_wrapped(file, " %d" if values.dtype.kind in "iu" else " %r", values, _A_LINE)

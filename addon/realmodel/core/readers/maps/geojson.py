@@ -33,7 +33,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
         content = _parsed(text)
     except json.JSONDecodeError as error:
         raise InputRefused(f"not valid JSON: {error.msg}", file=file, line=error.lineno) from error
-    except _NotANumber as error:
+    except _NotANumberError as error:
         line = text[: text.find(str(error))].count("\n") + 1
         raise InputRefused(f"{error} is not a finite number", file=file, line=line) from error
     except (RecursionError, ValueError) as error:
@@ -63,12 +63,12 @@ def _after_blanks(text: str, at: int) -> int:
     return found.end() if found else at
 
 
-class _NotANumber(ValueError):
+class _NotANumberError(ValueError):
     pass
 
 
 def _refuse_constant(name: str):
-    raise _NotANumber(name)
+    raise _NotANumberError(name)
 
 
 class _Walk:

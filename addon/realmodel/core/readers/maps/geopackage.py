@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sqlite3
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 from urllib.parse import quote
@@ -33,19 +33,18 @@ def is_geopackage(head: bytes) -> bool:
     return head.startswith(_MAGIC)
 
 
-def shapes_of_geopackage(
+def read_geopackage(
     file: str | Path,
     layer: str | None = None,
     where: Mapping | None = None,
     step: Step = no_step,
     heights: Heights | None = None,
-) -> Iterator[Shapes]:
-    """The shapes of one layer, of `layer` or of the only one, after each feature; the caller may take them
-    out. Raises InputRefused naming file and layer."""
+) -> Shapes:
+    """The shapes of one layer, of `layer` or of the only one. Raises InputRefused naming file and layer."""
     file = Path(file)
     try:
         with closing(connect(file)) as base:
-            yield from _read(file, base, layer, where or {}, step, heights)
+            return _read(file, base, layer, where or {}, step, heights)
     except UNREADABLE as error:
         changed = open_changes(file) is not None
         advice = "close it in the program that has it open, so that its last changes are in it"
@@ -78,7 +77,7 @@ def _read(
     where: Mapping,
     step: Step,
     heights: Heights | None,
-) -> Iterator[Shapes]:
+) -> Shapes:
     try:
         layers = dict(
             base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
@@ -119,9 +118,8 @@ def _read(
             shapes.attributes[item] = attributes
         if heights and heights.attribute is not None:
             shapes.set_height(before, selection.height(attributes, heights.attribute, item))
-        yield shapes
     selection.require_some()
-    yield shapes
+    return shapes
 
 
 def _quoted(name: str) -> str:

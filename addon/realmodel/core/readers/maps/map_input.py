@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +12,8 @@ from ...base.text import Step, no_step, read_text
 from ...base.units import MODEL_UNIT, factor
 from ...settings.map_layer import MapLayer, begins_as_wkt
 from .geojson import read_geojson
-from .geopackage import is_geopackage, open_changes, shapes_of_geopackage
-from .shapefile_reader import beside, is_shapefile, shapes_of_shapefile
+from .geopackage import is_geopackage, open_changes, read_geopackage
+from .shapefile_reader import beside, is_shapefile, read_shapefile
 from .shapes import Heights, Shapes
 from .wkt import parse_wkt
 
@@ -44,16 +43,10 @@ def read_shapes(
 ) -> Shapes:
     """The shapes of a file, in the model's unit; with heights where requested. Raises InputRefused naming the
     file."""
-    shapes = Shapes()
-    for found in shapes_in_turn(given, step, heights):
-        shapes = found
-    return shapes.scaled(factor(given.units, model_unit))
+    return _read(given, step, heights).scaled(factor(given.units, model_unit))
 
 
-def shapes_in_turn(given: MapLayer, step: Step = no_step, heights: Heights | None = None) -> Iterator[Shapes]:
-    """The shapes of a file, in its unit, while it is read: the same object again and again, which the caller
-    may take them out of. GeoJSON and well-known text are read as a whole. Raises InputRefused naming the
-    file."""
+def _read(given: MapLayer, step: Step, heights: Heights | None) -> Shapes:
     file = Path(given.file)
     try:
         with file.open("rb") as opened:
@@ -61,27 +54,26 @@ def shapes_in_turn(given: MapLayer, step: Step = no_step, heights: Heights | Non
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     if is_geopackage(head):
-        yield from shapes_of_geopackage(file, given.layer, given.where, step, heights)
-    elif given.layer is not None:
+        return read_geopackage(file, given.layer, given.where, step, heights)
+    if given.layer is not None:
         what = f"it is not a GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
-    elif file.suffix.lower() in _BESIDE_SHAPEFILE:
+    if file.suffix.lower() in _BESIDE_SHAPEFILE:
         raise InputRefused("this is only a part of a shapefile", file=file, advice="name the .shp beside it")
-    elif is_shapefile(head):
-        yield from shapes_of_shapefile(file, given.where, step, heights)
-    elif _is_json(file, head):
-        yield read_geojson(file, given.where, heights)
-    else:
-        text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
-        if not begins_as_wkt(text):
-            what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
-            raise InputRefused(what, file=file, advice="export it in one of these formats")
-        if given.where:
-            raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
-        if heights and heights.attribute is not None:
-            what = "well-known text has no attributes, so 'height' has no effect"
-            raise InputRefused(what, file=file, advice="write the heights as z")
-        yield parse_wkt(text, file, heights is not None)
+    if is_shapefile(head):
+        return read_shapefile(file, given.where, step, heights)
+    if _is_json(file, head):
+        return read_geojson(file, given.where, heights)
+    text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
+    if not begins_as_wkt(text):
+        what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
+        raise InputRefused(what, file=file, advice="export it in one of these formats")
+    if given.where:
+        raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
+    if heights and heights.attribute is not None:
+        what = "well-known text has no attributes, so 'height' has no effect"
+        raise InputRefused(what, file=file, advice="write the heights as z")
+    return parse_wkt(text, file, heights is not None)
 
 
 def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:

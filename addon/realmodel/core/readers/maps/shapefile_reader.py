@@ -35,14 +35,14 @@ def beside(file: Path) -> list[Path]:
     return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
 
 
-def shapes_of_shapefile(
+def read_shapefile(
     file: str | Path,
     where: Mapping | None = None,
     step: Step = no_step,
     heights: Heights | None = None,
-) -> Iterator[Shapes]:
-    """The shapes of a shapefile, after each feature; the caller may take them out. Its rings follow the
-    even-odd rule, whatever their direction: many programs write outlines and holes in the wrong directions.
+) -> Shapes:
+    """The shapes of a shapefile. Its rings follow the even-odd rule, whatever their direction: many programs
+    write outlines and holes in the wrong directions.
     Raises InputRefused, and BuildFailed without pyshp."""
     file, where = Path(file), where or {}
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
@@ -74,7 +74,6 @@ def shapes_of_shapefile(
                         shapes.attributes[item] = attributes
                     if attribute is not None:
                         shapes.set_height(before, selection.height(attributes, attribute, item))
-                    yield shapes
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise InputRefused(what, file=file, advice="check the path") from error
@@ -85,7 +84,7 @@ def shapes_of_shapefile(
     except (StopIteration, AssertionError, AttributeError, MemoryError, OverflowError) as error:
         raise InputRefused("a damaged shapefile", file=file) from error
     selection.require_some()
-    yield shapes
+    return shapes
 
 
 def _shapes(shp) -> Iterator:

@@ -10,7 +10,7 @@ from ...base.errors import InputRefused
 UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)
 
 
-class Damaged(ValueError):
+class DamagedError(ValueError):
     """An error in a file, with its line or byte."""
 
     def __init__(self, what: str, line: int | None = None, byte: int | None = None):

@@ -5,17 +5,14 @@ the triangles and quadrangles, whatever their groups."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows, in_pieces
-from ...base.text import LINES_AT_ONCE, FileBytes, Step, content_of, line_of_word, no_step, pieces_of
-from .shared_vertices import share_vertices
-from .triangle_mesh import MeshRows, TriangleMesh
+from ...base.text import Step, line_of_word, no_step, read_bytes
+from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 # Nodes of each type of element; of those with more nodes than corners the corners come first.
 _NODES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 15: 1, 16: 8}
@@ -28,11 +25,10 @@ def begins_as_msh(head: bytes) -> bool:
     return head.lstrip().startswith(b"$MeshFormat")
 
 
-def read_msh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
-    """Reads the faces of a mesh, and the nodes that they use. rows: where they are kept. Raises InputRefused
-    naming the file."""
+def read_msh(file: str | Path, step: Step = no_step) -> TriangleMesh:
+    """Reads the faces of a mesh, and the nodes that they use. Raises InputRefused naming the file."""
     file = Path(file)
-    raw = content_of(file)
+    raw = read_bytes(file)
     sections = {}
     for name in (b"MeshFormat", b"Nodes", b"Elements"):
         begin, end = raw.find(b"$" + name), raw.rfind(b"$End" + name)
@@ -49,16 +45,16 @@ def read_msh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
         )
     is_binary = words[1] == b"1"
     order = ">" if is_binary and head.split(b"\n", 1)[1][:4] == b"\0\0\0\1" else "<"
-    tags, places, faces = rows(np.empty(0)), rows(np.empty((0, 3))), {n: _Corners(n, rows) for n in (3, 4)}
-    read, section = [], b"Nodes"
+    read: list[_Numbers] = []
+    section = b"Nodes"
     try:
-        both = [sections[name] for name in (b"Nodes", b"Elements")]
-        read = [_Bytes(raw, *each, order) if is_binary else _Words(raw, *each, rows) for each in both]
+        both = [raw[slice(*sections[name])] for name in (b"Nodes", b"Elements")]
+        read = [_Bytes(each, order) if is_binary else _Words(each) for each in both]
         old = version.startswith("2")
-        (_nodes_2 if old else _nodes_4)(read[0], tags, places)
+        tags, places = (_nodes_2 if old else _nodes_4)(read[0])
         step(0.5)
         section = b"Elements"
-        (_elements_2 if old else _elements_4)(read[1], faces)
+        faces = (_elements_2 if old else _elements_4)(read[1])
     except (ValueError, IndexError, OverflowError, MemoryError, KeyError) as error:
         what, line = f"not a Gmsh file that can be read: {error}", None
         if read:
@@ -68,64 +64,26 @@ def read_msh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
             else:
                 line = line_of_word(raw, at, *sections[section])
         raise InputRefused(what, file=file, line=line) from error
-    corners = [some.array() for some in faces.values()]
-    if not any(map(len, corners)):
+    if not any(map(len, faces)):
         raise InputRefused(
             "it has no triangles or quadrangles", file=file, advice="mesh the surfaces, and save all"
         )
-    named = tags.array()
-    if not len(named):
+    if not len(tags):
         raise InputRefused("it has no nodes", file=file)
-    pieces = [piece for some in corners for piece in in_pieces(some)]
-    index, sizes, mesh = rows(np.empty(0, np.int64)), rows(np.empty(0, np.int64)), MeshRows(file, rows)
-    for numbers in _numbers(file, np.asarray(named), pieces):
-        index.add(numbers.ravel())
-        sizes.add(np.full(*numbers.shape))
-    share_vertices(index.array(), sizes.array(), mesh, rows, places.array())
-    return mesh.mesh()
+    numbers = [_numbers(file, tags, corners) for corners in faces if len(corners)]
+    used = np.unique(np.concatenate([some.ravel() for some in numbers]))
+    numbers = [np.searchsorted(used, some) for some in numbers]
+    listed = numbers[0] if len(numbers) == 1 else [row for some in numbers for row in some.tolist()]
+    return mesh_of_faces(file, places[used], listed)
 
 
-def _numbers(file: Path, tags: np.ndarray, pieces: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
-    """The numbers from 0 of nodes by their tags, piece by piece. tags: of all nodes. Raises InputRefused."""
-    ordered, order = tags, None
-    if not _is_ascending(tags):
-        order = np.argsort(tags, kind="stable")
-        ordered = tags[order]
-    for corners in pieces:
-        at = np.minimum(np.searchsorted(ordered, corners), len(tags) - 1)
-        at = at if order is None else order[at]
-        if (tags[at] != corners).any():
-            raise InputRefused("an element has a node that is not there", file=file)
-        yield at
-
-
-def _is_ascending(tags: np.ndarray) -> bool:
-    pieces = (tags[max(begin - 1, 0) : begin + ROWS_AT_ONCE] for begin in range(0, len(tags), ROWS_AT_ONCE))
-    return all((piece[:-1] <= piece[1:]).all() for piece in pieces)
-
-
-class _Corners:
-    """The tags of the corners of faces of one size."""
-
-    def __init__(self, size: int, rows: MakeRows):
-        self._rows = rows(np.empty((0, size)))
-        self._waiting: list[np.ndarray] = []  # mostly of one face each
-        self._count = 0
-
-    def add(self, corners: np.ndarray) -> None:
-        self._waiting.append(corners)
-        self._count += len(corners)
-        if self._count >= LINES_AT_ONCE:
-            self._flush()
-
-    def _flush(self) -> None:
-        if self._waiting:
-            self._rows.add(np.concatenate(self._waiting))
-        self._waiting, self._count = [], 0
-
-    def array(self) -> np.ndarray:
-        self._flush()
-        return self._rows.array()
+def _numbers(file: Path, tags: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """The numbers from 0 of nodes by their tags. tags: of all nodes. Raises InputRefused."""
+    order = np.argsort(tags, kind="stable")
+    at = order[np.minimum(np.searchsorted(tags[order], corners), len(tags) - 1)]
+    if (tags[at] != corners).any():
+        raise InputRefused("an element has a node that is not there", file=file)
+    return at
 
 
 class _Words:
@@ -133,24 +91,18 @@ class _Words:
 
     at = 0  # the word that comes next
 
-    def __init__(self, raw: FileBytes, begin: int, end: int, rows: MakeRows):
-        values = rows(np.empty(0))
-        for _, piece in pieces_of(raw, begin, end):
-            values.add(np.array(piece.split()).astype(np.float64))
-        self._values = np.asarray(values.array())
-
-    def require(self, kinds: str, count: int) -> None:
-        """Raises ValueError where there are not as many rows."""
-        if not 0 <= count <= len(self._values):
-            raise ValueError(f"{count} entries are announced, the file is cut off")
-        if self.at + count * len(kinds) > len(self._values):
-            raise ValueError("the file is cut off")
+    def __init__(self, raw: bytes):
+        self._values = np.array(raw.split()).astype(np.float64)
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
-        """(count, len(kinds)) float64. Raises ValueError."""
-        self.require(kinds, count)
-        begin, self.at = self.at, self.at + count * len(kinds)
-        return self._values[begin : self.at].reshape(count, len(kinds))
+        """(count, len(kinds)) float64. Raises ValueError where there are not as many rows."""
+        if not 0 <= count <= len(self._values):
+            raise ValueError(f"{count} entries are announced, the file is cut off")
+        begin, end = self.at, self.at + count * len(kinds)
+        if end > len(self._values):
+            raise ValueError("the file is cut off")
+        self.at = end
+        return self._values[begin:end].reshape(count, len(kinds))
 
 
 class _Bytes:
@@ -158,28 +110,20 @@ class _Bytes:
 
     at = 0  # the byte that comes next
 
-    def __init__(self, raw: FileBytes, begin: int, end: int, order: str):
-        self._raw, self._begin, self._size = raw, begin, max(end - begin, 0)
-        self._order = order
-
-    def require(self, kinds: str, count: int) -> None:
-        if not 0 <= count <= self._size or self.at + count * _row(self._order, kinds).itemsize > self._size:
-            raise ValueError(f"{count} entries are announced, the file is cut off")
-
-    def _some(self, size: int) -> bytes:
-        begin = self._begin + self.at
-        return self._raw[begin : min(begin + size, self._begin + self._size)]
+    def __init__(self, raw: bytes, order: str):
+        self._raw, self._order = raw, order
 
     def take(self, kinds: str, count: int = 1) -> np.ndarray:
-        self.require(kinds, count)
         row = _row(self._order, kinds)
-        found = np.frombuffer(self._some(count * row.itemsize), row)
+        if not 0 <= count <= len(self._raw) or self.at + count * row.itemsize > len(self._raw):
+            raise ValueError(f"{count} entries are announced, the file is cut off")
+        found = np.frombuffer(self._raw, row, count, self.at)
         self.at += found.nbytes
         return np.stack([found[name].astype(np.float64) for name in row.names or ()], axis=1)
 
     def line(self) -> int:
         """A number on a line of text."""
-        text, _, _ = self._some(40).partition(b"\n")
+        text, _, _ = self._raw[self.at : self.at + 40].partition(b"\n")
         self.at += len(text) + 1
         return int(text)
 
@@ -191,13 +135,6 @@ def _row(order: str, kinds: str) -> np.dtype:
 
 
 _Numbers = _Words | _Bytes
-
-
-def _pieces(read: _Numbers, kinds: str, count: int) -> Iterator[np.ndarray]:
-    """The same as take has, some rows at a time."""
-    read.require(kinds, count)
-    for begin in range(0, count, ROWS_AT_ONCE):
-        yield read.take(kinds, min(ROWS_AT_ONCE, count - begin))
 
 
 def _count(read: _Numbers) -> int:
@@ -217,26 +154,39 @@ def _few(value: float) -> int:
     return int(value)
 
 
-def _nodes_2(read: _Numbers, tags: Rows, places: Rows) -> None:
-    for found in _pieces(read, "iddd", _count(read)):
-        tags.add(found[:, 0])
-        places.add(found[:, 1:])
+def _nodes_2(read: _Numbers) -> tuple[np.ndarray, np.ndarray]:
+    rows = read.take("iddd", _count(read))
+    return rows[:, 0], rows[:, 1:]
 
 
-def _nodes_4(read: _Numbers, tags: Rows, places: Rows) -> None:
+def _nodes_4(read: _Numbers) -> tuple[np.ndarray, np.ndarray]:
+    tags, places = [np.empty(0)], [np.empty((0, 3))]
     blocks, *_ = read.take("ssss")[0]
     for _ in range(_whole(blocks)):
         dimension, _, parametric, count = read.take("iiis")[0]
         more = _few(dimension) if parametric else 0
-        for found in _pieces(read, "s", _whole(count)):
-            tags.add(found[:, 0])
-        for found in _pieces(read, "ddd" + "d" * more, _whole(count)):
-            places.add(found[:, :3])
+        tags.append(read.take("s", _whole(count))[:, 0])
+        places.append(read.take("ddd" + "d" * more, _whole(count))[:, :3])
+    return np.concatenate(tags), np.concatenate(places)
 
 
-def _elements_2(read: _Numbers, faces: dict[int, _Corners]) -> None:
-    count = _count(read)
-    done = 0
+class _Faces:
+    """The tags of the corners of triangles and of quadrangles."""
+
+    def __init__(self) -> None:
+        self._of_size = {size: [np.empty((0, size))] for size in (3, 4)}
+
+    def add(self, kind: int, nodes: np.ndarray) -> None:
+        """Adds elements of a type by their nodes; of others than faces, does nothing."""
+        if kind in _CORNERS:
+            self._of_size[_CORNERS[kind]].append(nodes[:, : _CORNERS[kind]])
+
+    def arrays(self) -> list[np.ndarray]:
+        return [np.concatenate(some) for some in self._of_size.values()]
+
+
+def _elements_2(read: _Numbers) -> list[np.ndarray]:
+    faces, count, done = _Faces(), _count(read), 0
     while done < count:
         if isinstance(read, _Bytes):
             kind, rows, tags = (int(v) for v in read.take("iii")[0])
@@ -246,16 +196,15 @@ def _elements_2(read: _Numbers, faces: dict[int, _Corners]) -> None:
         else:
             _, kind, tags = (int(v) for v in read.take("iii")[0])
             rows, first = 1, _few(tags)
-        for found in _pieces(read, "i" * (first + _NODES[kind]), rows):
-            if kind in _CORNERS:
-                faces[_CORNERS[kind]].add(found[:, first : first + _CORNERS[kind]])
+        faces.add(kind, read.take("i" * (first + _NODES[kind]), rows)[:, first:])
         done += rows
+    return faces.arrays()
 
 
-def _elements_4(read: _Numbers, faces: dict[int, _Corners]) -> None:
+def _elements_4(read: _Numbers) -> list[np.ndarray]:
+    faces = _Faces()
     blocks, *_ = read.take("ssss")[0]
     for _ in range(_whole(blocks)):
         _, _, kind, count = read.take("iiis")[0]
-        for found in _pieces(read, "s" * (1 + _NODES[int(kind)]), _whole(count)):
-            if kind in _CORNERS:
-                faces[_CORNERS[int(kind)]].add(found[:, 1 : 1 + _CORNERS[int(kind)]])
+        faces.add(int(kind), read.take("s" * (1 + _NODES[int(kind)]), _whole(count))[:, 1:])
+    return faces.arrays()

@@ -28,12 +28,14 @@ _HEAD = 4096
 @dataclass(frozen=True)
 class MeshFormat:
     """begins(head, size): whether a file of so many bytes that begins with these is of this format.
-    read(file, step, rows) raises InputRefused naming file and line; rows: where it is kept."""
+    read(file, step) raises InputRefused naming file and line. read_in_pieces(file, step, rows): the same of
+    a format that large files have; rows: where the mesh is kept."""
 
     name: str
     endings: tuple[str, ...]
     begins: Callable[[bytes, int], bool]
-    read: Callable[[Path, Step, MakeRows], TriangleMesh]
+    read: Callable[[Path, Step], TriangleMesh]
+    read_in_pieces: Callable[[Path, Step, MakeRows], TriangleMesh] | None = None
 
 
 def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
@@ -41,8 +43,8 @@ def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
 
 
 MESH_FORMATS = (
-    MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off),
-    MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply),
+    MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off, read_off),
+    MeshFormat("PLY", (".ply",), _by_head(begins_as_ply), read_ply, read_ply),
     MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
     MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), read_vtk_xml),
     MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
@@ -61,14 +63,16 @@ def is_mesh_file(file: str | Path) -> bool:
 
 
 def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
-    """Reads a mesh in any format that is known. rows: where it is kept. Raises InputRefused naming file and
-    line."""
+    """Reads a mesh in any format that is known. rows: where it is kept, if its format is read in pieces; else
+    it is in memory. Raises InputRefused naming file and line."""
     file = Path(file)
     found = _formats_of(file)
     if not found:
         names = ", ".join(known.name for known in MESH_FORMATS)
         raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
-    return found[0].read(file, step, rows)
+    if found[0].read_in_pieces is not None:
+        return found[0].read_in_pieces(file, step, rows)
+    return found[0].read(file, step)
 
 
 def _formats_of(file: Path) -> list[MeshFormat]:

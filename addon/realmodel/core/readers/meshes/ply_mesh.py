@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.mapped_arrays import ROWS_AT_ONCE, MakeRows, Rows
 from ...base.text import FileBytes, Step, line_of_word, no_step, pieces_of, with_newlines
-from .damaged_mesh import UNREADABLE, Damaged, unreadable
+from .damaged_mesh import UNREADABLE, DamagedError, unreadable
 from .triangle_mesh import MeshRows, TriangleMesh
 
 _ORDERS = {"ascii": "<", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -63,11 +63,11 @@ def read_ply(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> T
                 break
             else:
                 at += count * np.dtype([(key, form) for key, _, form in properties]).itemsize
-    except _Cut as error:
+    except _CutOffError as error:
         place = {"byte": begins + error.at}
         if kind == "ascii":
             place = {"line": line_of_word(raw, error.at // 8, begins)}
-        damage = Damaged("it is cut off, or a count is wrong", **place)
+        damage = DamagedError("it is cut off, or a count is wrong", **place)
         raise unreadable(file, "PLY", damage) from error
     except UNREADABLE as error:
         raise unreadable(file, "PLY", error) from error
@@ -138,7 +138,7 @@ def _vertices(body: _Bytes, at: int, count: int, properties, mesh: MeshRows, ste
     """Reads the vertices from a byte on; where they end."""
     row = np.dtype([(name, form) for name, _, form in properties])
     if not 0 <= count * row.itemsize <= len(body) - at:
-        raise _Cut(min(at, len(body)))
+        raise _CutOffError(min(at, len(body)))
     for begin in range(0, count, ROWS_AT_ONCE):
         some = min(ROWS_AT_ONCE, count - begin)
         table = np.frombuffer(body.some(at + begin * row.itemsize, some * row.itemsize), row)
@@ -187,11 +187,11 @@ def _face(body: _Bytes, at: int, properties, key: str):
         size = 1
         if length:
             if at + np.dtype(length).itemsize > len(body):
-                raise _Cut(at)
+                raise _CutOffError(at)
             size = int(np.frombuffer(body.some(at, np.dtype(length).itemsize), length)[0])
             at += np.dtype(length).itemsize
         if not 0 <= size * np.dtype(form).itemsize <= len(body) - at:
-            raise _Cut(at)
+            raise _CutOffError(at)
         values = (
             np.frombuffer(body.some(at, size * np.dtype(form).itemsize), form) if size else np.empty(0, form)
         )
@@ -201,7 +201,7 @@ def _face(body: _Bytes, at: int, properties, key: str):
     return corners, sizes, at
 
 
-class _Cut(ValueError):
+class _CutOffError(ValueError):
     """The file ends before the data that its header announces."""
 
     def __init__(self, at: int):

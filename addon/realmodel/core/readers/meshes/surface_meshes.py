@@ -13,12 +13,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import MakeRows, Rows
 from ...base.text import Step, no_step, text_lines
 from ...base.units import METERS
 from .damaged_mesh import UNREADABLE
-from .pending_mesh import PendingMesh, VertexNumbers
-from .triangle_mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 
 def begins_as_obj(head: bytes, _size: int = 0) -> bool:
@@ -30,39 +28,43 @@ def begins_as_obj(head: bytes, _size: int = 0) -> bool:
     return words[0] in (b"mtllib", b"usemtl", b"o", b"g") and len(words) > 1 and b"\nv " in head
 
 
-def read_obj(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
-    """Reads all faces of a Wavefront OBJ. rows: where they are kept. Raises InputRefused naming file and
-    line."""
-    found = PendingMesh(Path(file), rows)
-    for number, words in _rows(found.file, step):
+def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
+    """Reads all faces of a Wavefront OBJ. Raises InputRefused naming file and line."""
+    file = Path(file)
+    vertices: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
+    lines: list[int] = []  # of the faces
+    for number, words in _rows(file, step):
         try:
             if words[0] == "v":
-                found.vertices.append([float(word) for word in words[1:4]])
+                vertices.append(tuple(map(float, words[1:4])))
                 if len(words) < 4:
                     raise ValueError
             elif words[0] == "f":
-                corners, count = [int(word.partition("/")[0]) for word in words[1:]], found.vertex_count
+                corners = [int(word.partition("/")[0]) for word in words[1:]]
                 # from 1; below zero from the last vertex so far
-                found.add_face([c - 1 if c > 0 else count + c if c else -1 for c in corners], number)
+                faces.append(tuple([c - 1 if c > 0 else len(vertices) + c if c else -1 for c in corners]))
+                lines.append(number)
         except UNREADABLE as error:
-            raise _unreadable_line(found.file, number, words) from error
-        found.flush_some()
-    return found.mesh()
+            raise _unreadable_line(file, number, words) from error
+    return mesh_of_faces(file, vertices, faces, lines)
 
 
-def read_tsurf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights;
-    a word says that values at vertices are not read. rows: where they are kept. Raises InputRefused
-    naming file and line."""
+    a word says that values at vertices are not read. Raises InputRefused naming file and line."""
     file = Path(file)
-    found, index = PendingMesh(file, rows), VertexNumbers()
+    vertices: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
+    lines: list[int] = []  # of the faces
+    index: dict[int, int] = {}  # of the vertices of a surface, by their numbers in the file
     up = 1.0
     properties: dict[str, None] = {}
     axis_units: set[str] = set()
     for number, words in _rows(file, step):
         try:
             if words[0] == "GOCAD":
-                index, up = VertexNumbers(), 1.0
+                index, up = {}, 1.0
                 if words[1] != "TSurf":
                     what = f"it holds a GOCAD {words[1]:.20}, which is no triangulated surface"
                     raise InputRefused(what, file=file, line=number, advice="export the TSurf alone")
@@ -75,16 +77,16 @@ def read_tsurf(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) ->
                 axis_units |= {word.strip().lower() for word in named}
             elif words[0] in ("VRTX", "PVRTX"):
                 x, y, z = map(float, words[2:5])
-                index[int(words[1])] = found.vertex_count
-                found.vertices.append([x, y, up * z])
+                index[int(words[1])] = len(vertices)
+                vertices.append((x, y, up * z))
             elif words[0] in ("ATOM", "PATOM"):
                 index[int(words[1])] = index[int(words[2])]
             elif words[0] == "TRGL":
-                found.add_face([index[int(word)] for word in words[1:4]], number)
+                faces.append(tuple([index[int(word)] for word in words[1:4]]))
+                lines.append(number)
         except UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
-        found.flush_some()
-    mesh = found.mesh()
+    mesh = mesh_of_faces(file, vertices, faces, lines)
     (unit,) = axis_units if len(axis_units) == 1 else (None,)
     warnings = [f"its properties {', '.join(properties)} are not read"] if properties else []
     if len(axis_units) > 1:

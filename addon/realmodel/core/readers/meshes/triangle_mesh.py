@@ -131,7 +131,9 @@ class MeshRows:
         raise AssertionError("there is none")
 
 
-def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
+def mesh_of_faces(
+    file: Path, vertices, faces: Sequence | np.ndarray, lines: Sequence[int] | None = None
+) -> TriangleMesh:
     """The mesh of vertices (V, 3) and the corners of each face, as MeshRows takes them. Raises
     InputRefused."""
     found = MeshRows(file)
@@ -139,3 +141,21 @@ def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | 
         found.add_vertices(vertices)
     found.add_faces(faces, lines)
     return found.mesh()
+
+
+def mesh_of_corners(file: Path, corners, sizes: Sequence[int] = (3,)) -> TriangleMesh:
+    """The mesh of faces that are given by the places (C, 3) of their corners, one face after another; equal
+    places become one vertex, in the order of their coordinates. sizes: the number of corners of each face, or
+    that of all. Raises InputRefused."""
+    with np.errstate(invalid="ignore"):  # NaN of any kind is refused
+        places = np.asarray(corners, np.float64).reshape(-1, 3) + 0.0  # zero has one sign
+    order = np.lexsort(places.T[::-1])
+    ordered = places[order]
+    is_first = np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))[: len(places)]
+    vertices, index = ordered[is_first], np.empty(len(places), np.int64)
+    index[order] = np.cumsum(is_first) - 1
+    if len(set(sizes)) == 1:
+        return mesh_of_faces(file, vertices, index.reshape(-1, sizes[0]))
+    ends = itertools.accumulate(sizes, initial=0)
+    numbers = index.tolist()
+    return mesh_of_faces(file, vertices, [numbers[begin:end] for begin, end in itertools.pairwise(ends)])

@@ -14,7 +14,7 @@ from ...base.errors import InputRefused
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import BOM, Content, Step, no_step, text_content
 from ..tables.table_layout import is_number
-from .grid_text import grid_heights
+from .grid_text import GridText, grid_heights
 from .raster import Raster, without_values
 
 _KEYS = (
@@ -58,8 +58,7 @@ def read_ascii_grid(
         raise InputRefused("the header needs a cellsize above 0", file=file, line=line)
     west = _lower_left(file, header, "x", dx)
     south = _lower_left(file, header, "y", dy)
-    shape = f"{columns} columns and {rows} rows"
-    heights = grid_heights(file, raw, body, body_line, rows * columns, shape, step, decimal)
+    heights = grid_heights(GridText(file, raw, body, body_line, decimal), rows, columns, step)
     none = [header["nodata_value"]] if "nodata_value" in header else []
     z = gather((without_values(piece, [*none, *nodata]) for piece in heights), np.empty(0))
     return Raster(z.reshape(rows, columns), (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,23 +18,29 @@ _LONGEST = 1 << 10  # bytes of a number, mostly
 _BLANK = re.compile(rb"\s")
 
 
-def grid_heights(
-    file: Path, raw: Content, body: int, line: int, count: int, shape: str, step: Step, decimal: str = "."
-) -> Iterator[np.ndarray]:
-    """The numbers from byte `body`, which stands on this line, to the end: piece by piece (N,) float64,
-    `count` in all.
+@dataclass(frozen=True)
+class GridText:
+    """The heights of a grid, from byte `body` of its file, on this line, to the end."""
 
-    shape: what says that there are so many. Raises InputRefused naming the line."""
-    native = native_module()
+    file: Path
+    raw: Content
+    body: int
+    line: int
+    decimal: str = "."
+
+
+def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterator[np.ndarray]:
+    """The heights of a grid, piece by piece (N,) float64. Raises InputRefused naming the line."""
+    native, file, raw, body = native_module(), text.file, text.raw, text.body
     one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
     found, at = 0, body
     while at < len(raw):
         piece = _to_blank(raw, at).translate(one_a_line)
         try:
-            numbers = native.read_numbers(piece, " ", decimal, [0], [], ([], []))[0][:, 0]
+            numbers = native.read_numbers(piece, " ", text.decimal, [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
             begin, stop = error.items[2:4]
-            number = line + raw.count(b"\n", body, at + begin)
+            number = text.line + raw.count(b"\n", body, at + begin)
             entry = piece[begin:stop].decode("latin-1")
             advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
             what = f"not a height: '{entry:.40}'"
@@ -42,9 +49,9 @@ def grid_heights(
         found += len(numbers)
         yield numbers
         step(at / len(raw))
-    if found != count:
+    if found != rows * columns:
         raise InputRefused(
-            f"{shape} need {count} heights; there are {found}",
+            f"{columns} columns and {rows} rows need {rows * columns} heights; there are {found}",
             file=file,
             advice="the file is cut off or its header is wrong",
         )

@@ -16,7 +16,7 @@ from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
-from .grid_text import grid_heights, header_numbers, require_count
+from .grid_text import GridText, grid_heights, header_numbers, require_count
 from .raster import Raster, without_values
 
 _MAGIC = -996
@@ -70,8 +70,7 @@ def _text(file: Path, step: Step):
     rows, dx, dy, west, _, south = *numbers[1:4], *numbers[4:7]
     columns, angle = numbers[8], numbers[9]
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")
-    said = f"{columns} columns and {rows} rows"
-    heights = grid_heights(file, raw, at, line + 1, rows * columns, said, step)
+    heights = grid_heights(GridText(file, raw, at, line + 1), rows, columns, step)
     return heights, (rows, columns), (west, south), (dx, dy), angle
 
 

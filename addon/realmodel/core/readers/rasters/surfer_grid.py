@@ -12,7 +12,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
-from .grid_text import grid_heights, header_numbers, require_count, require_spacing
+from .grid_text import GridText, grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, without_values
 
 _BLANK = 1.70141e38  # this, and more, is no height
@@ -64,7 +64,7 @@ def _text(file: Path, step: Step):
     y = header_numbers(file, lines[2], 4, 2, "the lowest and highest y")
     dx = require_spacing(file, x[0], x[1], columns, "x", 3)
     dy = require_spacing(file, y[0], y[1], rows, "y", 4)
-    heights = grid_heights(file, raw, at, 6, rows * columns, f"{columns} columns and {rows} rows", step)
+    heights = grid_heights(GridText(file, raw, at, 6), rows, columns, step)
     return heights, (rows, columns), [], (x[0], y[0]), (dx, dy)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import Step, no_step, text_content
-from .grid_text import grid_heights, header_numbers, require_count, require_spacing
+from .grid_text import GridText, grid_heights, header_numbers, require_count, require_spacing
 from .raster import Raster, without_values
 
 _BEGINNING = re.compile(rb"(?:\s*!.*\n)*\s*@[^\n]*,\s*GRID\s*,", re.IGNORECASE)
@@ -58,7 +58,6 @@ def read_zmap_grid(
     west, east, south, north = numbers[2:]
     dx = require_spacing(file, west, east, columns, "x", line)
     dy = require_spacing(file, south, north, rows, "y", line)
-    shape = f"{columns} columns and {rows} rows"
-    heights = grid_heights(file, raw, at, number + 1, rows * columns, shape, step)
+    heights = grid_heights(GridText(file, raw, at, number + 1), rows, columns, step)
     z = gather((without_values(piece, [*none, *nodata]) for piece in heights), np.empty(0))
     return Raster(z.reshape(columns, rows).T, (west, north), (dx, 0.0), (0.0, -dy))

@@ -14,8 +14,8 @@ from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factor
 from ...settings.boreholes import Boreholes
 from .hole_directions import HoleDirections, is_inclined
-from .hole_path import HolePath
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
+from .well_trajectory import WellTrajectory
 
 
 @dataclass
@@ -32,8 +32,8 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
     """The points of every surface that the picks name, in the model's unit and the order of the table.
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
-    (HolePath); all others are vertical, with a warning where a table says otherwise. Rows without a depth are
-    left out with a warning: the hole did not reach the surface.
+    (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
+    depth are left out with a warning: the hole did not reach the surface.
     Raises InputRefused naming file and line.
     """
     unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
@@ -79,7 +79,7 @@ class _Holes:
         self._given = given
         self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
         self._without_survey: dict[str, None] = {}
-        self._paths: dict[str, HolePath] = {}
+        self._paths: dict[str, WellTrajectory] = {}
         self._warnings: list[str] = []
         self._collars = None if given.collars is None else self._read_collars()
         self._unused = set(self._collars or ())

@@ -11,8 +11,8 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...settings.boreholes import Boreholes
-from .hole_path import Direction, HolePath, bend_between, direction
 from .hole_tables import SURVEY, Row, rows
+from .well_trajectory import Direction, WellTrajectory, direction, dogleg_angles
 
 _VERTICAL = (0.0, 90.0, -90.0)  # dips and inclinations by one convention or another
 _SHARP = 45.0  # degrees between two stations: holes do not bend so, tables with a slip do
@@ -78,7 +78,7 @@ class HoleDirections:
             raise row.refuse(f"the azimuth is missing where {name} is {angle:g}")
         self._stations.setdefault(row.text("hole"), []).append(_Station(row, depth, angle, azimuth))
 
-    def paths(self) -> dict[str, HolePath]:
+    def paths(self) -> dict[str, WellTrajectory]:
         """The ways of the holes. Raises InputRefused naming the line."""
         sign = self._downward()
         return {hole: self._path(hole, stations, sign) for hole, stations in self._stations.items()}
@@ -101,12 +101,12 @@ class HoleDirections:
                     )
         return -1.0 if first is not None and first.angle < 0 else 1.0
 
-    def _path(self, hole: str, stations: list[_Station], sign: float) -> HolePath:
+    def _path(self, hole: str, stations: list[_Station], sign: float) -> WellTrajectory:
         depths: list[float] = []
         directions: list[Direction] = []
         for station in sorted(stations, key=lambda station: station.depth):
             towards = _direction(station, sign)
-            bend = np.degrees(bend_between(directions[-1], towards)) if directions else 0.0
+            bend = np.degrees(dogleg_angles(directions[-1], towards)) if directions else 0.0
             if depths and depths[-1] == station.depth:
                 if bend > 1e-6:
                     what = f"hole '{hole}' has two directions at depth {station.depth:g}"
@@ -122,7 +122,7 @@ class HoleDirections:
                 )
             depths.append(station.depth)
             directions.append(towards)
-        return HolePath(depths, directions)
+        return WellTrajectory(depths, directions)
 
 
 def _direction(station: _Station, sign: float) -> Direction:

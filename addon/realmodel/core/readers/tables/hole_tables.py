@@ -13,7 +13,7 @@ from ...base.errors import InputRefused
 from ...base.text import Step
 from ...settings.boreholes import Boreholes
 from .points import Table, open_table
-from .table_layout import fields, is_number, plain_name
+from .table_layout import Expected, fields, is_number, plain_name
 
 _HOLE = ("hole", "hole_id", "holeid", "bhid", "borehole", "well", "well_id", "name", "id")
 # In the order in which they are looked for: a column has one meaning in a table.
@@ -86,7 +86,7 @@ def rows(given: Boreholes, file: Path, known: Columns, needed: Sequence[str], st
     one that is needed."""
     names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
     names.update(alias for aliases in known.values() for alias in aliases)
-    table = open_table(file, given.separator, (), {}, names, 1, 2)
+    table = open_table(file, Expected(given.separator, (), names, 1, 2))
     columns = _columns(given, table, known, needed)
     separator = table.layout.separator
     body = table.raw[table.layout.body :].decode(table.encoding)

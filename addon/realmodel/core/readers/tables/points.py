@@ -16,8 +16,9 @@ from ...base.errors import InputRefused, number_list
 from ...base.mapped_arrays import Gather, in_memory
 from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
 from ...base.work import native_module, on_threads
-from ...settings.point_file import list_of
+from ...settings.point_file import PointFile, list_of
 from .table_layout import (
+    Expected,
     TableLayout,
     column_number,
     decimal_comma,
@@ -61,20 +62,11 @@ class PointRows:
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
     """(P, 3) float64 points of a table of text: read_point_rows with default options."""
-    return read_point_rows(file, step=step).points
+    return read_point_rows(PointFile(file), step).points
 
 
-def read_point_rows(
-    file: str | Path,
-    columns: Sequence[str | int] | None = None,
-    where: Mapping | None = None,
-    separator: str | None = None,
-    decimal: str | None = None,
-    nodata: Sequence = (),
-    step: Step = no_step,
-    gather: Gather = in_memory,
-) -> PointRows:
-    """The points of a table of text, as PointFile describes it, read piece by piece.
+def read_point_rows(given: PointFile, step: Step = no_step, gather: Gather = in_memory) -> PointRows:
+    """The points of a table of text, read piece by piece.
 
     By default the separator (semicolon, tab, comma, bar or blanks) is detected from the first line of
     numbers. Earlier lines without numbers are headers; the columns named x, y and z, or easting, northing and
@@ -84,18 +76,14 @@ def read_point_rows(
 
     Raises InputRefused naming file and line.
     """
-    file = Path(file)
-    table = open_table(file, separator, columns or (), where or {}, KNOWN)
-    wanted = wanted_columns(table, columns)
-    filters = [
-        (table.column(name), _values(list_of(value), table.encoding)) for name, value in (where or {}).items()
-    ]
-    rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step, gather)
+    file = Path(given.file)
+    table = open_table(file, Expected(given.separator, (*(given.columns or ()), *given.where), KNOWN))
+    rows = _read_rows(table, given, wanted_columns(table, given.columns), step, gather)
     if len(rows.points):
-        guessed = () if columns is not None else _guessed_names(table)
+        guessed = () if given.columns is not None else _guessed_names(table)
         return replace(rows, taken_for_xyz=guessed)
     if rows.filtered:
-        raise _nothing_matches(table, where or {})
+        raise _nothing_matches(table, given.where)
     what = "none of its points has a value" if rows.missing else "there are no points in it"
     raise InputRefused(what, file=file)
 
@@ -113,32 +101,12 @@ class Table:
         return column_number(self.file, self.layout, name)
 
 
-def open_table(
-    file: Path,
-    separator: str | None,
-    names: Sequence,
-    where: Mapping,
-    known,
-    numbers: int = 3,
-    columns: int = 3,
-) -> Table:
-    """A table that has columns of these names, and of those that `where` names."""
+def open_table(file: Path, expected: Expected) -> Table:
+    """A table of text. Raises InputRefused where there are no rows."""
     raw = text_content(file)
     start = len(BOM) if raw[: len(BOM)] == BOM else 0
     encoding = encoding_of(raw)
-    wanted = [name for name in (*names, *where) if isinstance(name, str)]
-    layout = table_layout(
-        file,
-        raw,
-        start,
-        encoding,
-        separator=separator,
-        wanted=wanted,
-        known=known,
-        numbers=numbers,
-        columns=columns,
-    )
-    return Table(file, raw, encoding, layout)
+    return Table(file, raw, encoding, table_layout(file, raw, start, encoding, expected))
 
 
 def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
@@ -180,43 +148,41 @@ def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
     return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
 
 
-def read_rows(
-    table: Table,
-    columns: Sequence[int],
-    names: Sequence[str],
-    filters: Sequence = (),
-    decimal: str | None = None,
-    nodata: Sequence = (),
-    step: Step = no_step,
-    gather: Gather = in_memory,
+def _read_rows(
+    table: Table, given: PointFile, columns: Sequence[int], step: Step, gather: Gather
 ) -> PointRows:
-    """The numbers (N, len(columns)) of the rows of a table; `names` call the columns in messages."""
+    """The points of a table. columns: of x, y and z."""
     native = native_module()
-    missing = _values(nodata, table.encoding)
-    mark = decimal or "."
-    if decimal is None and table.layout.separator != ",":
+    filters = [
+        (table.column(name), _values(list_of(value), table.encoding)) for name, value in given.where.items()
+    ]
+    missing = _values(given.nodata_values, table.encoding)
+    mark = given.decimal or "."
+    if given.decimal is None and table.layout.separator != ",":
         numeric = [column for column, (numbers, _) in filters if numbers]
         if decimal_comma(_head_entries(table, [*columns, *numeric])):
             mark = ","
     while True:
         try:
-            return _pieces(native, table, columns, filters, mark, missing, step, gather)
+            return _pieces(table, (mark, columns, filters, missing), step, gather)
         except native.InputError as error:
-            undecided = decimal is None and mark == "." and table.layout.separator != ","
+            undecided = given.decimal is None and mark == "." and table.layout.separator != ","
             if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
                 mark = ","
                 continue
-            raise _refused(table, columns, names, mark, error) from error
+            raise _refused(table, columns, mark, error) from error
 
 
-def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> PointRows:
+def _pieces(
+    table: Table, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: Gather
+) -> PointRows:
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
-    beginning of the file."""
+    beginning of the file. reading: its decimal mark, columns, filters and missing values."""
+    native = native_module()
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
     def read(piece: bytes):
-        separator = table.layout.separator
-        return native.read_numbers(piece, separator, decimal, columns, filters, missing, on_threads(1))
+        return native.read_numbers(piece, table.layout.separator, *reading, on_threads(1))
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts
@@ -230,7 +196,7 @@ def _pieces(native, table, columns, filters, decimal, missing, step, gather) -> 
     threads = min(os.cpu_count() or 1, _MOST_THREADS)
     pool = ThreadPoolExecutor(threads, "realmodel reading")
     try:
-        points = gather(numbers(), np.empty((0, len(columns))))
+        points = gather(numbers(), np.empty((0, 3)))
     except native.InputError as error:
         error.items = [error.items[0] + line, *error.items[1:2], *(byte + begin for byte in error.items[2:])]
         raise
@@ -291,14 +257,14 @@ def _entry(table: Table, error) -> str:
     return table.raw[begin:end].decode(table.encoding, "replace").strip()
 
 
-def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
+def _refused(table: Table, columns: Sequence[int], decimal: str, error) -> InputRefused:
     line = error.items[0]
     if error.kind == "too_few":
         needed = max(columns) + 1
         return InputRefused(
             f"{needed} values are needed, there are {error.items[1]}", file=table.file, line=line
         )
-    name, entry = names[error.items[1]], _entry(table, error)
+    name, entry = "xyz"[error.items[1]], _entry(table, error)
     if error.kind == "not_finite":
         return InputRefused(
             f"{name} is {entry}, not a finite number",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,23 +61,23 @@ def is_any_number(entry: str, separator: str) -> bool:
     return is_number(entry) or (separator != "," and is_number(entry, ","))
 
 
-def table_layout(
-    file: Path,
-    raw: Content,
-    start: int,
-    encoding: str,
-    *,
-    separator: str | None = None,
-    wanted: Sequence[str] = (),
-    known: Sequence[str] = (),
-    numbers: int = 3,
-    columns: int = 3,
-) -> TableLayout:
-    """The layout of a table that begins at byte `start` of its file.
+@dataclass(frozen=True)
+class Expected:
+    """What is known of a table before it is read. separator: None where it is to be found. wanted: the
+    requested columns; texts are names that the header must have. known: names that make a line a header, in
+    small letters. numbers, columns: how many of them a row has at least."""
 
-    wanted: names that the header must have; known: names that make a line a header, in small letters.
-    numbers, columns: how many of them a row has at least. Raises InputRefused where there are no rows.
-    """
+    separator: str | None = None
+    wanted: Sequence[str | int] = ()
+    known: Collection[str] = ()
+    numbers: int = 3
+    columns: int = 3
+
+
+def table_layout(file: Path, raw: Content, start: int, encoding: str, expected: Expected) -> TableLayout:
+    """The layout of a table that begins at byte `start` of its file. Raises InputRefused where there are no
+    rows."""
+    separator, known = expected.separator, expected.known
     head = raw[start : start + HEAD_BYTES]
     if start + HEAD_BYTES < len(raw):
         head = head[: head.rfind(b"\n") + 1] or head
@@ -87,13 +87,13 @@ def table_layout(
     if not content:
         raise InputRefused("there are no points in it", file=file)
     if separator is None:
-        separator = _separator([texts[n] for n in content], numbers, columns)
+        separator = _separator([texts[n] for n in content], expected.numbers, expected.columns)
     first, headings = None, []
     for n in content:
         entries = fields(_TRAILING.sub("", texts[n]), separator)
         count = sum(is_any_number(entry, separator) for entry in entries)
         named = bool(known) and not {plain_name(entry) for entry in entries}.isdisjoint(known)
-        if count and not (named and count < numbers):
+        if count and not (named and count < expected.numbers):
             first = n
             break
         headings.append((n, entries))
@@ -102,6 +102,7 @@ def table_layout(
     commented = [
         (n, fields(texts[n].lstrip("#!%/ \t"), separator)) for n in range(first) if _is_comment(texts[n])
     ]
+    wanted = [name for name in expected.wanted if isinstance(name, str)]
     name_line, names = _header(headings, commented, wanted, known)
     body = start + sum(len(line) + 1 for line in lines[:first])
     return TableLayout(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from .points import KNOWN, Table, head_rows, open_table, wanted_columns
-from .table_layout import is_any_number, plain_name
+from .table_layout import Expected, is_any_number, plain_name
 
 _ROWS = 3
 _PIECES, _PIECE = 64, 1 << 16  # of a long table these are looked at, in equal distances
@@ -40,7 +40,7 @@ class TablePreview:
 def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) -> TablePreview:
     """A preview of a table of text. columns: as in PointFile. Raises InputRefused if it is not a table."""
     file = Path(file)
-    table = open_table(file, None, columns or (), {}, KNOWN)
+    table = open_table(file, Expected(None, columns or (), KNOWN))
     rows = _sampled_rows(table)
     count = max((len(row) for row in rows[:100]), default=0)
     names = list(table.layout.names or ())

@@ -47,6 +47,11 @@ class Structures:
         return len(self.faults) + len(self.bodies)
 
     @property
+    def is_divided(self) -> bool:
+        """Whether rock masses were divided into compartments: not where there are no faults and no bodies."""
+        return self.box is not None
+
+    @property
     def largest(self) -> float:
         """The largest coordinate of the whole that a window is a part of; 0 for a whole itself."""
         if self.continued is None:

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...base.algebra import norm
 from ...base.errors import InputRefused, place_text
-from ...base.triangles import distances, meet, open_edges
+from ...base.triangles import meet, open_edges
+from ...base.work import native_module, on_threads
 from ...project.structure_entries import Fault, fault_item
 
 _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault reaches it
@@ -26,7 +27,7 @@ def _require_meeting(branch: Fault, other: Fault, near: float) -> None:
         return
     border = np.unique(open_edges(vertices, triangles))
     places = vertices[border] if len(border) else vertices
-    away = distances(places, of_other, others)
+    _, away = native_module().nearest_triangles(of_other[others], places, execution=on_threads(1))
     if away.min() <= near:
         return
     place = places[int(away.argmin())]

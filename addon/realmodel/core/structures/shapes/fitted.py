@@ -12,11 +12,10 @@ from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.sheet import Sheet
 from ...base.work import Work
-from ...heights import heights
+from ...heights import Task, heights
 from ...settings.mesh_sizes import AUTO
-from ...settings.meshers import DEFAULT_MESHER
 from ...settings.methods import checked_options
-from ...surfaces.planar_mesh import mesh_rings
+from ...surfaces.planar_mesh import MeshOptions, mesh_rings
 
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
@@ -157,9 +156,10 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     along, down, normal = plane_axes(axes[2])
     local = np.column_stack([dot(points - middle, axis) for axis in (along, down, normal)])
     outline = _outline(local[:, :2], extend, extend_sideways)
-    nodes, triangles = mesh_rings(work, [outline], AUTO, DEFAULT_MESHER, points=local[:, :2])
+    nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
-    found = heights(work, np.ascontiguousarray(local), nodes, _METHOD, options, threads, triangles)
+    task = Task(work, np.ascontiguousarray(local), nodes, options, threads, triangles)
+    found = heights(_METHOD, task)
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
     return vertices, triangles
 

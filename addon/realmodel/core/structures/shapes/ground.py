@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.work import Work
-from ...heights import heights
+from ...heights import Task, heights
 from ...project.project import Surface, surface_item
 from ...settings.methods import CONTINUATION, CONTINUATION_OPTIONS, checked_options
 from ...surfaces.rock_input import RockInput
@@ -70,7 +70,7 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> n
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     near = np.ascontiguousarray(np.unique(_near(data, plan[rest]), axis=0))
-    found[rest] = heights(work, near, plan[rest], CONTINUATION, options, threads).z
+    found[rest] = heights(CONTINUATION, Task(work, near, plan[rest], options, threads)).z
     return found
 
 

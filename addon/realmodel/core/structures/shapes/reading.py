@@ -10,7 +10,7 @@ import numpy as np
 from ...base.build_warning import BuildWarning
 from ...base.errors import InputRefused, place_text
 from ...base.sheet import Sheet
-from ...base.triangles import NoTwoSides, checked_triangulation, open_edges, oriented, without_flat
+from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
 from ...base.work import Work
 from ...heights.interpolate import checked_points
 from ...project.project import Project
@@ -128,7 +128,7 @@ def _fitted(work: Work, fault: Fault, points, threads: int) -> Sheet:
 def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     try:
         return oriented(vertices, triangles)
-    except NoTwoSides as error:
+    except NoTwoSidesError as error:
         place = error.edge.mean(axis=0)
         what = f"it has no two sides: it returns to itself the other way round at {place_text(place)}"
         raise InputRefused(what, advice="cut it open there", place=tuple(place.tolist())) from error

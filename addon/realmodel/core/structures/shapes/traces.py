@@ -13,10 +13,8 @@ import numpy as np
 from ...base.algebra import dot, norm
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused, number_list, place_text
-from ...base.exact import orient2d
 from ...base.sheet import Sheet
-from ...base.triangles import crossing_pairs
-from ...base.work import Work
+from ...base.work import Work, native_module
 from ...project.structure_entries import Fault
 from ...readers.fault_trace import FaultLines, read_fault_trace
 from ...settings.directions import COMPASS, checked_direction, degrees_text, unit_vector
@@ -337,7 +335,8 @@ def _refuse_crossing(top: np.ndarray) -> None:
     """Refuses a line that crosses or touches itself (exact)."""
     begin, end = top[:-1], top[1:]
     pieces = np.stack([begin, end, end], axis=1)
-    pairs = crossing_pairs(pieces, pieces)
+    native = native_module()
+    orient2d, pairs = native.orient2d, native.meeting_boxes(pieces, pieces)
     pairs = pairs[pairs[:, 0] < pairs[:, 1]]
     next_to = pairs[:, 1] == pairs[:, 0] + 1
     one, other = pairs[~next_to].T

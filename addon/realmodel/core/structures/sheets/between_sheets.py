@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.algebra import dot, norm
-from ...base.triangles import crossing_pairs
+from ...base.work import native_module
 from .within import Within, box_of, middles_of_parts
 
 _WIDTH = 1e-9  # of the extent of a sheet: narrower gaps are due to rounding
@@ -27,7 +27,7 @@ def places_between(
     low[:, :, 2], high[:, :, 2] = (each(one[:, :, 2], other[:, :, 2]) for each in (np.minimum, np.maximum))
     boxes = np.stack([low.min(axis=1), high.max(axis=1), high.max(axis=1)], axis=1)
     found = [(np.empty(0, np.int64), np.empty((0, 3)))]
-    pairs = crossing_pairs(boxes, beyond)
+    pairs = native_module().meeting_boxes(boxes, beyond)
     for start in range(0, len(pairs), _AT_ONCE):
         t, m = pairs[start : start + _AT_ONCE].T
         number, places = _places_in_parts(one[t], other[t], beyond[m], within)

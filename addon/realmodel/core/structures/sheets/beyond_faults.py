@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.work import native_module, on_threads
 from ...heights.mis_ties import LARGEST_SHARE, heights_apart
 
 _LOOKED_AT = 16  # nearest points, whose sides are considered
 _COUNTED = 4  # points of each side, whose mean height is the expected one
-_FAR = 8.0  # mean distances between points: so near the nearest ones are looked for first
 _BETTER = 2.0  # times nearer: a point alone at its place must fit other sides so much better
 
 
@@ -30,12 +30,14 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
     tried = np.flatnonzero(several).tolist()
     while tried:
         known = np.flatnonzero(~several & ~found)
-        known = known[np.argsort(points[known, 0], kind="stable")]
-        near_by = _FAR * np.sqrt(np.ptp(points[:, 0]) * np.ptp(points[:, 1]) / len(points))
-        along = points[known, 0]
+        if not len(known):
+            break
+        nearest, run = native_module().nearest_points, on_threads(1)
+        found_near, _ = nearest(points[known, :2], points[tried, :2], _LOOKED_AT + 1, execution=run)
         wrong, beside = [], set()
-        for number in tried:
-            near = _nearest(points, known, along, number, near_by)
+        for number, numbers in zip(tried, found_near, strict=True):
+            near = known[numbers[numbers >= 0]]
+            near = np.append(near[near != number], near[near == number])[:_LOOKED_AT]  # itself comes last
             own, other = _off(points, row, near, number)
             if own > (other if several[number] else max(tolerated, _BETTER * other)):
                 wrong.append(number)
@@ -43,22 +45,6 @@ def beyond_faults(points: np.ndarray, rows: np.ndarray) -> np.ndarray:
         found[wrong] = True
         tried = sorted(number for number in beside if not found[number])
     return found
-
-
-def _nearest(
-    points: np.ndarray, known: np.ndarray, along: np.ndarray, number: int, near_by: float
-) -> np.ndarray:
-    """(K,) of some points, ordered by x, `along`, the 16 nearest in plan to another one, nearest first.
-    near_by: a distance within which they mostly are."""
-    place = points[number, :2]
-    begin, end = np.searchsorted(along, (place[0] - near_by, place[0] + near_by))
-    for some in (known[begin:end], known):
-        away = ((points[some, :2] - place) ** 2).sum(axis=1)
-        away[some == number] = np.inf
-        order = np.lexsort((some, away))[:_LOOKED_AT]
-        if len(order) == _LOOKED_AT and away[order[-1]] <= near_by**2:
-            break
-    return some[order]
 
 
 def _off(points: np.ndarray, row: np.ndarray, near: np.ndarray, number: int) -> tuple[float, float]:

@@ -9,11 +9,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ...base.algebra import dot, principal_axes
-from ...base.sheet import Sheet
-from ...base.work import Work
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.sides import FaultShape, fault_sides
-from ...surfaces.wrong_sides import heights_at
-from .tips import nearest, trace_of
+from ...surfaces.wrong_sides import Sheet, heights_at
+from .tips import trace_of
 
 _FAR = 2.0  # ranges of its heights: a sheet that goes so far beyond them in another compartment is no guide
 _AT_ONCE = 1 << 20  # pairs of a place and a part of a line
@@ -83,7 +82,8 @@ def between_faults(
     plan = np.ascontiguousarray(vertices[:, :2])
     own = [vertices[:, 2], *(heights_at(work, sheet, plan, threads) for sheet in sheets[1:])]
     heights = np.where(np.isfinite(own), own, np.nan)
-    away = np.array([nearest(plan, places)[1] for places, _, _ in faults])
+    nearest, run = native_module().nearest_points, on_threads(threads)
+    away = np.array([nearest(places, plan, execution=run)[1][:, 0] for places, _, _ in faults])
     from_there = np.array(
         [
             fault_sides(work, np.column_stack([plan, np.nan_to_num(z)]), fault, threads) == side

@@ -10,12 +10,11 @@ import numpy as np
 
 from ...base.algebra import dot, norm
 from ...base.sheet import Sheet
-from ...base.triangles import nearest_triangles, unit_normals
-from ...base.work import Work, run
+from ...base.triangles import unit_normals
+from ...base.work import Work, native_module, on_threads, run
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, fault_sides
 from .cutoffs import Cutoff, cutoff_of
-from .tips import precision_of
 from .within import box_of, parts_of_lines, walls_of
 
 _LEVEL = 1e-9  # of a unit normal: with less of it in plan a fault is level, and dips nowhere
@@ -56,8 +55,6 @@ def _mean(values: np.ndarray, length: np.ndarray) -> float:
 
 def displacements(model) -> list[Displacement]:
     """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
-    if model.structures is None:
-        return []
     return run(lambda work: _displacements(work, model))
 
 
@@ -90,8 +87,8 @@ class _Places:
         points = begin[line] + shares.mean(axis=1)[:, None] * along
         length = (shares[:, 1] - shares[:, 0]) * norm(along)
         corners = shape.vertices[shape.triangles]
-        reach = norm(along) + 2 * precision_of(shape)  # the ends of each segment are on the fault
-        normals = unit_normals(corners)[nearest_triangles(points, reach, corners)[0]]
+        nearest, _ = native_module().nearest_triangles(corners, points, execution=on_threads(1))
+        normals = unit_normals(corners)[nearest]
         level = norm(normals[:, :2])
         steep = level > _LEVEL
         self.points, self.length = points[steep], length[steep]

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.algebra import norm
-from ...base.triangles import nearest_triangles, unit_normals, welded
-from ...base.work import Work
+from ...base.triangles import unit_normals, welded
+from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
 from ...settings.methods import METHODS
 from ...surfaces.sides import FaultShape
@@ -42,11 +42,16 @@ def beyond_lips(
     """
     if not lips or not METHODS[method].is_triangulated or settings["extrapolate"] == "none":
         return np.empty((0, 3))
-    near = [np.where(lip.points, _nearest(points, lip.shape, reach), -1) for lip in lips]
+    corners = [lip.shape.vertices[lip.shape.triangles] for lip in lips]
+    nearest, run = native_module().nearest_triangles, on_threads(1)
+    near = [
+        np.where(lip.points, nearest(own, points, reach, execution=run)[0], -1)
+        for lip, own in zip(lips, corners, strict=True)
+    ]
     ordinary = mean_heights(points[np.all([triangle < 0 for triangle in near], axis=0)])
     found = [np.empty((0, 3))]
-    for lip, triangle in zip(lips, near, strict=True):
-        outward = -lip.side * unit_normals(lip.shape.vertices[lip.shape.triangles])[triangle]
+    for lip, triangle, its in zip(lips, near, corners, strict=True):
+        outward = -lip.side * unit_normals(its)[triangle]
         level = norm(outward[:, :2])
         some = (triangle >= 0) & (level > _STEEP)
         own, outward, level = points[some], outward[some], level[some]
@@ -60,8 +65,3 @@ def beyond_lips(
     beyond = np.concatenate(found)
     same = welded(np.concatenate([points, beyond])[:, :2])[len(points) :]
     return beyond[same == np.arange(len(points), len(points) + len(beyond))]  # none where another point is
-
-
-def _nearest(points: np.ndarray, shape: FaultShape, reach: float) -> np.ndarray:
-    """(P,) the nearest triangle of a fault; -1 where none is within `reach`."""
-    return nearest_triangles(points, np.full(len(points), reach), shape.vertices[shape.triangles])[0]

@@ -11,8 +11,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.triangles import border_loops, edge_numbers, edges_of, median_edge, open_edges, welded
 from ...base.work import Work, native_module
-from ...settings.meshers import DEFAULT_MESHER
-from ...surfaces.planar_mesh import mesh_rings, triangulate_rings
+from ...surfaces.planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 
 LEFT, RIGHT, _BOTH = 1, 2, 3  # on which sides of a fault a triangle has a part
 _AREA = 1e-9  # relative: parts that overlap by less do not
@@ -158,7 +157,7 @@ def _overlay(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.
     parts = [np.ascontiguousarray(triangles[part.ravel() == number]) for number in range(len(rows))]
     borders = [open_edges(vertices, each) for each in parts]
     lines = [plan[edge] for edge in np.unique(np.concatenate(borders), axis=0)]
-    nodes, tiles = mesh_rings(work, [box], length, DEFAULT_MESHER, constraints=lines)
+    nodes, tiles = mesh_rings(work, [box], MeshOptions(length, constraints=lines))
     middles = np.ascontiguousarray(nodes[tiles].mean(axis=1))
     tile_masks = np.zeros((len(tiles), masks.shape[1]), np.uint8)
     for row, each in zip(rows, parts, strict=True):

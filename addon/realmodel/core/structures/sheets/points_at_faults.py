@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.build_warning import BuildWarning
 from ...base.errors import place_text
-from ...base.triangles import median_edge, nearest_triangles
+from ...base.triangles import median_edge
 from ...base.work import Work, native_module, on_threads
 from ...heights.mis_ties import mean_heights
 from ...surfaces.rock_input import RockInput
@@ -253,7 +253,8 @@ def distances(points: np.ndarray, length: float, shapes: list[FaultShape]) -> tu
     away = np.full((len(points), len(shapes)), np.inf)
     for fault, shape in enumerate(shapes):
         corners = shape.vertices[shape.triangles]
-        away[:, fault] = nearest_triangles(points, np.full(len(points), length), corners)[1]
+        nearest = native_module().nearest_triangles
+        _, away[:, fault] = nearest(corners, points, length, execution=on_threads(1))
     ordinary = points[(away >= _NEAR * length).all(axis=1)]
     spacing = _spacing(ordinary) if len(ordinary) > 1 else np.inf
     return _NEAR * min(length, spacing), away

@@ -9,7 +9,7 @@ from ...base.errors import InputRefused, place_text
 from ...base.sheet import Sheet
 from ...base.triangles import edge_numbers, edges_of, median_edge, meet, open_edges, overlapping_pairs, welded
 from ...base.work import Work
-from ...heights import heights
+from ...heights import Task, heights
 from ...settings.methods import CONTINUATION
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import FaultShape, fault_sides
@@ -234,7 +234,8 @@ class ReadyMesh:
             lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
             beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
-            found = heights(self.work, points, nodes, self.method, self.settings, self.threads, tiles)
+            task = Task(self.work, points, nodes, self.settings, self.threads, tiles)
+            found = heights(self.method, task)
             of_place[missing] = found.z if is_by_node else found.z[missing]
             z = np.where(np.isnan(z), of_place[same], z)
         return z

@@ -17,15 +17,12 @@ import numpy as np
 from ...base.algebra import norm
 from ...base.sheet import Sheet
 from ...base.triangles import (
-    crossing_pairs,
-    distances_of_pairs,
     edges_of,
     open_edges,
-    pairs_at_planes,
     segments_hit,
     shares_hit,
 )
-from ...base.work import Work, native_module
+from ...base.work import Work, native_module, on_threads
 from ...surfaces.sides import FaultShape, fault_sides
 from .between_sheets import places_between
 from .near_rows import triangles_met, with_neighbors
@@ -52,7 +49,8 @@ class Trace:
         """(P,) bool: the plan points that are nearer to the trace than to its ends."""
         if not len(self.points):
             return np.zeros(len(plan), bool)
-        return ~self.is_end[nearest(plan, self.points)[0]]
+        nearest, _ = native_module().nearest_points(self.points, plan, execution=on_threads(1))
+        return ~self.is_end[nearest[:, 0]]
 
 
 def trace_of(
@@ -130,19 +128,8 @@ def precision_of(fault: FaultShape) -> float:
 
 def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
-    vertices, triangles = fault.vertices, fault.triangles
-    near = precision_of(fault)
-    boxes = np.stack([points - near, points + near, points], axis=1)
-    found = np.zeros(len(points), bool)
-    low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
-    inside = np.ones(len(points), bool)
-    for axis in range(3):
-        inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
-    some = np.flatnonzero(inside)
-    pairs = pairs_at_planes(boxes[some], vertices[triangles])
-    away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
-    found[some[pairs[away <= near, 0]]] = True
-    return found
+    corners, reach = fault.vertices[fault.triangles], float(np.nextafter(precision_of(fault), np.inf))
+    return native_module().nearest_triangles(corners, points, reach, execution=on_threads(1))[0] >= 0
 
 
 def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
@@ -150,24 +137,12 @@ def hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndar
     vertices, triangles = fault.vertices, fault.triangles
     corners = vertices[triangles]
     found = np.full(len(begin), np.nan)
-    pairs = crossing_pairs(np.stack([begin, end, end], axis=1), corners)
+    pairs = native_module().meeting_boxes(np.stack([begin, end, end], axis=1), corners)
     for start in range(0, len(pairs), 1 << 16):
         segment, triangle = pairs[start : start + (1 << 16)].T
         hit = segments_hit(begin[segment], end[segment], corners[triangle])
         found[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
     return found
-
-
-def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(P,) the number of the nearest of points (M, 2), the first of equally near ones; and how far it is."""
-    number, away = np.empty(len(plan), np.int64), np.empty(len(plan))
-    some = max(1, _AT_ONCE // max(1, len(points)))
-    for start in range(0, len(plan), some):
-        part = slice(start, start + some)
-        squared = ((plan[part, None] - points) ** 2).sum(axis=2)
-        number[part] = squared.argmin(axis=1)
-        away[part] = np.sqrt(squared.min(axis=1))
-    return number, away
 
 
 def blended(
@@ -558,7 +533,7 @@ def _lie_in(
 def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
     """(K,) bool: the triangles (K, 3, 3) of which a part of the lines where they meet others (M, 3, 3) is in
     a compartment."""
-    pairs = crossing_pairs(corners, others)
+    pairs = native_module().meeting_boxes(corners, others)
     ends = np.full((len(pairs), 6, 3), np.nan)
     one, other = corners[pairs[:, 0]], others[pairs[:, 1]]
     for turn, (triangle, edges) in enumerate(((one, other), (other, one))):
@@ -585,5 +560,6 @@ def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
         return np.ones(len(plan))
     if ramp <= 0:
         return np.where(beyond, 0.0, 1.0)
-    share = np.minimum(1.0, nearest(plan, plan[beyond])[1] / ramp)
+    _, away = native_module().nearest_points(plan[beyond], plan, execution=on_threads(1))
+    share = np.minimum(1.0, away[:, 0] / ramp)
     return share * share * (3 - 2 * share)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.algebra import norm
-from ...base.triangles import crossing_pairs, extents, segments_hit, shares_hit
+from ...base.triangles import extents, segments_hit, shares_hit
 from ...base.work import Work, native_module
 from ...surfaces.rock_structure import RockStructure
 from ...surfaces.sides import FaultShape, sides_of
@@ -74,7 +74,7 @@ def parts_of_lines(
     lines; those with one number are divided alike.
     """
     number = np.arange(len(begin)) if number is None else number
-    pairs = crossing_pairs(np.stack([begin, end, end], axis=1), walls)
+    pairs = native_module().meeting_boxes(np.stack([begin, end, end], axis=1), walls)
     line = pairs[:, 0]
     corners = walls[pairs[:, 1]]
     first, last = begin[line], end[line]

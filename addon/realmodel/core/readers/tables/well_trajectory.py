@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The way of a deviated borehole between the places where its direction was measured."""
+"""The trajectory of a deviated borehole between the stations where its direction was surveyed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def direction(inclination: float, azimuth: float) -> Direction:
     return sin(tilt) * sin(turn), sin(tilt) * cos(turn), cos(tilt)
 
 
-class HolePath:
+class WellTrajectory:
     """A borehole by minimum curvature: between two stations, where its direction is known, it is the arc of a
     circle that has these directions at its ends; above the first and below the last it is straight.
 
@@ -35,8 +35,8 @@ class HolePath:
         self._depths = np.array(depths, float)
         self._directions = np.array(directions, float).reshape(-1, 3)
         begin, end = self._directions[:-1], self._directions[1:]
-        self._bends = bend_between(begin, end)
-        self._bends[self._bends < _STRAIGHT] = 0.0
+        self._doglegs = dogleg_angles(begin, end)
+        self._doglegs[self._doglegs < _STRAIGHT] = 0.0
         across = end - (begin * end).sum(axis=1, keepdims=True) * begin
         length = np.linalg.norm(across, axis=1, keepdims=True)
         self._across = np.divide(across, length, out=np.zeros_like(across), where=length > _STRAIGHT)
@@ -59,7 +59,7 @@ class HolePath:
 
     def _along(self, n: int, length: float) -> np.ndarray:
         """The way of this length from station n towards the next one."""
-        turned = self._bends[n] * length / (self._depths[n + 1] - self._depths[n])
+        turned = self._doglegs[n] * length / (self._depths[n + 1] - self._depths[n])
         # (1 - cos t) / t = t / 2 (sin(t / 2) / (t / 2))^2
         sideways = turned / 2 * _sin_by(turned / 2) ** 2 * self._across[n]
         return length * (_sin_by(turned) * self._directions[n] + sideways)
@@ -70,7 +70,7 @@ def _sin_by(x: float) -> float:
     return sin(x) / x if x else 1.0
 
 
-def bend_between(begin, end) -> np.ndarray:
+def dogleg_angles(begin, end) -> np.ndarray:
     """(...) the angles in radians between directions (..., 3) of length 1; as exact for small ones as for
     large."""
     begin, end = np.asarray(begin, float), np.asarray(end, float)

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/validation/cells_at.hpp"
+
+#include <algorithm>
+
+#include "base/parallel.hpp"
+#include "exact/space_predicates.hpp"
+#include "spatial/point_bins.hpp"
+#include "validation/chunked.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+/// How often a ray upward from a position leaves a cell through a face: 1 or -1.
+struct Passage {
+    std::size_t position;
+    std::int32_t cell;
+    std::int32_t times;
+};
+
+}  // namespace
+
+std::vector<std::int32_t> cells_at(const ComplexView& model,
+                                   std::span<const std::array<double, 3>> positions,
+                                   const Execution& execution) {
+    std::vector<spatial::PlanPosition> plan;
+    for (const auto& p : positions)
+        plan.push_back({p[0], p[1]});
+    const spatial::PointBins bins(plan);
+    const std::size_t faces = model.face_count();
+    std::vector<std::vector<Passage>> found((faces + kItemsOfChunk - 1) / kItemsOfChunk);
+    const auto look = [&](std::size_t face, std::vector<Passage>& passages) {
+        const auto loop = model.face(face);
+        spatial::PlanBox box = spatial::kNoBox;
+        for (const std::int32_t v : loop) {
+            const auto [x, y, z] = model.vertex(v);
+            box = box.united({x, y, x, y});
+        }
+        bins.within(box, [&](std::size_t position, const spatial::PlanPosition&) {
+            exact::SpacePoints points;
+            const exact::SpacePointId p = points.add(positions[position]);
+            std::vector<exact::SpacePointId> corners;
+            for (const std::int32_t v : loop)
+                corners.push_back(points.add(model.vertex(v)));
+            int times = 0;
+            for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+                times += exact::ray_crosses(points, 2, p, {corners[0], corners[i], corners[i + 1]},
+                                            false);
+            for (std::size_t side = 0; side < 2; ++side) {
+                if (times != 0 && model.cell(face, side) >= 0)
+                    passages.push_back(
+                        {position, model.cell(face, side), side == 0 ? times : -times});
+            }
+        });
+    };
+    parallel_chunks(found.size(), execution, [&](std::size_t chunk) {
+        for (std::size_t face = chunk * kItemsOfChunk;
+             face < std::min(faces, (chunk + 1) * kItemsOfChunk); ++face)
+            look(face, found[chunk]);
+    });
+    std::vector<Passage> all;
+    for (const auto& part : found)
+        all.insert(all.end(), part.begin(), part.end());
+    std::ranges::sort(all, {}, [](const Passage& p) { return std::pair{p.position, p.cell}; });
+    std::vector<std::int32_t> cells(positions.size(), -1);
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+        const auto& [position, cell, first_times] = all[begin];
+        std::int32_t times = 0;
+        for (end = begin;
+             end < all.size() && all[end].position == position && all[end].cell == cell; ++end)
+            times += all[end].times;
+        if (times > 0 && cells[position] < 0) cells[position] = cell;
+    }
+    return cells;
+}
+
+}  // namespace realmodel::validation

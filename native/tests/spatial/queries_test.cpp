@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/spatial/queries.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::spatial {
+namespace {
+
+using Position = std::array<double, 3>;
+
+class Random {
+public:
+    double number(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(source_);
+    }
+    Position position(double size) { return {number(0, size), number(0, size), number(0, size)}; }
+
+private:
+    std::mt19937 source_{7};
+};
+
+TEST(NearestPointsOf, AreInOrderAndFillUp) {
+    const std::vector<std::array<double, 2>> points{{0, 0}, {2, 0}, {0, 1}, {2, 0}};
+    const std::vector<std::array<double, 2>> positions{{1.5, 0}, {0, 0}};
+    const Nearest two = nearest_points(points, positions, 2);
+    EXPECT_EQ(two.number, (std::vector<std::int32_t>{1, 3, 0, 2}));
+    EXPECT_EQ(two.distance, (std::vector<double>{0.5, 0.5, 0, 1}));
+    const Nearest many = nearest_points(points, positions, 5);
+    EXPECT_EQ(many.number[4], -1);
+    EXPECT_EQ(many.distance[4], HUGE_VAL);
+    EXPECT_THROW(nearest_points({}, positions), InputError);
+    EXPECT_THROW(nearest_points(points, {{{std::nan(""), 0}}}), InputError);
+}
+
+TEST(NearestTriangles, AreThoseOfAllThatAreWithinReach) {
+    Random random;
+    std::vector<SpaceTriangle> triangles;
+    for (int t = 0; t < 200; ++t) {
+        const Position at = random.position(10);
+        SpaceTriangle& triangle = triangles.emplace_back();
+        for (Position& corner : triangle) {
+            corner = random.position(2);
+            for (std::size_t k = 0; k < 3; ++k)
+                corner[k] += at[k];
+        }
+    }
+    std::vector<Position> positions;
+    for (int i = 0; i < 300; ++i)
+        positions.push_back(random.position(12));
+    const Nearest all = nearest_triangles(triangles, positions, HUGE_VAL, {.threads = 1});
+    EXPECT_EQ(all.number, nearest_triangles(triangles, positions, HUGE_VAL, {.threads = 3}).number);
+    const Nearest some = nearest_triangles(triangles, positions, 0.5, {.threads = 1});
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        double least = HUGE_VAL;
+        std::int32_t number = -1;
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            const std::vector one{triangles[t]};
+            const double away = nearest_triangles(one, {&positions[i], 1}, HUGE_VAL).distance[0];
+            if (away < least) number = static_cast<std::int32_t>(t);
+            least = std::min(least, away);
+        }
+        EXPECT_EQ(all.number[i], number);
+        EXPECT_EQ(all.distance[i], least);
+        EXPECT_EQ(some.number[i], least < 0.5 ? number : -1);
+    }
+}
+
+/// A fault reaches far beyond the model: the length of its triangles does not count.
+TEST(NearestTriangles, APlaceOnALongTriangleIsOnIt) {
+    const std::vector<SpaceTriangle> needle{
+        {{{-10.4, -13.6, 77.6}, {5.05, 5.6, -3.5}, {4.78, 5.8, -3.5}}}};
+    Random random;
+    for (int i = 0; i < 200; ++i) {
+        const double a = random.number(0, 0.1), b = random.number(0, 1 - a);
+        Position place;
+        for (std::size_t k = 0; k < 3; ++k)
+            place[k] = a * needle[0][0][k] + b * needle[0][1][k] + (1 - a - b) * needle[0][2][k];
+        EXPECT_LE(nearest_triangles(needle, {&place, 1}, HUGE_VAL).distance[0],
+                  8 * 10 * std::numeric_limits<double>::epsilon());
+    }
+}
+
+TEST(MeetingBoxes, AreThoseOfAllPairs) {
+    Random random;
+    const auto boxes = [&](std::size_t count) {
+        std::vector<CornersOfBox> found(count);
+        for (auto& [low, high] : found) {
+            low = random.position(9);
+            for (std::size_t k = 0; k < 3; ++k)
+                high[k] = low[k] + random.number(0, 3);
+        }
+        return found;
+    };
+    const auto few = boxes(20), many = boxes(70);
+    std::vector<std::array<std::int64_t, 2>> expected;
+    for (std::size_t i = 0; i < few.size(); ++i) {
+        for (std::size_t j = 0; j < many.size(); ++j) {
+            bool meet = true;
+            for (std::size_t k = 0; k < 3; ++k)
+                meet &= few[i][0][k] <= many[j][1][k] && many[j][0][k] <= few[i][1][k];
+            if (meet)
+                expected.push_back({static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)});
+        }
+    }
+    auto found = meeting_boxes(few, many), swapped = meeting_boxes(many, few);
+    ASSERT_EQ(found.size(), swapped.size());
+    for (std::size_t n = 0; n < found.size(); ++n)
+        EXPECT_EQ(found[n], (std::array{swapped[n][1], swapped[n][0]}));
+    EXPECT_TRUE(std::ranges::is_sorted(found, {}, [&](const auto& pair) {
+        return std::pair{pair[0], many[static_cast<std::size_t>(pair[1])][0][0]};
+    }));
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected);
+    EXPECT_TRUE(meeting_boxes({}, many).empty());
+}
+
+TEST(Turns, AreExact) {
+    const std::vector<std::array<double, 2>> a{{0, 0}, {0, 0}, {0.1, 0.1}},
+        b{{1, 0}, {1, 0}, {0.7, 0.7}}, c{{2, 1}, {2, -1}, {0.4, 0.4}};
+    EXPECT_EQ(turns(a, b, c), (std::vector<std::int8_t>{1, -1, 0}));
+    EXPECT_THROW(turns(a, b, {}), InputError);
+}
+
+}  // namespace
+}  // namespace realmodel::spatial
