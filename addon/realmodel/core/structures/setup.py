@@ -13,6 +13,7 @@ import numpy as np
 from ..base.algebra import norm
 from ..base.errors import BuildFailed
 from ..base.mapped_arrays import Keep, as_it_is
+from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
