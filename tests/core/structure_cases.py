@@ -3,6 +3,7 @@
 
 import numpy as np
 from realmodel.core.base.mapped_arrays import as_it_is
+from realmodel.core.base.sheet import Sheet
 from realmodel.core.base.work import native_module, run
 from realmodel.core.proof.closed_form import ClosedForm
 from realmodel.core.structures.setup import make_structures, mesh_inputs, read_inputs
@@ -44,7 +45,7 @@ def with_structures(project, threads=1, keep=as_it_is, joins=False):
 
 def heights_at(plan, vertices, triangles):
     """(N,) heights of a surface at plan points (N, 2)."""
-    return run(lambda work: wrong_sides.heights_at(work, (vertices, triangles), plan, 1))
+    return run(lambda work: wrong_sides.heights_at(work, Sheet(vertices, triangles), plan, 1))
 
 
 def cells_at(model, points):

@@ -137,7 +137,7 @@ def test_a_gap_at_a_normal_fault_is_covered():
     left, right = sheets_by_place(entry, [-9, 5, 0], [19, 5, 0])
     for sheet, height in ((left, 1.0), (right, -2.0)):
         assert_single_valued(sheet, 100.0)
-        assert np.abs(sheet[0][:, 2] - height).max() < 1e-9
+        assert np.abs(sheet.vertices[:, 2] - height).max() < 1e-9
     assert compartments_of(entry, [[5.2, 5, 0.9]]) == compartments_of(entry, np.array([[9.0, 5, 0]]))
 
 
