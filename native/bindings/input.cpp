@@ -28,12 +28,12 @@ input::Values values_of(const ValuesTuple& given) {
 }
 
 std::tuple<Array<double>, std::size_t, std::size_t, std::size_t> read_numbers(
-    const py::bytes& text, char separator, char decimal, const std::vector<std::size_t>& columns,
-    const std::vector<FilterTuple>& filters, const ValuesTuple& missing,
-    WatchedExecution* execution) {
+    const py::bytes& text, const std::pair<char, char>& marks,
+    const std::vector<std::size_t>& columns, const std::vector<FilterTuple>& filters,
+    const ValuesTuple& missing, WatchedExecution* execution) {
     if (columns.empty()) throw InputError("bad_range", "no columns");
     const std::string_view whole = text;
-    input::TableFormat format{separator, decimal, columns, {}, values_of(missing)};
+    input::TableFormat format{marks.first, marks.second, columns, {}, values_of(missing)};
     for (const auto& [column, values] : filters)
         format.filters.push_back({column, values_of(values)});
     input::NumberTable table;
@@ -59,14 +59,13 @@ py::bytes decode_lzw(const py::bytes& encoded, std::size_t most) {
 }  // namespace
 
 void bind_input(py::module_& module) {
-    module.def("read_numbers", &read_numbers, py::arg("text"), py::arg("separator"),
-               py::arg("decimal"), py::arg("columns"), py::arg("filters"), py::arg("missing"),
-               py::arg("execution") = py::none(),
+    module.def("read_numbers", &read_numbers, py::arg("text"), py::arg("marks"), py::arg("columns"),
+               py::arg("filters"), py::arg("missing"), py::arg("execution") = py::none(),
                R"(Numbers of whole lines of a table of text.
 
 text       bytes in any encoding that keeps ASCII
-separator  one character between the fields; " ": any number of blanks and tabs
-decimal    "." or ","
+marks      (separator, decimal): one character between the fields, " ": any number of blanks and
+           tabs; "." or ","
 columns    numbers from 0 of the columns wanted
 filters    [(column, (numbers, texts as bytes)), ...]: rows that hold none of these are left out
 missing    (numbers, texts): rows that hold one of these in a wanted column are left out

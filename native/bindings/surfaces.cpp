@@ -66,15 +66,17 @@ Array<double> on_triangulation(const Array<double>& points, const Array<double>&
     return to_array(std::move(z));
 }
 
+/// border, all, window, is_whole.
+using AroundPart = std::tuple<Array<double>, std::array<double, 4>, std::array<double, 4>, bool>;
+
 template <auto method>
 std::tuple<Array<double>, Array<bool>> on_part(const Array<double>& points,
                                                const Array<double>& nodes,
-                                               const Array<double>& border,
-                                               const std::array<double, 4>& all,
-                                               const std::array<double, 4>& window, bool is_whole,
+                                               const AroundPart& around_part,
                                                WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
+    const auto& [border, all, window, is_whole] = around_part;
     const interpolation::PointsAround around{rows<3>(border, "border"), all, window, is_whole};
     interpolation::PartValues found;
     {
@@ -151,20 +153,17 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cance
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
     module.def(
         "tin_of_part", &on_part<interpolation::linear_on_part>, arg("points"), arg("nodes"),
-        arg("border"), arg("all"), arg("window"), arg("is_whole"),
-        py::arg("execution") = py::none(),
+        arg("around"), py::arg("execution") = py::none(),
         R"(tin at nodes (N, 2) from a part of some points, in their order, the first of all before them.
 
-points    (P, 3) float64, no two at one place
-border    (B, 3): those of all points that hull_border gives, for coordinates from the first of all
-all       low x, low y, high x, high y of all points
-window    of the box of which the part has all points
-is_whole  whether these are all points
+points  (P, 3) float64, no two at one place
+around  border (B, 3), those of all points that hull_border gives, for coordinates from the first of
+        all; low x, low y, high x, high y of all points; the same of the box of which the part has
+        all points; whether these are all points
 
 Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)");
     module.def("natural_neighbour_of_part", &on_part<interpolation::natural_neighbors_of_part>,
-               arg("points"), arg("nodes"), arg("border"), arg("all"), arg("window"),
-               arg("is_whole"), py::arg("execution") = py::none(),
+               arg("points"), arg("nodes"), arg("around"), py::arg("execution") = py::none(),
                R"(natural_neighbour at nodes; arguments and result as tin_of_part.)");
     module.def(
         "surface_heights", &surface_heights, arg("vertices"), arg("triangles"), arg("nodes"),

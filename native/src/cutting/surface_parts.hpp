@@ -104,7 +104,7 @@ private:
     void write_patches(Progress* progress);
     void write_caps(Progress* progress);
     void divide(const Patch& patch, Polygons& polygons);
-    void write(const Polygons& polygons, std::size_t first, std::size_t end, bool reversed,
+    void write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
                std::int32_t face, std::array<std::int32_t, 2> slots, bool level);
     void find_touches(Progress* progress);
 

@@ -125,9 +125,8 @@ void SurfaceParts::number_parts() {
 
 /// Adds some of the polygons between two slots: they turn counter-clockwise, the other
 /// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
-void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
-                         bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
-                         bool level) {
+void SurfaceParts::write(const Polygons& polygons, std::array<std::size_t, 2> range, bool reversed,
+                         std::int32_t face, std::array<std::int32_t, 2> slots, bool level) {
     CutPiece origin{face, {-1, -1}, {kOn, kOn}, level};
     for (std::size_t k = 0; k < 2; ++k) {
         if (slots[k] < 0) continue;
@@ -138,7 +137,7 @@ void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_
     }
     assert(origin.parts[0] >= 0 || origin.parts[1] >= 0);
     if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
-    for (std::size_t p = first; p < end; ++p) {
+    for (std::size_t p = range[0]; p < range[1]; ++p) {
         if (reversed) {
             pieces.add_reversed(polygons[p], origin);
         } else {
@@ -181,7 +180,7 @@ void SurfaceParts::write_patches(Progress* progress) {
         {overlay_.threads(), progress});
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         divided.visit(i, [&](const Polygons& polygons, std::size_t first, std::size_t end) {
-            write(polygons, first, end, false, patches_[i].face, patches_[i].slots, false);
+            write(polygons, {first, end}, false, patches_[i].face, patches_[i].slots, false);
         });
     }
 }
@@ -231,9 +230,9 @@ void SurfaceParts::write_caps(Progress* progress) {
             }
             if (again) {
                 const Polygons divided = from_middle(overlay_, polygons);
-                write(divided, 0, divided.size(), reversed, face, slots, level);
+                write(divided, {0, divided.size()}, reversed, face, slots, level);
             } else {
-                write(polygons, 0, polygons.size(), reversed, face, slots, level);
+                write(polygons, {0, polygons.size()}, reversed, face, slots, level);
             }
         };
         const std::int32_t outer = outer_face[index(caps.region)];

@@ -96,7 +96,7 @@ class LocalHeights:
         is_whole = all(window[k] <= box[k] and box[k + 2] <= window[k + 2] for k in (0, 1))
         of_part = getattr(native_module(), f"{self.method}_of_part")
         task = self._task(work, points, nodes, threads)
-        z, certain = task.run(of_part, points, nodes, border, box, window, is_whole)
+        z, certain = task.run(of_part, points, nodes, (border, box, window, is_whole))
         return self._extrapolated(task, Result(z)).z, certain
 
     def _extrapolated(self, task: Task, result: Result) -> Result:

@@ -37,7 +37,7 @@ def grid_heights(text: GridText, rows: int, columns: int, step: Step) -> Iterato
     while at < len(raw):
         piece = _to_blank(raw, at).translate(one_a_line)
         try:
-            numbers = native.read_numbers(piece, " ", text.decimal, [0], [], ([], []))[0][:, 0]
+            numbers = native.read_numbers(piece, (" ", text.decimal), [0], [], ([], []))[0][:, 0]
         except native.InputError as error:
             begin, stop = error.items[2:4]
             number = text.line + raw.count(b"\n", body, at + begin)
