@@ -35,17 +35,17 @@ def with_structures(project, threads=1, keep=as_it_is, joins=False):
     """The rock masses (RockInput) of a project with their sheets, and its structures."""
 
     def task(work):
-        inputs, with_arrays = read_inputs(work, project, threads)
+        inputs, with_arrays = read_inputs(work, project)
         mesh_inputs(work, inputs, 0.0, 0.1, keep)
-        structures = make_structures(work, with_arrays, inputs, threads, None, 0.1, 1.0, joins, keep)
+        structures = make_structures(work, with_arrays, inputs, None, 0.1, 1.0, joins, keep)
         return inputs, structures
 
-    return run(task)
+    return run(task, threads=threads)
 
 
 def heights_at(plan, vertices, triangles):
     """(N,) heights of a surface at plan points (N, 2)."""
-    return run(lambda work: wrong_sides.heights_at(work, Sheet(vertices, triangles), plan, 1))
+    return run(lambda work: wrong_sides.heights_at(work, Sheet(vertices, triangles), plan))
 
 
 def cells_at(model, points):

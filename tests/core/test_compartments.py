@@ -20,7 +20,7 @@ LEVEL = np.array([[0, 0, 0], [10, 0, 0], [0, 10, 0.0]]), np.array([[0, 1, 2]])
 
 def network(faults, bodies=()):
     project = Project("p", [Rock("r", [Surface("S", *LEVEL)])], faults=faults, bodies=list(bodies))
-    return run(lambda work: divide(work, structures_of(project, faults, list(bodies)), BOX, 0))
+    return run(lambda work: divide(work, structures_of(project, faults, list(bodies)), BOX))
 
 
 def listric():
@@ -60,7 +60,7 @@ def sides_at(structures, points):
     faults = structures.of_rock(0)
     sides = faults.without_dropped(sides)
     bodies = [BodyOfRock((body.vertices, body.triangles), 0, 0) for body in structures.bodies]
-    inside = [np.where(run(lambda work, b=b: b.holds(work, points, 1)), -1, 1) for b in bodies]
+    inside = [np.where(run(lambda work, b=b: b.holds(work, points)), -1, 1) for b in bodies]
     return np.column_stack([sides, *inside]).astype(np.int8)
 
 
@@ -69,7 +69,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
     structures = network(NETWORKS[name], [Body("B", *ball([5, 4, 0], 1.7))])
     points = np.random.default_rng(1).uniform(*BOX, (4000, 3))
     rows = sides_at(structures, points)
-    reach = run(lambda work: Reach(work, structures, 0))
+    reach = run(lambda work: Reach(work, structures))
     sheet = np.array([[x, y, 0] for x in np.linspace(0, 10, 41) for y in np.linspace(0, 10, 41)])
     k = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
     squares = np.concatenate([np.column_stack([k, k + 41, k + 42]), np.column_stack([k, k + 42, k + 1])])
@@ -96,7 +96,7 @@ def test_every_point_is_in_a_part_and_within_its_reach(name):
 
 def test_a_part_reaches_no_farther_than_it_must():
     structures = network(NETWORKS["parallel"])
-    reach = run(lambda work: Reach(work, structures, 0))
+    reach = run(lambda work: Reach(work, structures))
     shares = sorted(reach.cells_of(part).any(axis=2).mean() for part in range(len(structures.sides)))
     assert len(shares) == 3 and sum(shares) < 1.3
 

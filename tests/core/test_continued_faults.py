@@ -216,9 +216,9 @@ def test_a_fault_that_ends_at_a_surface_that_is_interpolated_again_is_continued_
     assert closed(whole) == [] and volumes(model) == pytest.approx(volumes(whole), rel=1e-2)
     asked, heights = [], interpolated_sheets.give_heights
 
-    def counted(work, entry, number, threads, *trend):
+    def counted(work, entry, number, *trend):
         asked.append(entry.rock.surfaces[number].name)
-        heights(work, entry, number, threads, *trend)
+        heights(work, entry, number, *trend)
 
     monkeypatch.setattr(interpolated_sheets, "give_heights", counted)
     with pytest.raises(InputRefused, match="fault 'F': it ends inside the rock that it displaces near"):

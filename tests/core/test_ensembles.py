@@ -29,7 +29,7 @@ def project(points=POINTS, method="kriging", options=KRIGING, edge=8.0, **keys):
 def drawn(variogram, nodes, seed=1, anisotropy=None, older=None, correlation=0.0):
     noise = Noise((seed,), older, correlation)
     frame = Frame(np.array([0.0, 0.0]), np.array([1000.0, 1000.0]))
-    return GaussianField(variogram, anisotropy, frame, noise).at(Work(), nodes, 0)
+    return GaussianField(variogram, anisotropy, frame, noise).at(Work(), nodes)
 
 
 @pytest.mark.parametrize("model", VARIOGRAMS)

@@ -239,7 +239,7 @@ def test_plan_coordinates_are_made_equal_once():
     x = project.rocks[0].surfaces[1].vertices[:, 0]
     x[x == 1000] = np.nextafter(1000, 2000)
     inputs, structures = structure_cases.with_structures(project, 2)
-    windows = run(lambda work: Windows(work, inputs, structures, 2))
+    windows = run(lambda work: Windows(work, inputs, structures))
     assert windows.snapped.startswith("plan coordinates merged that differ only by rounding")
     east = [
         [max(vertices[:, 0].max() for vertices, _ in entry.structure.distinct(k)) for k in range(4)]
@@ -255,7 +255,7 @@ def test_memory_does_not_grow_with_the_triangles(tmp_path):
         with MappedArrays(tmp_path / str(n)) as arrays:
             inputs, structures = structure_cases.with_structures(faulted(n), 2, arrays.keep)
             tracemalloc.start()
-            windows = run(lambda work: Windows(work, inputs, structures, 2, arrays.keep))
+            windows = run(lambda work: Windows(work, inputs, structures, arrays.keep))
             windows.divide((251, 262))
             found = tracemalloc.get_traced_memory()[0]
             tracemalloc.stop()

@@ -299,7 +299,7 @@ from realmodel.core.heights import Task, heights
 import numpy as np
 
 def given(work, points, nodes, settings):
-    return heights(settings[0], Task(work, points, nodes, settings[1], 1))
+    return heights(settings[0], Task(work, points, nodes, settings[1]))
 
 def pieces(count):
     random = np.random.default_rng(1)

@@ -260,9 +260,9 @@ def test_sheets_are_interpolated_where_their_compartments_are(method, monkeypatc
     take about twice as many heights."""
     heights, asked = interpolated_sheets.give_heights, []
 
-    def counted(work, entry, number, threads, *trend):
+    def counted(work, entry, number, *trend):
         asked.append(len(entry.region.vertices))
-        heights(work, entry, number, threads, *trend)
+        heights(work, entry, number, *trend)
 
     monkeypatch.setattr(interpolated_sheets, "give_heights", counted)
     found = []

@@ -493,8 +493,8 @@ def test_parts_that_never_settle_are_refused(monkeypatch):
         low, high = real_box(inputs, structures, has_sheets)
         return np.array([low - [0, 0, next(depths) if has_sheets else 0], high])
 
-    def other_parts(work, structures, box, threads):
-        found = real_divide(work, structures, box, threads)
+    def other_parts(work, structures, box):
+        found = real_divide(work, structures, box)
         sides = np.concatenate([found.sides, found.sides[:1].repeat(next(parts), axis=0)])
         return dataclasses.replace(found, sides=sides)
 

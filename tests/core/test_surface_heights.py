@@ -207,9 +207,9 @@ def test_a_smooth_surface_that_keeps_off_another():
 def test_each_surface_is_asked_once_for_the_points_of_all_younger_ones(monkeypatch):
     asked, real = [], wrong_side_module.heights_at
 
-    def counted(work, shape, plan, threads):
+    def counted(work, shape, plan):
         asked.append(len(plan))
-        return real(work, shape, plan, threads)
+        return real(work, shape, plan)
 
     monkeypatch.setattr(wrong_side_module, "heights_at", counted)
     stack = [Surface(f"s{k}", points=points(*[10 - k] * 4), method="tin", rule="base") for k in range(5)]

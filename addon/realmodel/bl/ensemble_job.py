@@ -63,7 +63,7 @@ class EnsembleJob(ThreadJob):
                 self._done += 1
 
             realizer = Realizer(model, self._seed)
-            found = realized(job, realizer, self._count, samples.places, self._threads, each)
+            found = realized(job, realizer, self._count, samples.places, each)
         return found, samples, np.stack(blocks)
 
     def _put(self, made):

@@ -64,11 +64,11 @@ def _built(
 
     def prepared(work: Work):
         with work.phase(0.0, _READ, "reading"):
-            inputs, with_arrays = read_inputs(work, project, 0, reader)
+            inputs, with_arrays = read_inputs(work, project, reader)
         mesh_inputs(work, inputs, _READ, _MESHED, arrays.keep)
-        structures = make_surfaces(work, with_arrays, inputs, 0, None, _MESHED, 1.0, arrays.keep, joins=False)
+        structures = make_surfaces(work, with_arrays, inputs, None, _MESHED, 1.0, arrays.keep, joins=False)
         warnings = [warning for entry in inputs for warning in entry.warnings]
-        return Windows(work, inputs, structures, 0, arrays.keep), structures, warnings
+        return Windows(work, inputs, structures, arrays.keep), structures, warnings
 
     windows, structures, warnings = run(
         prepared, lambda share, text: progress(_PREPARED * share, text), cancel
@@ -154,7 +154,7 @@ def _build(shared: tuple[Store, Frame, Whole], name: Name) -> None:
         return
     window = _window(store.parts(name) / _WINDOW)
     box = frame.grid.box(*name)
-    built = run(lambda work: build_faulted_tile(work, frame, whole, window, name, threads=1))
+    built = run(lambda work: build_faulted_tile(work, frame, whole, window, name), threads=1)
     report = built.around.validate(places_of(frame, box), threads=1)
     if not report.passed:
         raise BuildFailed(f"tile {name[0]}, {name[1]} is wrong: {report.failure()}")

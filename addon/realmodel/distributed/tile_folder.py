@@ -170,7 +170,7 @@ def _build(shared: tuple[Store, Frame, frozenset], name: Name) -> None:
     """On a worker: builds a tile, and writes what its neighbors have to know of it."""
     store, frame, names = shared
     box = frame.grid.box(*name)
-    built = run(lambda work: build_tile(work, frame, box, store.parts(name), threads=1))
+    built = run(lambda work: build_tile(work, frame, box, store.parts(name)), threads=1)
     model, sides = built.model, built.borders
     numbers = sides["numbers"]
     edges = BorderEdges.of(model, numbers)

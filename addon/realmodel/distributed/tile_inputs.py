@@ -163,11 +163,11 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
 
     def fitted(work: Work):
         given = np.ascontiguousarray(arrays.opened(points))
-        found, left, texts = local_heights(work, given, extent, nodes, method, settings, 1, arrays)
+        found, left, texts = local_heights(work, given, extent, nodes, method, settings, arrays)
         return found, points if left is given else arrays.place(left), texts
 
     try:
-        return run(fitted)
+        return run(fitted, threads=1)
     except InputRefused as error:
         file, line = surface.shape_source()
         raise error.within(surface_item(Rock(rock, []), surface), file=file, line=line) from error

@@ -39,9 +39,11 @@ def on_threads(threads: int) -> Native.Execution:
 
 
 class Work:
-    """The progress of a working thread, and the request to cancel it."""
+    """What a working thread runs on: its progress, the request to cancel it, and how many threads native
+    calls may take (0: as many as there are)."""
 
-    def __init__(self):
+    def __init__(self, threads: int = 0):
+        self.threads = threads
         self._lock = threading.Lock()
         self._execution: Native.Execution | None = None
         self._works: list[Work] = []  # of the items of `each`, while it runs
@@ -97,7 +99,7 @@ class Work:
     ) -> Result:
         """Calls a native function that takes an `execution`, as the present phase."""
         native, call = native_module(), cast(Callable[..., Result], function)
-        execution = options.setdefault("execution", native.Execution())
+        execution = options.setdefault("execution", native.Execution(self.threads))
         with self._lock:
             self._execution = cast("Native.Execution", execution)
         try:
@@ -117,25 +119,23 @@ class Work:
             with self._lock:
                 self._execution = None
 
-    def each(
-        self, task: Callable[[Work, Item, int], Result], items: Iterable[Item], threads: int
-    ) -> list[Result]:
-        """[task(work, item, threads) for item in items] as the present phase, several items in parallel where
-        `threads` (0: all) allows it. Each item has its own Work, whose phases go from 0 to 1, and a share of
-        the threads. Raises the error of the first item that failed."""
-        items = list(items)
+    def each(self, task: Callable[[Work, Item], Result], items: Iterable[Item]) -> list[Result]:
+        """[task(work, item) for item in items] as the present phase, several items in parallel where the
+        threads allow it. Each item has its own Work, whose phases go from 0 to 1, with a share of the
+        threads. Raises the error of the first item that failed."""
+        items, threads = list(items), self.threads
         all_threads = threads or os.cpu_count() or 1
         at_once = min(len(items), all_threads)
         if at_once > 1:
             # twice as many threads as there are: while one item keeps one thread busy, another uses the rest
             threads = -(-2 * all_threads // at_once)
-        works = [Work() for _ in items]
+        works = [Work(threads) for _ in items]
 
         def done(number: int) -> Result:
             before = getattr(_current, "work", None)
             _current.work = works[number]
             try:
-                return task(works[number], items[number], threads)
+                return task(works[number], items[number])
             except BaseException:
                 for later in works[number + 1 :]:  # their results are not wanted any more
                     later.cancel()
@@ -186,8 +186,8 @@ class Work:
 class Job:
     """A task in a thread of its own, under way. Only the thread that started it looks after it."""
 
-    def __init__(self, task: Callable[[Work], Result]):
-        self._work = Work()
+    def __init__(self, task: Callable[[Work], Result], threads: int = 0):
+        self._work = Work(threads)
         self._ended = threading.Event()
         self._leaves_at: float | None = None  # when a stopped task is no longer waited for
         self._result: Any = None
@@ -251,26 +251,30 @@ class Job:
         return self._result
 
 
-def start(task: Callable[[Work], Result]) -> Job:
-    """Starts task(work) in a new thread. Calls of `run` within the task become parts of it."""
-    return Job(task)
+def start(task: Callable[[Work], Result], threads: int = 0) -> Job:
+    """Starts task(work) in a new thread. Calls of `run` within the task become parts of it. threads: of
+    native calls."""
+    return Job(task, threads)
 
 
 def run(
-    task: Callable[[Work], Result], progress: Progress | None = None, cancel: Cancel | None = None
+    task: Callable[[Work], Result],
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    threads: int = 0,
 ) -> Result:
-    """Runs task(work) in a thread of its own and returns what it returns.
+    """Runs task(work) in a thread of its own and returns what it returns. threads: of native calls.
 
     progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
     KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
     before the work was done.
 
-    Within a job, and without these two, the task is done at once as a part of that job.
+    Within a job, and without these two, the task is done at once as a part of that job, on its threads.
     """
     work = getattr(_current, "work", None)
     if work is not None and progress is None and cancel is None:
         return task(work)
-    job = start(task)
+    job = start(task, threads)
     try:
         while not job.wait(POLL_SECONDS):
             if progress is not None:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
 from ..structures.parts.parts import Structures
@@ -48,11 +48,9 @@ def build_stage(
 
     def task(work: Work) -> SomeModel:
         structures = model.structures.stage(m)
-        built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
+        built = intersect(work, inputs, kind, 0.0, _STAGE_INTERSECTED, structures)
         timings = {"intersect": time.perf_counter() - began}
-        return type(model).of(
-            assemble(work, project, inputs, built, model.threads, timings, _STAGE_INTERSECTED, structures)
-        )
+        return type(model).of(assemble(work, project, inputs, built, timings, _STAGE_INTERSECTED, structures))
 
     began = time.perf_counter()
     return run(task, progress, cancel)
@@ -62,20 +60,19 @@ def intersect(
     work: Work,
     inputs: list[RockInput],
     cells: str,
-    threads: int,
     start: float,
     end: float,
     structures: Structures,
 ) -> BuiltCells:
     """The cells of all rock masses, divided by structures where there are some."""
     if structures.is_divided:
-        return build_joined(work, inputs, structures, cells, threads, start, end)
+        return build_joined(work, inputs, structures, cells, start, end)
     native = native_module()
     rocks = [entry.native() for entry in inputs]
     with work.phase(start, end, "intersecting and cutting"):
         try:
             return BuiltCells.of(
-                work.native(native.build_rock_masses, rocks, cells=cells, execution=on_threads(threads)),
+                work.native(native.build_rock_masses, rocks, cells=cells),
                 cells,
             )
         except native.InputError as error:
@@ -87,7 +84,6 @@ def assemble(
     project: Project,
     inputs: list[RockInput],
     built: BuiltCells,
-    threads: int,
     timings: dict[str, float],
     start: float,
     structures: Structures,
@@ -116,7 +112,7 @@ def assemble(
             rock_inputs=inputs,
             warnings=_warnings(inputs, built, blocks, structures),
             timings=timings,
-            threads=threads,
+            threads=work.threads,
         )
     timings["merge"] = time.perf_counter() - began
     return model

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
@@ -35,7 +35,6 @@ def build_joined(
     inputs: list[RockInput],
     structures: Structures,
     cells: str,
-    threads: int,
     start: float,
     end: float,
     reach: Reach | None = None,
@@ -48,20 +47,20 @@ def build_joined(
     there = structures.there()
     if len(there) < len(structures):
         few, part = structures.only(there)
-        built = build_joined(work, inputs, few, cells, threads, start, end)
+        built = build_joined(work, inputs, few, cells, start, end)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
     models: list[tuple] = []
     parts: list[int] = []
     warnings: dict[NativeWarning, None] = {}
-    reach = reach or Reach(work, structures, threads)
+    reach = reach or Reach(work, structures)
     begin = start + _BUILT * (end - start)
 
-    def built_in(own_work: Work, part: int, own_threads: int) -> BuiltCells | None:
+    def built_in(own_work: Work, part: int) -> BuiltCells | None:
         with own_work.phase(0.0, 1.0, "intersecting and cutting"):
-            return _part_model(own_work, inputs, structures, reach, part, cells, own_threads)
+            return _part_model(own_work, inputs, structures, reach, part, cells)
 
     with work.phase(start, begin, "intersecting and cutting"):
-        made = work.each(built_in, range(len(structures.sides)), threads)
+        made = work.each(built_in, range(len(structures.sides)))
     for number, own in enumerate(made):
         if own is not None and len(own.complex.cell_block):
             warnings |= dict.fromkeys(own.warnings)
@@ -80,7 +79,6 @@ def build_joined(
                 divides,
                 continued=structures.continued or [],
                 largest=structures.largest,
-                execution=on_threads(threads),
             )
         except native.InputError as error:
             raise refused_structure(error, structures) from error
@@ -153,7 +151,6 @@ def _part_model(
     reach: Reach,
     part: int,
     cells: str,
-    threads: int,
 ) -> BuiltCells | None:
     """The cells of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
@@ -196,9 +193,7 @@ def _part_model(
     surfaces = [first[n] + own if own >= 0 else own for n, own in named]
     try:
         built = BuiltCells.of(
-            work.native(
-                native.build_rock_masses, rocks, cells=built_as, execution=on_threads(threads), **more
-            ),
+            work.native(native.build_rock_masses, rocks, cells=built_as, **more),
             cells,
         )
     except native.InputError as error:

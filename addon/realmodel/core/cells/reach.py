@@ -28,7 +28,7 @@ class Reach:
     a cell is never left out that a part has a point in.
     """
 
-    def __init__(self, work: Work, structures: Structures, threads: int):
+    def __init__(self, work: Work, structures: Structures):
         self.structures = structures
         box = structures.divided_box()
         self.low, self.size = box[0], box[1] - box[0]
@@ -37,7 +37,7 @@ class Reach:
         self.step = self.size / self.count
         # of the triangles of sheets, which may differ in heights: first and last cells
         self.ranges: list[tuple[Sheet, np.ndarray, np.ndarray]] = []
-        self.masks = [self._sides(work, shape, threads) for shape in structures.fault_shapes()]
+        self.masks = [self._sides(work, shape) for shape in structures.fault_shapes()]
         self.asked = np.ones(self.count, bool)
 
     def within(self, structures: Structures, faults: list[int], box: tuple[float, ...]) -> Reach:
@@ -115,7 +115,7 @@ class Reach:
         inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
         return inside
 
-    def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
+    def _sides(self, work: Work, fault: FaultShape) -> np.ndarray:
         beyond = native_module().structure_continuation(fault.native(), self.structures.divided_box())
         own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
         part = _hanging_together(~(own | beyond))
@@ -124,7 +124,7 @@ class Reach:
         # the first and the last of all, too: the fault is continued as far as the points reach
         asked = np.concatenate([middles[beside], middles[[0, -1], [0, -1], [0, -1]]])
         side = np.zeros(self.count, np.int8)
-        side[beside] = fault_sides(work, asked, fault, threads)[:-2]
+        side[beside] = fault_sides(work, asked, fault)[:-2]
         found = np.full(self.count, _BOTH, np.uint8)
         for number in np.unique(part[beside]):
             seen = side[beside & (part == number)]

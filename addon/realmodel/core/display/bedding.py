@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..cells.model_data import ModelData
 from ..cells.native_rocks import native_rocks
 from ..surfaces.sides import fault_sides
@@ -50,9 +50,7 @@ class Bedding:
         return Bedding(*(np.concatenate([vars(part)[name] for part in parts]) for name in vars(parts[0])))
 
 
-def bedding_of(
-    work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray, threads: int
-) -> Bedding:
+def bedding_of(work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray) -> Bedding:
     """Bedding coordinates of the faces of a model, cell by cell. faces: (N,) numbers; is_second: (N,) bool,
     of the second cell; then the corners are those of the face in reverse order. Raises Cancelled."""
     faces = np.ascontiguousarray(faces, np.int32)
@@ -76,7 +74,7 @@ def bedding_of(
             continue
         if of_corners is None:
             of_corners = np.zeros(corner_begin[-1], np.int32)
-        compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own], threads)
+        compartments = _compartments(work, model, structure, faces[own], is_second[own], cells[own])
         of_corners[_runs(corner_begin, own)] = len(histories) + compartments
         histories += [
             ([sheet.arrays for sheet in structure.of_compartment(c)], base_elevation, rules)
@@ -92,7 +90,6 @@ def bedding_of(
         histories,
         (faces, np.ascontiguousarray(is_second, bool), history, layer[block]),
         np.zeros(0, np.int32) if of_corners is None else of_corners,
-        execution=on_threads(threads),
     )
     grows = (model.surface_kind == 0) | np.isin(np.arange(len(model.surface_kind)), surface)
     is_top = (model.face_cells[faces, 1] < 0) & (model.face_surface[faces] >= 0)
@@ -133,7 +130,7 @@ def _runs(begin: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     return np.repeat(begin[numbers] - (ends - size), size) + np.arange(ends[-1] if len(ends) else 0)
 
 
-def _compartments(work: Work, model: ModelData, structure, faces, is_second, cells, threads) -> np.ndarray:
+def _compartments(work: Work, model: ModelData, structure, faces, is_second, cells) -> np.ndarray:
     """(C,) the compartment of a rock mass that each corner of some faces lies in, by its rows of sides. What
     a compartment of the model leaves open - a fault that does not divide the block, or that dies out - is
     where the corner lies, drawn a little into its cell."""
@@ -147,7 +144,7 @@ def _compartments(work: Work, model: ModelData, structure, faces, is_second, cel
         is_open = np.flatnonzero(sides[:, number] == 0)
         if len(is_open):
             points = _points_inside(model, faces, is_second) if points is None else points
-            sides[is_open, number] = fault_sides(work, points[is_open], shape, threads)
+            sides[is_open, number] = fault_sides(work, points[is_open], shape)
     sides = faults.without_dropped(sides)
     distinct, row = np.unique(sides, axis=0, return_inverse=True)
     equal = (distinct[:, None] == structure.compartments).sum(axis=2)

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..base.work import Cancel, native_module, on_threads, run
+from ..base.work import Cancel, native_module, run
 from ..cells.model_data import ModelData
 from .bedding import Bedding, bedding_of, seen_from_below
 
@@ -186,15 +186,14 @@ def _shells(
             count,
             tuple(float(value) for value in origin),
             shrink,
-            execution=on_threads(threads),
         )
         there = [arrays for arrays in shells if arrays is not None]
         if not there:
             return shells, None
         faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
-        return shells, bedding_of(work, model, faces, is_second, threads)
+        return shells, bedding_of(work, model, faces, is_second)
 
-    shells, bedding = run(task, cancel=cancel)
+    shells, bedding = run(task, cancel=cancel, threads=threads)
     found: list[tuple[PolygonMesh, np.ndarray] | None] = []
     corner, polygon = 0, 0
     for arrays in shells:

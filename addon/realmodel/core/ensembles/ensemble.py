@@ -57,7 +57,7 @@ def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 
     """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
     found = differences(realizer.model, model, threads)
-    blocks = blocks_at(model, places, threads)
+    blocks = blocks_at(model, places)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
         found,
@@ -159,9 +159,9 @@ def ensemble(
             model = build(project, cells="blocks", threads=threads)
         with work.part(built, 1.0):
             realizer = Realizer(model, seed, correlation)
-            return realized(work, realizer, realizations, places_of(model, places), threads)
+            return realized(work, realizer, realizations, places_of(model, places))
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def realized(
@@ -169,7 +169,6 @@ def realized(
     realizer: Realizer,
     realizations: int,
     points: np.ndarray,
-    threads: int = 0,
     each: Callable[[Sums], None] | None = None,
 ) -> Ensemble:
     """An ensemble of a built model, in this thread. points: (N, 3). each: is called with the sums of each
@@ -178,7 +177,7 @@ def realized(
 
     def one(number: int) -> Sums:
         with work.part(*steps[number : number + 2]):
-            sums = sums_of(realizer, number, points, threads)
+            sums = sums_of(realizer, number, points, work.threads)
         if each is not None:
             each(sums)
         return sums

@@ -18,7 +18,7 @@ def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
     point that lies on it within a rounding may get either side.
     """
     points = np.ascontiguousarray(points, np.float64)
-    return run(lambda work: blocks_of_all(work, closed_forms(model), points, threads))
+    return run(lambda work: blocks_of_all(work, closed_forms(model), points), threads=threads)
 
 
 @dataclass(frozen=True, eq=False)

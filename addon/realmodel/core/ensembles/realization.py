@@ -56,28 +56,28 @@ class Realizer:
         Raises InputRefused, BuildFailed, Cancelled.
         """
         try:
-            return run(lambda work: self._make(work, number, cells, threads), progress, cancel)
+            return run(lambda work: self._make(work, number, cells), progress, cancel, threads=threads)
         except InputRefused as error:
             raise error.within(f"realization {number}") from error
 
     def prepare(self, threads: int = 0) -> None:
         """Computes the data that all realizations share, so that workers do not compute them again."""
-        run(lambda work: self._interpolated(work, 0, threads))
+        run(lambda work: self._interpolated(work, 0), threads=threads)
 
-    def _make(self, work: Work, number: int, cells: str, threads: int) -> Model:
+    def _make(self, work: Work, number: int, cells: str) -> Model:
         began = time.perf_counter()
-        inputs, structures = self._interpolated(work, number, threads)
+        inputs, structures = self._interpolated(work, number)
         interpolated = time.perf_counter()
-        built = intersect(work, inputs, cells, threads, _INTERPOLATED, 0.98, structures)
+        built = intersect(work, inputs, cells, _INTERPOLATED, 0.98, structures)
         timings = {"interpolate": interpolated - began, "intersect": time.perf_counter() - interpolated}
         project = self.model.project
-        return Model.of(assemble(work, project, inputs, built, threads, timings, 0.98, structures))
+        return Model.of(assemble(work, project, inputs, built, timings, 0.98, structures))
 
-    def _interpolated(self, work: Work, number: int, threads: int) -> tuple:
+    def _interpolated(self, work: Work, number: int) -> tuple:
         """The rock masses with heights drawn, and the structures."""
         inputs = [self._drawn(entry, rock, number) for rock, entry in enumerate(self.model.rock_inputs)]
         project = self.model.project
-        structures = make_surfaces(work, project, inputs, threads, None, 0.0, _INTERPOLATED)
+        structures = make_surfaces(work, project, inputs, None, 0.0, _INTERPOLATED)
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:

@@ -113,9 +113,9 @@ def cross_validate(
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
             nodes, triangles = (np.empty((0, 2)), None) if mesh is None else mesh
-            return validate(method, Task(work, points, nodes, settings, threads, triangles), int(folds))
+            return validate(method, Task(work, points, nodes, settings, triangles), int(folds))
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def validate(method: str, task: Task, folds: int) -> CrossValidation:

@@ -107,7 +107,7 @@ class Draw:
     def _field(self, task: Task, field: GaussianField, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S at points (P, 2) and the nodes; at equal positions it is equal."""
         nodes = task.nodes
-        at_points, at_nodes = (field.at(task.work, places, task.threads) for places in (points, nodes))
+        at_points, at_nodes = (field.at(task.work, places) for places in (points, nodes))
         if field.variogram.nugget > 0:
             _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
             noise = self.noise.normal(_NUGGET, len(points) + len(nodes))

@@ -49,9 +49,9 @@ def interpolate(
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            return heights(method, Task(work, points, nodes, settings, threads, triangles))
+            return heights(method, Task(work, points, nodes, settings, triangles))
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def method_settings(method: str, neighbours: int | None, options: dict) -> dict:

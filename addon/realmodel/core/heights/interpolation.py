@@ -10,7 +10,7 @@ from importlib import import_module
 import numpy as np
 
 from ..base.sheet import Sheet
-from ..base.work import Arguments, Work, on_threads
+from ..base.work import Arguments, Work
 from ..base.work import Result as Value
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
@@ -47,7 +47,6 @@ class Task:
     points: np.ndarray
     nodes: np.ndarray
     settings: dict
-    threads: int
     triangles: np.ndarray | None = None
     left_out: bool = False
     surfaces: Mapping[str, Sheet] = field(default_factory=dict)
@@ -55,8 +54,7 @@ class Task:
     def run(
         self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs
     ) -> Value:
-        """A native function, with this task's threads."""
-        options.setdefault("execution", on_threads(self.threads))
+        """A native function."""
         return self.work.native(function, *arguments, **options)
 
 

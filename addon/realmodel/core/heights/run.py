@@ -53,7 +53,7 @@ def heights(method: str, task: Task) -> Interpolation:
     )
 
 
-def chosen(work: Work, points, settings: dict, threads: int) -> tuple[str, dict]:
+def chosen(work: Work, points, settings: dict) -> tuple[str, dict]:
     """The method that "auto" with these settings takes for points, and its options: they give the same
     heights. Raises InputRefused."""
     native = native_module()
@@ -61,7 +61,7 @@ def chosen(work: Work, points, settings: dict, threads: int) -> tuple[str, dict]
         raise InputRefused("there are no points", item="points")
     points, _ = without_mis_ties(points)
     try:
-        trial, _ = automatic.choose(Task(work, points, np.empty((0, 2)), settings, threads))
+        trial, _ = automatic.choose(Task(work, points, np.empty((0, 2)), settings))
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
     method, options = trial.candidate.method, trial.candidate.options

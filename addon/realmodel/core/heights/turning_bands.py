@@ -15,7 +15,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.elementary import cos, exp, hypot, sin
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..settings.variogram import NO_ANISOTROPY, Structure, Variogram
 
 LINES = 320
@@ -86,18 +86,16 @@ class GaussianField:
     frame: Frame
     noise: Noise
 
-    def at(self, work: Work, nodes: np.ndarray, threads: int) -> np.ndarray:
+    def at(self, work: Work, nodes: np.ndarray) -> np.ndarray:
         """(N,) float64: the field at nodes (N, 2)."""
         local = np.ascontiguousarray(nodes - (self.frame.low + self.frame.high) / 2)
         field = np.zeros(len(nodes))
         for number, part in enumerate(self.variogram.parts()):
             if part.sill > 0:
-                field += self._of_structure(work, number, part, local, threads)
+                field += self._of_structure(work, number, part, local)
         return field
 
-    def _of_structure(
-        self, work: Work, number: int, part: Structure, local: np.ndarray, threads: int
-    ) -> np.ndarray:
+    def _of_structure(self, work: Work, number: int, part: Structure, local: np.ndarray) -> np.ndarray:
         east, north = _directions().T[:, :, None]
         along, across = _to_isotropic(part.anisotropy or self.anisotropy or NO_ANISOTROPY)
         directions = east * along + north * across
@@ -130,7 +128,6 @@ class GaussianField:
                 starts,
                 values,
                 step,
-                execution=on_threads(threads),
             )
         return scale * field
 

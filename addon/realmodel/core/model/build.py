@@ -54,12 +54,10 @@ def build(
     if stage is not None:
         check_stage(project, stage)
     native_module()
-    return run(lambda work: _build(work, project, cells, threads, stage, memory), progress, cancel)
+    return run(lambda work: _build(work, project, cells, stage, memory), progress, cancel, threads=threads)
 
 
-def _build(
-    work: Work, project: Project, cells: str, threads: int, stage: int | None, memory: int | None
-) -> Model:
+def _build(work: Work, project: Project, cells: str, stage: int | None, memory: int | None) -> Model:
     timings = {"read": 0.0, "mesh": 0.0, "interpolate": 0.0, "intersect": 0.0}
     ends = _phase_ends(project)
 
@@ -70,7 +68,7 @@ def _build(
         timings[name] += time.perf_counter() - began
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
-        inputs, project = read_inputs(work, project, threads)
+        inputs, project = read_inputs(work, project)
     with timed("mesh"):
         mesh_inputs(work, inputs, ends["read"], ends["mesh"])
 
@@ -80,13 +78,13 @@ def _build(
     require_memory(taken(), cells, memory, len(project.faults) + len(project.bodies))
     start, end = ends["mesh"], ends["interpolate"]
     with timed("interpolate"):
-        structures = make_surfaces(work, project, inputs, threads, stage, start, end)
+        structures = make_surfaces(work, project, inputs, stage, start, end)
     inputs = taken()
     structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
-        built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
+        built = intersect(work, inputs, cells, ends["interpolate"], ends["intersect"], structures)
     given = replace(project, rocks=[entry.rock for entry in inputs])
-    return Model.of(assemble(work, given, inputs, built, threads, timings, ends["intersect"], structures))
+    return Model.of(assemble(work, given, inputs, built, timings, ends["intersect"], structures))
 
 
 def _phase_ends(project: Project) -> dict[str, float]:

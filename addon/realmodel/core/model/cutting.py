@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError, number_list, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..results.automatic_library import model_with_library
@@ -131,12 +131,12 @@ def _cut(
         function, *cutter = call(native)
         with work.phase(0.0, _CUT_SHARE, "cutting"):
             try:
-                halves = work.native(function, model.native(), *cutter, execution=on_threads(threads))
+                halves = work.native(function, model.native(), *cutter)
             except native.InputError as error:
                 raise _refused(error) from error
         return _assembled(work, model, halves, began)
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 _ADVICE = {
@@ -183,7 +183,6 @@ def section(
                 model.native(),
                 point,
                 normal,
-                execution=on_threads(threads),
             )
         return Section(
             **_section_arrays(model, found),
@@ -191,7 +190,7 @@ def section(
             faults=traces_on_plane(model, point, normal),
         )
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def fence(
@@ -225,7 +224,6 @@ def fence(
                         model.native(),
                         tuple(start),
                         tuple(end),
-                        execution=on_threads(threads),
                     )
                 )
         numbers = [np.full(len(panel["cells"]), k, np.int32) for k, panel in enumerate(panels)]
@@ -236,7 +234,7 @@ def fence(
             faults=traces_on_fence(model, polyline),
         )
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def _joined(panels: list[dict]) -> dict:

@@ -105,7 +105,7 @@ def estimate(
             cells, threads, triangles, memory_bound(inputs, cells, structures), seconds, available
         )
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def memory_bound(inputs: list[RockInput], cells: str, structures: int = 0) -> int:

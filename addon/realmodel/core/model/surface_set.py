@@ -97,16 +97,16 @@ def build_surfaces(
     if not any(rock.surfaces for rock in project.rocks):
         raise UsageError("the project has no surfaces")
     native_module()
-    return run(lambda work: _build(work, project, threads, stage, keep, reader, flat), progress, cancel)
+    return run(
+        lambda work: _build(work, project, stage, keep, reader, flat), progress, cancel, threads=threads
+    )
 
 
-def _build(
-    work: Work, project: Project, threads: int, stage: int | None, keep: Keep, reader: Reader, flat
-) -> SurfaceSet:
+def _build(work: Work, project: Project, stage: int | None, keep: Keep, reader: Reader, flat) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
-        inputs, with_arrays = read_inputs(work, project, threads, reader)
+        inputs, with_arrays = read_inputs(work, project, reader)
     mesh_inputs(work, inputs, _READ, _MESHED, keep)
-    structures = make_surfaces(work, with_arrays, inputs, threads, stage, _MESHED, 1.0, keep, flat)
+    structures = make_surfaces(work, with_arrays, inputs, stage, _MESHED, 1.0, keep, flat)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

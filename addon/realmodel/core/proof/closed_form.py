@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..settings.rules import RULES
 from ..surfaces.sides import RockFaults, sides_of
 from ..surfaces.wrong_sides import heights_at
@@ -31,11 +31,11 @@ class BodyOfRock:
     after: int
     block: int
 
-    def holds(self, work: Work, points: np.ndarray, threads: int) -> np.ndarray:
+    def holds(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) bool: the points inside."""
         vertices, triangles = self.shape
         given: list[tuple] = [(vertices, triangles, True, [], False)]
-        return work.native(native_module().structure_sides, given, points, execution=on_threads(threads)) < 0
+        return work.native(native_module().structure_sides, given, points) < 0
 
 
 @dataclass(frozen=True)
@@ -53,19 +53,19 @@ class ClosedForm:
     bodies: Sequence[BodyOfRock] = ()
     region: Sheet | None = None
 
-    def compartments_of(self, work: Work, points: np.ndarray, threads: int = 0) -> np.ndarray:
+    def compartments_of(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point (N, 3) lies in; -1 for none."""
-        sides = sides_of(work, points, self.faults, threads)
+        sides = sides_of(work, points, self.faults)
         found = np.full(len(points), -1, np.int64)
         for number, row in enumerate(self.compartments):
             found[(sides == row).all(axis=1)] = number
         return found
 
-    def blocks_at(self, work: Work, points: np.ndarray, threads: int = 0) -> np.ndarray:
+    def blocks_at(self, work: Work, points: np.ndarray) -> np.ndarray:
         """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
-        where = self.compartments_of(work, points, threads)
-        heights = [self._heights(work, k, points, where, threads) for k in range(len(self.rules))]
-        insides = [body.holds(work, points, threads) for body in self.bodies]
+        where = self.compartments_of(work, points)
+        heights = [self._heights(work, k, points, where) for k in range(len(self.rules))]
+        insides = [body.holds(work, points) for body in self.bodies]
         if self.region is None:  # the rock mass reaches as far as its surfaces
             reached = ~np.isnan(heights).all(axis=0)
             insides = [inside & reached for inside in insides]
@@ -77,10 +77,10 @@ class ClosedForm:
         if self.region is not None:
             vertices, triangles = self.region
             level = Sheet(np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles)
-            blocks[np.isnan(heights_at(work, level, points[:, :2], threads))] = AIR
+            blocks[np.isnan(heights_at(work, level, points[:, :2]))] = AIR
         return blocks
 
-    def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray, threads: int):
+    def _heights(self, work: Work, surface: int, points: np.ndarray, where: np.ndarray):
         """(N,) heights of a surface at points in the compartments `where`."""
         found = np.full(len(points), np.nan)
         of_sheet: dict[Sheet, list[int]] = {}
@@ -89,7 +89,7 @@ class ClosedForm:
         for sheet, compartments in of_sheet.items():
             here = np.flatnonzero(np.isin(where, compartments))
             if len(here):
-                found[here] = heights_at(work, sheet, points[here, :2], threads)
+                found[here] = heights_at(work, sheet, points[here, :2])
         return found
 
 
@@ -127,11 +127,11 @@ def closed_forms(model) -> list[ClosedForm]:
     return found
 
 
-def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray, threads: int = 0) -> np.ndarray:
+def blocks_of_all(work: Work, forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:
     """(N,) the block at points (N, 3) of several rock masses; AIR for none."""
     blocks = np.full(len(points), AIR, np.int64)
     for form in forms:
-        own = form.blocks_at(work, points, threads)
+        own = form.blocks_at(work, points)
         blocks = np.where(own != AIR, own, blocks)
     return blocks
 

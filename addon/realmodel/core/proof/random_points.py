@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.errors import place_text
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..surfaces.wrong_sides import heights_at
 from .closed_form import AIR, blocks_of_all, closed_forms
 
@@ -18,7 +18,7 @@ _LOOKED_AT = 200  # disagreeing points that are tested for rounding
 _SHOWN = 5  # offenders of each test
 
 
-def check_points(work: Work, model, arrays: dict, places: int, seed: int, threads: int) -> list[dict]:
+def check_points(work: Work, model, arrays: dict, places: int, seed: int) -> list[dict]:
     """The tests "places" and "surfaces" of a model with structures, as the native part gives those of others:
     about so many points spread in the model, beside its faces, and beside faults and bodies. arrays: of the
     model, as native tests take it."""
@@ -28,8 +28,8 @@ def check_points(work: Work, model, arrays: dict, places: int, seed: int, thread
     forms = closed_forms(model)
 
     def looked_up(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        cells = work.native(native_module().cells_at, arrays, points, execution=on_threads(threads))
-        return cells, blocks_of_all(work, forms, points, threads)
+        cells = work.native(native_module().cells_at, arrays, points)
+        return cells, blocks_of_all(work, forms, points)
 
     cells, said = looked_up(points)
     is_block = np.where(cells < 0, AIR, np.append(model.cell_block, AIR)[cells])
@@ -44,7 +44,7 @@ def check_points(work: Work, model, arrays: dict, places: int, seed: int, thread
         _offender(model, points[n], int(cells[n]), int(is_block[n]), int(said[n])) for n in wrong[:_SHOWN]
     ]
     found = [_entry("places", "points", len(points), len(wrong), int(near.sum()), began, offenders)]
-    return [*found, _check_faces(work, model, places, random, threads)]
+    return [*found, _check_faces(work, model, places, random)]
 
 
 def _points(model, places: int, random) -> np.ndarray:
@@ -89,7 +89,7 @@ def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dic
     }
 
 
-def _check_faces(work: Work, model, places: int, random, threads: int) -> dict:
+def _check_faces(work: Work, model, places: int, random) -> dict:
     """Whether the middles of some faces lie on the surface, fault or body that the faces name."""
     began = time.perf_counter()
     faces = np.flatnonzero(model.face_surface >= 0)
@@ -103,12 +103,12 @@ def _check_faces(work: Work, model, places: int, random, threads: int) -> dict:
         vertices, triangles = model.surface(number)
         if model.surface_kind[number] == 0:
             for sheet in model.sheet_triangles(number):
-                z = heights_at(work, Sheet(vertices, sheet), points[own, :2], threads)
+                z = heights_at(work, Sheet(vertices, sheet), points[own, :2])
                 off = np.abs(z - points[own, 2])
                 away[own] = np.fmin(away[own], off)
         else:
-            nearest, run = native_module().nearest_triangles, on_threads(threads)
-            _, away[own] = work.native(nearest, vertices[triangles], points[own], execution=run)
+            nearest = native_module().nearest_triangles
+            _, away[own] = work.native(nearest, vertices[triangles], points[own])
     wrong = np.flatnonzero(away > allowed)
     slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
     wrong = wrong[~slivers]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.errors import UsageError, place_text
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.native_rocks import native_rocks
 from ..settings.method_options import check_threads
 from .random_points import check_points
@@ -201,11 +201,11 @@ def validate(
             return [ValidationTest("arrays", number, says, "faces", faces, len(wrong), 0, 0.0, offenders)]
         native, arrays = native_module(), _native_model(model)
         with work.phase(0.0, 0.6, "checking every cell and face"):
-            found = work.native(native.check_topology, arrays, execution=on_threads(threads))
+            found = work.native(native.check_topology, arrays)
         if places and not model.is_cut and found[0]["failed"] == 0 and len(model.vertices):
             with work.phase(0.6, 1.0, "comparing with the closed form"):
                 if model.structures.is_divided:
-                    found += check_points(work, model, arrays, int(places), int(seed), threads)
+                    found += check_points(work, model, arrays, int(places), int(seed))
                 else:
                     found += work.native(
                         native.check_samples,
@@ -214,12 +214,11 @@ def validate(
                         _block_of_surface(model),
                         int(places),
                         int(seed),
-                        execution=on_threads(threads),
                     )
         tests = [_test(entry, model) for entry in found]
         return sorted(tests, key=lambda test: test.number)
 
-    tests = run(task, progress, cancel)
+    tests = run(task, progress, cancel, threads=threads)
     return ValidationReport(
         project=model.project.name,
         cell_kind=model.cell_kind,

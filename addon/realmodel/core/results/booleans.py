@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..settings.method_options import check_threads
 
 SURFACES = ("the first surface", "the second surface")  # as refusals name them
@@ -211,16 +211,16 @@ def intersect(
     Raises InputRefused (with the numbers of the triangles and a place), UsageError, Cancelled, BuildFailed.
     """
     threads = check_threads(threads)
-    return run(lambda work: intersect_within(work, a, b, threads), progress, cancel)
+    return run(lambda work: intersect_within(work, a, b), progress, cancel, threads=threads)
 
 
-def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Intersection:
+def intersect_within(work: Work, a, b, share: float = 1.0) -> Intersection:
     """`intersect` as the first part of a job, which takes this share of its progress."""
     first, second = _checked(a, 0), _checked(b, 1)
     native = native_module()
     with work.phase(0.0, share, "intersecting"):
         try:
-            return Intersection(work.native(native.intersect, *first, *second, execution=on_threads(threads)))
+            return Intersection(work.native(native.intersect, *first, *second))
         except native.InputError as error:
             raise _refused(error) from error
 

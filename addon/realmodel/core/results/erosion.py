@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.joining import build_joined
 from ..cells.native_rocks import native_rocks
 from ..settings.rules import RULES
@@ -55,10 +55,10 @@ def eroded(
     model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
 ) -> Erosion:
     """Model.eroded."""
-    return run(lambda work: _eroded(work, model, threads), progress, cancel)
+    return run(lambda work: _eroded(work, model), progress, cancel, threads=threads)
 
 
-def _eroded(work: Work, model, threads: int) -> Erosion:
+def _eroded(work: Work, model) -> Erosion:
     """Computes it backward in time, from the model itself to just before each surface that cuts anything."""
     stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
     arrivals = _arrivals_of_bodies(model)
@@ -68,11 +68,11 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
     after, done, total = remaining, 0, sum(m + 1 for m in stages) + sum(m + 1 for m, _ in arrivals)
     for m in reversed(stages):
         with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
-            before = _stage_volumes(work, model, m, threads)
+            before = _stage_volumes(work, model, m)
         done += m + 1
         # volumes taken by later bodies are no erosion
         came = any(time > m for time, _ in arrivals)
-        left = _stage_volumes(work, model, m + 1, threads, (m + 1, 0)) if came else after
+        left = _stage_volumes(work, model, m + 1, (m + 1, 0)) if came else after
         for surface, older in _cut_at(model, m + 1):
             removed = before[older] - left[older]
             volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
@@ -84,10 +84,10 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
         states = []
         for body in bodies:
             with work.phase(done / total, (done + m + 1) / total, f"building without '{names[body]}'"):
-                states.append(_stage_volumes(work, model, m, threads, (m, body)))
+                states.append(_stage_volumes(work, model, m, (m, body)))
             done += m + 1
         last = m == _most_surfaces(model) - 1
-        states.append(remaining if last else _stage_volumes(work, model, m, threads))
+        states.append(remaining if last else _stage_volumes(work, model, m))
         for body, before, left in zip(bodies, states, states[1:], strict=False):
             gone = np.nan_to_num(before - left)
             taken[body] += np.where(gone > _rounding(model, np.nan_to_num(before)), gone, 0.0)
@@ -131,9 +131,7 @@ def _bodies_before(model, rock: int, k: int) -> list[int]:
     ]
 
 
-def _stage_volumes(
-    work: Work, model, m: int, threads: int, until: tuple[int, int] | None = None
-) -> np.ndarray:
+def _stage_volumes(work: Work, model, m: int, until: tuple[int, int] | None = None) -> np.ndarray:
     """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
     bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
@@ -147,11 +145,10 @@ def _stage_volumes(
             native_module().build_rock_masses,
             native_rocks(model, m),
             cells="blocks",
-            execution=on_threads(threads),
         )["volumes"]
     else:
         inputs = [entry.stage(m) for entry in model.rock_inputs]
-        volume = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch).volumes
+        volume = build_joined(work, inputs, bodies, "blocks", *work.stretch).volumes
     for b, block in enumerate(model.blocks):
         own = block.surface - first[block.rock]
         body = block.surface - first[-1]

@@ -46,7 +46,7 @@ def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarr
     structure = entry.divided()
 
     def task(work: Work) -> np.ndarray:
-        sides = point_sides(work, points, entry, at, model.threads).sides
+        sides = point_sides(work, points, entry, at).sides
         active = structure.faults.active(at)
         found = np.full(len(points), np.nan)
         for compartment, row in enumerate(structure.compartments):

@@ -42,7 +42,7 @@ def surface_quality(
         vertices, triangles = model.surface(number)
         result = model.interpolations[number]
         with work.phase(0.0, 1.0, "cross-validating"):
-            validated, missing = _cross_validation(work, model, number, threads)
+            validated, missing = _cross_validation(work, model, number)
         mean, most = _deviation(vertices, triangles, model.surface_attributes(number)["variance"])
         return SurfaceQuality(
             result.variogram if result else None,
@@ -53,10 +53,10 @@ def surface_quality(
             most,
         )
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
-def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[CrossValidation | None, str]:
+def _cross_validation(work: Work, model, number: int) -> tuple[CrossValidation | None, str]:
     """Cross-validation by the method of the heights, or the reason why there is none."""
     result = model.interpolations[number]
     if result is None:
@@ -79,7 +79,7 @@ def _cross_validation(work: Work, model, number: int, threads: int) -> tuple[Cro
     vertices, triangles = model.surface(number)
     on_mesh = METHODS[method].on_mesh
     nodes = np.ascontiguousarray(vertices[:, :2]) if on_mesh else np.empty((0, 2))
-    task = Task(work, points, nodes, settings, threads, triangles if on_mesh else None)
+    task = Task(work, points, nodes, settings, triangles if on_mesh else None)
     try:
         return validate(method, task, DEFAULT_FOLDS), ""
     except InputRefused as error:

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, UsageError
 from ..base.finite import is_number
-from ..base.work import Cancel, Progress, Work, native_module, on_threads, run
+from ..base.work import Cancel, Progress, Work, native_module, run
 from ..settings.method_options import check_threads
 from .volume_mesh import PolyhedralMesh, model_arrays
 from .volume_warnings import changed_volumes
@@ -67,7 +67,6 @@ def cleaned_cells(
                 len(model.blocks),
                 model.surface_kind,
                 float(tolerance),
-                execution=on_threads(threads),
             )
         if not len(made["cell_block"]):
             raise InputRefused(
@@ -75,7 +74,7 @@ def cleaned_cells(
             )
         return _assembled(model, float(tolerance), made)
 
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=threads)
 
 
 def _assembled(model, tolerance: float, made: dict) -> CleanedCells:

@@ -12,7 +12,7 @@ from .volume_mesh import model_arrays
 _FAULT = 1  # of surface_kind
 
 
-def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[tuple], threads: int) -> dict:
+def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[tuple]) -> dict:
     """Tetrahedra of a model: points (P, 3), corners (E, 4), block and compartment (E,), triangles (F, 3)
     outside, between blocks or compartments and on faults, and surface (F,) of these.
 
@@ -23,7 +23,6 @@ def filled(work: Work, model, edge_length: float, tolerance: float, sizes: list[
     regions, of_cell = np.unique(parts, axis=0, return_inverse=True)
     made = call_native(
         work,
-        threads,
         native_module().filled_mesh,
         model_arrays(model),
         of_cell.ravel().astype(np.int32),

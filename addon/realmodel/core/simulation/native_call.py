@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..base.errors import BuildFailed, InputRefused
-from ..base.work import Arguments, Result, Work, native_module, on_threads
+from ..base.work import Arguments, Result, Work, native_module
 
 
 def call_native(
     work: Work,
-    threads: int,
     function: Callable[Arguments, Result],
     *arguments: Arguments.args,
     **options: Arguments.kwargs,
@@ -19,7 +18,6 @@ def call_native(
     """The result of a native function. Raises InputRefused, BuildFailed."""
     native = native_module()
     try:
-        options.setdefault("execution", on_threads(threads))
         return work.native(function, *arguments, **options)
     except native.InputError as error:
         if error.kind == "nothing":

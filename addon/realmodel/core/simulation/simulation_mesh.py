@@ -98,7 +98,7 @@ def simulation_mesh(
 
     def fill(work: Work) -> SimulationMesh:
         with work.phase(0.0, 1.0, "filling with tetrahedra"):
-            made = filled(work, model, float(edge_length), float(minimum_thickness), sizes, threads)
+            made = filled(work, model, float(edge_length), float(minimum_thickness), sizes)
         return _of_tetrahedra(model, made)
 
     def task(work: Work) -> SimulationMesh:
@@ -106,7 +106,7 @@ def simulation_mesh(
         rocks = np.array([block.rock for block in model.blocks], np.int32)
         with work.phase(0.0, 0.2, "simplifying lines"):
             lines = call_native(
-                work, threads, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes
+                work, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes
             )
         inner = lines.inner_lines
         plan_sizes = _of_plan(sizes, inner)
@@ -117,10 +117,10 @@ def simulation_mesh(
         layering = float(minimum_thickness), numbers, thickest, elements == "tetrahedra"
         with work.phase(0.5, 1.0, "filling columns"):
             function = native_module().layered_mesh
-            made = call_native(work, threads, function, arrays, rocks, lines, vertices, triangles, *layering)
+            made = call_native(work, function, arrays, rocks, lines, vertices, triangles, *layering)
         return _assembled(model, made, elements, numbers)
 
-    return run(fill if without_columns else task, progress, cancel)
+    return run(fill if without_columns else task, progress, cancel, threads=threads)
 
 
 def _check_lengths(lengths: dict[str, float]) -> None:

@@ -78,7 +78,6 @@ def close_gaps(
     structures: Structures,
     inputs: list[RockInput],
     box: np.ndarray,
-    threads: int,
     has_sheets: bool = False,
 ) -> tuple[list[Fault], list[BuildWarning]]:
     """The faults of some structures, with arrays, continued where their borders end short of the wall of a
@@ -96,7 +95,7 @@ def close_gaps(
         waiting.remove(number)
         ends = [faults[number_of[name]] for name in faults[number].ends_at]
         around = [
-            _Around(work, structures, inputs[rock], number, last, threads)
+            _Around(work, structures, inputs[rock], number, last)
             for rock, last in structures.displaced[number].items()
             if not has_sheets or inputs[rock].divided().is_made(last)
         ]
@@ -129,10 +128,8 @@ def tops_of_faults(structures: Structures, number: int, rock) -> set[int]:
 class _Around:
     """A fault in one rock mass. last: the youngest surface of it that the fault displaces."""
 
-    def __init__(
-        self, work: Work, structures: Structures, entry: RockInput, number: int, last: int, threads: int
-    ):
-        self.work, self.structures, self.entry, self.threads = work, structures, entry, threads
+    def __init__(self, work: Work, structures: Structures, entry: RockInput, number: int, last: int):
+        self.work, self.structures, self.entry = work, structures, entry
         self.number, self.last = number, last
         self.width = _GAP * edge_length(entry)
 
@@ -206,10 +203,10 @@ class _Around:
         vertices, triangles = fault.triangulation()
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         area = norm(np.cross(b - a, c - a))
-        kept = dot(fault_sides(self.work, (a + b + c) / 3, shape, self.threads), area) > 0
+        kept = dot(fault_sides(self.work, (a + b + c) / 3, shape), area) > 0
 
         def beside(points: np.ndarray) -> np.ndarray:
-            return (fault_sides(self.work, points, shape, self.threads) > 0) == kept
+            return (fault_sides(self.work, points, shape) > 0) == kept
 
         return beside
 
@@ -239,7 +236,7 @@ class _Around:
         active = structure.faults.active(surface)
         if self.number in structure.faults.numbers:
             active[structure.faults.numbers.index(self.number)] = False
-        sides = sides_of(self.work, points, structure.faults, self.threads, np.flatnonzero(active).tolist())
+        sides = sides_of(self.work, points, structure.faults, np.flatnonzero(active).tolist())
         for sheet in structure.distinct(surface):
             own = [n for n, sheets in enumerate(structure.sheets) if sheets[surface] is sheet]
             rows = np.unique(structure.compartments[own][:, active], axis=0)
@@ -251,7 +248,7 @@ class _Around:
         return low, high
 
     def _heights(self, sheet: Sheet, points: np.ndarray) -> np.ndarray:
-        return heights_at(self.work, sheet, points[:, :2], self.threads)
+        return heights_at(self.work, sheet, points[:, :2])
 
     def require_end(self, fault: Fault, ends: list[Fault], box, has_sheets: bool) -> None:
         """Refuses a fault whose border certainly ends inside the rock. Raises InputRefused."""
@@ -276,7 +273,7 @@ class _Around:
             if not surface.interpolated or surface.method_options()[1].get("extrapolate") == "none":
                 continue
             points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-            sides = fault_sides(self.work, points, shape, self.threads)
+            sides = fault_sides(self.work, points, shape)
             if not ((sides > 0).any() and (sides < 0).any()):
                 continue
             low, high = points[:, 2].min(), points[:, 2].max()

@@ -33,13 +33,11 @@ _ROUNDS = 4  # in which sheets may reach beyond what was divided
 _CHOSEN = 0.3  # of the progress of a rock mass: "auto" has made its choice
 
 
-def read_inputs(
-    work: Work, project: Project, threads: int, reader: Reader = read_each
-) -> tuple[list[RockInput], Project]:
+def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tuple[list[RockInput], Project]:
     """Reads a project: its rock masses, and the project with the arrays of its faults and bodies. reader: how
     surfaces are read. Raises InputRefused."""
     inputs = read_rocks(work, project, reader)
-    faults, bodies, warnings = read_structures(work, project, threads, inputs)
+    faults, bodies, warnings = read_structures(work, project, inputs)
     if warnings:
         inputs[0].warnings += warnings
     return inputs, replace(project, faults=faults, bodies=bodies)
@@ -59,7 +57,6 @@ def make_surfaces(
     work: Work,
     project: Project,
     inputs: list[RockInput],
-    threads: int,
     stage: int | None,
     start: float,
     end: float,
@@ -74,13 +71,13 @@ def make_surfaces(
     joins: as of make_structures. Raises InputRefused, BuildFailed.
     """
     if project.faults or project.bodies:
-        return make_structures(work, project, inputs, threads, stage, start, end, joins, keep)
+        return make_structures(work, project, inputs, stage, start, end, joins, keep)
     for entry, (begin, finish) in _in_parts(inputs, start, end):
         numbers: Collection[int] = ()
         if flat is not None:
-            settle_methods(work, entry, begin, begin + _CHOSEN * (finish - begin), threads)
+            settle_methods(work, entry, begin, begin + _CHOSEN * (finish - begin))
             numbers = flat(entry.rock)
-        interpolate_rock(work, entry, begin, finish, threads, stage, keep, numbers)
+        interpolate_rock(work, entry, begin, finish, stage, keep, numbers)
     return structures_of(project, [], [])
 
 
@@ -94,7 +91,6 @@ def make_structures(
     work: Work,
     project: Project,
     inputs: list[RockInput],
-    threads: int,
     stage: int | None,
     start: float,
     end: float,
@@ -113,32 +109,32 @@ def make_structures(
         faults = [_facing_up(work, fault) for fault in project.faults]
         structures = structures_of(project, faults, project.bodies)
         box = box_around(inputs, structures)
-        structures = _without_gaps(work, structures, inputs, box, threads)
-        structures = divide(work, structures, box, threads)
+        structures = _without_gaps(work, structures, inputs, box)
+        structures = divide(work, structures, box)
     is_closed = False
     for _ in range(_ROUNDS):
         add_compartments(structures, inputs)
         tops = [tops_of_faults(structures, number, entry.rock) for number, entry in enumerate(inputs)]
         middle = first + (end - first) * sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
-        _make_all(work, inputs, tops, first, middle, threads, stage, keep)
+        _make_all(work, inputs, tops, first, middle, stage, keep)
         if not is_closed:
             is_closed = True
-            closed = _without_gaps(work, structures, inputs, box, threads, has_sheets=True)
+            closed = _without_gaps(work, structures, inputs, box, has_sheets=True)
             if closed is not structures:
-                structures = divide(work, closed, box, threads)
+                structures = divide(work, closed, box)
                 add_compartments(structures, inputs)
-                _make_all(work, inputs, tops, first, middle, threads, stage, keep)
-        _make_all(work, inputs, None, middle, end, threads, stage, keep)
+                _make_all(work, inputs, tops, first, middle, stage, keep)
+        _make_all(work, inputs, None, middle, end, stage, keep)
         for entry in inputs:
             numbers = {surface.name: number for number, surface in enumerate(entry.rock.surfaces)}
             entry.divided().warnings.sort(key=lambda each: numbers[each[1].surface or ""])
-            warn_of_doubts(work, entry, threads, stage, keep)
+            warn_of_doubts(work, entry, stage, keep)
         wider = box_around(inputs, structures, has_sheets=True)
         if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
             break
         box = np.array([np.minimum(wider[0], box[0]), np.maximum(wider[1], box[1])])
         before = structures.sides
-        structures = divide(work, structures, box, threads)
+        structures = divide(work, structures, box)
         if np.array_equal(structures.sides, before):
             break
     else:
@@ -155,21 +151,19 @@ def make_structures(
     return structures
 
 
-def _make_all(
-    work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, start, end, threads, stage, keep
-):
+def _make_all(work: Work, inputs: list[RockInput], numbers: list[set[int]] | None, start, end, stage, keep):
     """Makes the sheets of some surfaces of each rock mass (RockInput); None: of all that have none yet."""
     for number, (entry, (begin, finish)) in enumerate(_in_parts(inputs, start, end)):
         some = numbers[number] if numbers else None
-        make_sheets(work, entry, begin, finish, threads, stage, keep, some)
+        make_sheets(work, entry, begin, finish, stage, keep, some)
 
 
 def _without_gaps(
-    work: Work, structures: Structures, inputs: list[RockInput], box, threads: int, has_sheets: bool = False
+    work: Work, structures: Structures, inputs: list[RockInput], box, has_sheets: bool = False
 ) -> Structures:
     """The structures with their faults continued where close_gaps does so; the same ones where it does not.
     Its warnings are added to the first RockInput."""
-    faults, warnings = close_gaps(work, structures, inputs, box, threads, has_sheets)
+    faults, warnings = close_gaps(work, structures, inputs, box, has_sheets)
     if not warnings:
         return structures
     inputs[0].warnings += warnings

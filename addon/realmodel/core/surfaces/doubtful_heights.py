@@ -13,7 +13,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import number_list, place_text
 from ..base.sheet import Sheet
 from ..base.units import number_text
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..heights.mis_ties import mean_heights
 from ..project.project import Rock
 from ..settings.methods import SURFACE_OPTIONS
@@ -37,26 +37,26 @@ class Compartment:
 
 
 def doubtful_heights(
-    work: Work, entry: RockInput, numbers: Iterable[int], threads: int, compartment: Compartment | None = None
+    work: Work, entry: RockInput, numbers: Iterable[int], compartment: Compartment | None = None
 ) -> list[BuildWarning]:
     """Warnings about surfaces of a RockInput, by their numbers in ascending order, once all that are built
     have heights. compartment: that the heights are of, with one surface asked for, whose points are those in
     it. None of a realization: what it draws is no estimate."""
     if entry.draws is not None:
         return []
-    reach, found = _Reach(work, entry, threads), []
+    reach, found = _Reach(work, entry), []
     for number in numbers:
         points = entry.rock.surfaces[number].points
         points = np.empty((0, 3)) if points is None else np.ascontiguousarray(points, np.float64)
         if len(points):
-            found.append(_missed(work, entry, number, points, threads, compartment is None))
+            found.append(_missed(work, entry, number, points, compartment is None))
         if len(points := points if compartment is None else compartment.points):
             found.append(reach.beyond(number, points, compartment))
     return [warning for warning in found if warning is not None]
 
 
 def _missed(
-    work: Work, entry: RockInput, number: int, points: np.ndarray, threads: int, are_all: bool
+    work: Work, entry: RockInput, number: int, points: np.ndarray, are_all: bool
 ) -> BuildWarning | None:
     """The warning about the point that a surface misses by most. are_all: the points are all that it has, and
     have the numbers that users know.
@@ -66,16 +66,16 @@ def _missed(
     that as many normally distributed residuals with the deviation of the other ones would have.
     """
     rock, shape = entry.rock, entry.surface(number)
-    z = heights_at(work, shape, points[:, :2], threads)
+    z = heights_at(work, shape, points[:, :2])
     known = np.isfinite(z)
     sizes = np.where(known, np.abs(points[:, 2] - z), 0.0)
-    apart = _distance_to_neighbors(work, entry, number, points, z, threads)
+    apart = _distance_to_neighbors(work, entry, number, points, z)
     if apart is None:
         return None
     candidates = np.flatnonzero(sizes > _NOTABLE * apart)
     if not len(candidates):
         return None
-    beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates], threads)
+    beyond_mesh = sizes[candidates] - _unresolved(work, entry, shape, points[candidates])
     worst = int(candidates[beyond_mesh.argmax()])
     largest = float(beyond_mesh.max())
     if largest <= _NOTABLE * apart or (largest <= apart and not _is_outlier(sizes[known], sizes[worst])):
@@ -90,16 +90,16 @@ def _missed(
     return BuildWarning(text, "residual", rock.name, rock.surfaces[number].name, (worst,) * are_all)
 
 
-def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray, threads: int) -> np.ndarray:
+def _unresolved(work: Work, entry: RockInput, shape: Sheet, points: np.ndarray) -> np.ndarray:
     """(N,) what the mesh may not show of a surface at points: half of its second difference over an edge,
     about twice the error of linear interpolation at a peak between nodes."""
     nodes, triangles = entry.planar_mesh()
     plan = np.ascontiguousarray(points[:, :2])
     # edges of equilateral triangles as large as the mean one
     edge = np.sqrt(float(np.prod(np.ptp(nodes, axis=0))) / len(triangles) * 4.0 / np.sqrt(3.0))
-    middle, found = heights_at(work, shape, plan, threads), np.zeros(len(plan))
+    middle, found = heights_at(work, shape, plan), np.zeros(len(plan))
     for offset in ((edge, 0.0), (0.0, edge)):
-        before, after = (heights_at(work, shape, plan + np.array(offset) * sign, threads) for sign in (-1, 1))
+        before, after = (heights_at(work, shape, plan + np.array(offset) * sign) for sign in (-1, 1))
         found = np.fmax(found, 0.5 * np.abs(before + after - 2.0 * middle))  # without those at the border
     return found
 
@@ -113,14 +113,14 @@ def _is_outlier(sizes: np.ndarray, largest: float) -> bool:
 
 
 def _distance_to_neighbors(
-    work: Work, entry: RockInput, number: int, points: np.ndarray, z: np.ndarray, threads: int
+    work: Work, entry: RockInput, number: int, points: np.ndarray, z: np.ndarray
 ) -> float | None:
     """The median of the vertical distances, at its points, to the surfaces before and after one, and to the
     base; None where there is none."""
     step = -(-len(points) // _MOST)
     plan, z = np.ascontiguousarray(points[::step, :2]), z[::step]
     found = [
-        heights_at(work, shape, plan, threads)
+        heights_at(work, shape, plan)
         for other in (number - 1, number + 1)
         for shape in entry.surfaces[max(0, other) : other + 1]
         if shape is not None
@@ -150,8 +150,8 @@ def _remedy(result) -> str:
 class _Reach:
     """What the surfaces of a rock mass cut, one after another, at nodes of its region, _MOST at most."""
 
-    def __init__(self, work: Work, entry: RockInput, threads: int):
-        self.work, self.entry, self.threads = work, entry, threads
+    def __init__(self, work: Work, entry: RockInput):
+        self.work, self.entry = work, entry
         if entry.region is None:
             return
         nodes, triangles = entry.region
@@ -206,15 +206,13 @@ class _Reach:
         own = vertices[:: self.step]
         if len(vertices) == len(self.entry.planar_mesh().vertices) and np.array_equal(own[:, :2], self.plan):
             return np.array(own[:, 2])
-        return heights_at(self.work, shape, self.plan, self.threads)
+        return heights_at(self.work, shape, self.plan)
 
     def _outside(self, points: np.ndarray) -> np.ndarray:
         native = native_module()
-        outside = self.work.native(native.outside_hull, points, self.plan, execution=on_threads(self.threads))
+        outside = self.work.native(native.outside_hull, points, self.plan)
         if outside.any():
-            away = self.work.native(
-                native.nearest_distance, points, self.plan, execution=on_threads(self.threads)
-            )
+            away = self.work.native(native.nearest_distance, points, self.plan)
             along = float(np.ptp(points[:, :2], axis=0).max()) / len(points)  # of points on a line
             spacing = float(native.mean_spacing(mean_heights(points), are_apart=True))
             outside &= away > max(spacing, along)

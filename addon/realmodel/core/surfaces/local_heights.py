@@ -69,14 +69,13 @@ class LocalHeights:
         work: Work,
         points: np.ndarray,
         nodes: np.ndarray,
-        threads: int,
         others: Mapping[int, np.ndarray] | None = None,
     ) -> np.ndarray:
         """(N,) heights at nodes (N, 2) from points (P, 3): a part of those that `local_heights` gave, the
         first of them and the others in their order, with the `needed` nearest to each node; NaN where the
         surface ends. others: the heights at the nodes of other surfaces, by their numbers. Not raised above
         the surface before."""
-        task = self._task(work, points, nodes, threads)
+        task = self._task(work, points, nodes)
         if self.over is not None:
             if isinstance(self.over, int):
                 assert others is not None
@@ -87,7 +86,7 @@ class LocalHeights:
         return self._extrapolated(task, self._result(task)).z
 
     def certain_heights(
-        self, work: Work, points: np.ndarray, nodes: np.ndarray, window: Box, threads: int
+        self, work: Work, points: np.ndarray, nodes: np.ndarray, window: Box
     ) -> tuple[np.ndarray, np.ndarray]:
         """`heights` where there is a border, from all points in a window, the first of all before them; and
         (N,) bool, where they are certain. The others need a larger window."""
@@ -95,7 +94,7 @@ class LocalHeights:
         border, box = self.border
         is_whole = all(window[k] <= box[k] and box[k + 2] <= window[k + 2] for k in (0, 1))
         of_part = getattr(native_module(), f"{self.method}_of_part")
-        task = self._task(work, points, nodes, threads)
+        task = self._task(work, points, nodes)
         z, certain = task.run(of_part, points, nodes, (border, box, window, is_whole))
         return self._extrapolated(task, Result(z)).z, certain
 
@@ -107,8 +106,8 @@ class LocalHeights:
             outside = outside_hull(replace(task, points=self.hull))
         return replace_extrapolated(task, result, outside)
 
-    def _task(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> Task:
-        return Task(work, points, nodes, self.settings, threads)
+    def _task(self, work: Work, points: np.ndarray, nodes: np.ndarray) -> Task:
+        return Task(work, points, nodes, self.settings)
 
     def _result(self, task: Task) -> Result:
         if self.known is not None:
@@ -123,9 +122,9 @@ class LocalHeights:
             return from_neighbours.thin_plate(task, self.spacing)
         return run_method(self.method, task)
 
-    def beyond_radius(self, work: Work, points: np.ndarray, nodes: np.ndarray, threads: int) -> np.ndarray:
+    def beyond_radius(self, work: Work, points: np.ndarray, nodes: np.ndarray) -> np.ndarray:
         """(N,) bool: the nodes that have no point within the radius."""
-        return from_neighbours.beyond_radius(self._task(work, points, nodes, threads))
+        return from_neighbours.beyond_radius(self._task(work, points, nodes))
 
     def warnings(self, found: PartHeights, rock: Rock, number: int) -> list[BuildWarning]:
         """The warnings about the whole surface. Raises InputRefused where no triangle is left."""
@@ -221,7 +220,6 @@ def local_heights(
     nodes: int,
     method: str,
     settings: dict,
-    threads: int,
     arrays: MappedArrays | None = None,
 ) -> tuple[LocalHeights, np.ndarray, list[str]]:
     """The shared data of a surface, found from all its points, which may be in a file; the points that its
@@ -250,12 +248,12 @@ def local_heights(
         found = LocalHeights(method, settings, nodes, grid=grid)
         if len(points):
             found = replace(found, lowest=float(points[:, 2].min()), highest=float(points[:, 2].max()))
-        found, of_method = _fitted(found, Task(work, points, np.empty((0, 2)), settings, threads))
+        found, of_method = _fitted(found, Task(work, points, np.empty((0, 2)), settings))
         warnings += of_method
         if settings.get("extrapolate") in ("nearest", "none") and method != "grid":
             found = replace(found, hull=hull_corners(points))
         if found.takes_points:  # of no nodes: it checks the settings
-            found.heights(work, np.array(points[:1]), np.empty((0, 2)), threads)
+            found.heights(work, np.array(points[:1]), np.empty((0, 2)))
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
     return found, points if found.takes_points else np.empty((0, 3)), warnings

@@ -175,14 +175,14 @@ def _density_points(rock: Rock) -> np.ndarray:
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
-def settle_methods(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
+def settle_methods(work: Work, entry: RockInput, start: float, end: float) -> None:
     """Replaces the method "auto" of surfaces by the one that it chooses. Progress goes from `start` to
     `end`."""
     waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"choosing the method of {entry.rock.surfaces[number].name}"):
-            settle_method(work, entry, number, threads)
+            settle_method(work, entry, number)
 
 
 def interpolate_rock(
@@ -190,7 +190,6 @@ def interpolate_rock(
     entry: RockInput,
     start: float,
     end: float,
-    threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
     flat: Collection[int] = (),
@@ -210,12 +209,12 @@ def interpolate_rock(
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
-            give_heights(work, entry, number, threads)
+            give_heights(work, entry, number)
         if keep is not as_it_is:
             entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))
             entry.interpolations[number] = None
             del entry.attributes[number]
     if not flat:
-        entry.warnings += points_too_low(work, entry, sorted(waiting), threads)
+        entry.warnings += points_too_low(work, entry, sorted(waiting))
         if keep is as_it_is:  # tiles have no such warnings
-            entry.warnings += doubtful_heights(work, entry, sorted(waiting), threads)
+            entry.warnings += doubtful_heights(work, entry, sorted(waiting))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 
 
 class FaultShape(NamedTuple):
@@ -71,20 +71,20 @@ class RockFaults:
         return np.array([youngest >= surface for youngest in self.youngest], bool)
 
 
-def fault_sides(work: Work, points: np.ndarray, shape: FaultShape, threads: int = 0) -> np.ndarray:
+def fault_sides(work: Work, points: np.ndarray, shape: FaultShape) -> np.ndarray:
     """(N,) int8: +1 above a fault, -1 below it; beyond its border it is continued as the parts have it."""
     points = np.ascontiguousarray(points, np.float64)
     if not len(points):
         return np.zeros(0, np.int8)
-    return work.native(native_module().structure_sides, shape.native(), points, execution=on_threads(threads))
+    return work.native(native_module().structure_sides, shape.native(), points)
 
 
 def sides_of(
-    work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0, asked: list[int] | None = None
+    work: Work, points: np.ndarray, faults: RockFaults, asked: list[int] | None = None
 ) -> np.ndarray:
     """(N, F) int8 sides of all faults; 0 where a branch is not there. asked: only these are looked at, those
     at which they end among them; points count as above the others."""
     sides = np.ones((len(points), len(faults)), np.int8)
     for fault in range(len(faults)) if asked is None else asked:
-        sides[:, fault] = fault_sides(work, points, faults.shapes[fault], threads)
+        sides[:, fault] = fault_sides(work, points, faults.shapes[fault])
     return faults.without_dropped(sides)

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..heights import Interpolation, chosen, heights
 from ..heights.interpolation import Task
 from ..heights.mis_ties import without_mis_ties
@@ -69,9 +69,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
     return [number for number in order if rock.surfaces[number].interpolated]
 
 
-def _vertex_attributes(
-    work: Work, points: np.ndarray, result: Interpolation, region: Sheet, threads: int
-) -> dict:
+def _vertex_attributes(work: Work, points: np.ndarray, result: Interpolation, region: Sheet) -> dict:
     """Attributes (V,) of the vertices that `where_known` keeps, for points interpolated on a region's mesh:
     `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest point,
     NaN where there are no points."""
@@ -81,13 +79,13 @@ def _vertex_attributes(
         kept = used_vertices(nodes, triangles[kept[triangles].all(axis=1)])
     variance = np.full(len(nodes), np.nan) if result.variance is None else result.variance
     if len(points):
-        distance = work.native(native_module().nearest_distance, points, nodes, execution=on_threads(threads))
+        distance = work.native(native_module().nearest_distance, points, nodes)
     else:
         distance = np.full(len(nodes), np.nan)
     return {"variance": variance[kept], "distance": distance[kept]}
 
 
-def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend: Trend | None = None) -> None:
+def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None = None) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, on a trend if there is one, and
     keeps it above the older one where it has a minimum thickness."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
@@ -96,20 +94,20 @@ def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend:
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
     try:
         if trend is not None:
-            result = _on_trend(work, entry, number, trend, others, threads)
+            result = _on_trend(work, entry, number, trend, others)
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
-            task = Task(work, surface.point_array(), nodes, settings, threads, triangles, surfaces=others)
+            task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
             result = give(method, task)
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
         else:
-            attributes = _vertex_attributes(work, surface.point_array(), result, region, threads)
+            attributes = _vertex_attributes(work, surface.point_array(), result, region)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
-            warnings += _older_points_above(work, rock, number, shape, threads)
-            shape, raised = _above_older(work, entry, number, shape, threads)
+            warnings += _older_points_above(work, rock, number, shape)
+            shape, raised = _above_older(work, entry, number, shape)
             warnings += raised
     except InputRefused as error:
         file, line = surface.shape_source()
@@ -120,23 +118,21 @@ def give_heights(work: Work, entry: RockInput, number: int, threads: int, trend:
     entry.warnings += warnings
 
 
-def _on_trend(
-    work: Work, entry: RockInput, number: int, trend: Trend, others: dict, threads: int
-) -> Interpolation:
+def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: dict) -> Interpolation:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
     surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
     points, mis_ties = without_mis_ties(surface.point_array())
     away = points.copy()
-    away[:, 2] -= heights_at(work, trend.sheet, points[:, :2], threads)
+    away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
     away = away[np.isfinite(away[:, 2])]
     result = replace(trend.interpolation, z=trend.z)
     if len(away):
         # of an ensemble the trend is drawn, too: nothing is the same in the next realization
         give = heights if entry.draws is None else replace(entry.draws[number], known={}).heights
         settings = checked_options(trend.method, trend.options)
-        result = give(trend.method, Task(work, away, nodes, settings, threads, triangles))
+        result = give(trend.method, Task(work, away, nodes, settings, triangles))
         result = replace(result, z=trend.z + result.z)
-    task = Task(work, points, nodes, surface.method_options()[1], threads, triangles, surfaces=others)
+    task = Task(work, points, nodes, surface.method_options()[1], triangles, surfaces=others)
     border = result.z
     if task.settings.get("border") is not None:
         given = heights_of(task, task.settings["border"], nodes, "border")
@@ -145,25 +141,23 @@ def _on_trend(
     return replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
 
 
-def _older_points_above(
-    work: Work, rock: Rock, number: int, shape: Sheet, threads: int
-) -> list[BuildWarning]:
+def _older_points_above(work: Work, rock: Rock, number: int, shape: Sheet) -> list[BuildWarning]:
     """The points of the older surface above one that is to keep off it, before this is raised."""
     points = rock.surfaces[number - 1].point_array()
     if not len(points):
         return []
-    z = heights_at(work, shape, points[:, :2], threads)
+    z = heights_at(work, shape, points[:, :2])
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
 
 
-def settle_method(work: Work, entry: RockInput, number: int, threads: int) -> None:
+def settle_method(work: Work, entry: RockInput, number: int) -> None:
     """Replaces the method "auto" of a surface of a RockInput by the method that it chooses."""
     rock, surface = entry.rock, entry.rock.surfaces[number]
     method, settings = surface.method_options()
     if method != "auto":
         return
     try:
-        method, options = chosen(work, surface.points, settings, threads)
+        method, options = chosen(work, surface.points, settings)
     except InputRefused as error:
         file, line = surface.shape_source()
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
@@ -190,9 +184,7 @@ def no_triangle_known() -> InputRefused:
     )
 
 
-def _above_older(
-    work: Work, entry: RockInput, number: int, shape: Sheet, threads: int
-) -> tuple[Sheet, list[BuildWarning]]:
+def _above_older(work: Work, entry: RockInput, number: int, shape: Sheet) -> tuple[Sheet, list[BuildWarning]]:
     """The shape, raised to the minimum thickness above the older surface, and warnings where it was
     raised."""
     rock = entry.rock
@@ -202,7 +194,7 @@ def _above_older(
     if np.array_equal(older.vertices[:, :2], vertices[:, :2]):
         least = older.vertices[:, 2] + thickness
     else:
-        least = heights_at(work, older, vertices[:, :2], threads) + thickness
+        least = heights_at(work, older, vertices[:, :2]) + thickness
     raised, lift = raise_to(vertices[:, 2], least)
     if raised is None:
         return shape, []

@@ -11,21 +11,19 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import place_text
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..project.project import Rock
 from ..settings.rules import RULES
 from .rock_input import RockInput
 
 
-def heights_at(work: Work, shape: Sheet, plan: np.ndarray, threads: int) -> np.ndarray:
+def heights_at(work: Work, shape: Sheet, plan: np.ndarray) -> np.ndarray:
     """(N,) heights of a surface at places (N, 2), NaN where it has none."""
     surface_heights = native_module().surface_heights
-    return work.native(
-        surface_heights, *shape.arrays, np.ascontiguousarray(plan), execution=on_threads(threads)
-    )
+    return work.native(surface_heights, *shape.arrays, np.ascontiguousarray(plan))
 
 
-def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int], threads: int) -> list[BuildWarning]:
+def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int]) -> list[BuildWarning]:
     """The points of surfaces of a RockInput, by their numbers, below what the rule of each keeps it above,
     where heights of all older ones are known. Each older surface is asked once for the points of all.
 
@@ -38,7 +36,7 @@ def points_too_low(work: Work, entry: RockInput, numbers: Iterable[int], threads
         number: surfaces[number].point_array() for number in numbers if len(surfaces[number].point_array())
     }
     warnings = []
-    found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock), threads)
+    found = below_older(work, entry.rock, entry.surfaces, points, kept_off(entry.rock))
     for number, (beyond, others) in found.items():
         warnings += listed(entry.rock, number, beyond, "below", others)
     return warnings
@@ -55,7 +53,6 @@ def below_older(
     shapes: list[Sheet | None],
     points: dict[int, np.ndarray],
     off: Collection[int],
-    threads: int,
 ) -> dict[int, tuple[np.ndarray, np.ndarray]]:
     """Of points (N, 3) of surfaces, by their numbers: how far each lies below what its surface is kept above
     (N,), and of which surface this is (N,). shapes: of all surfaces, None where heights are not known. off:
@@ -68,7 +65,7 @@ def below_older(
         if shape is None:
             continue
         younger = [number for number in points if number > older]
-        z = heights_at(work, shape, np.concatenate([points[n][:, :2] for n in younger]), threads)
+        z = heights_at(work, shape, np.concatenate([points[n][:, :2] for n in younger]))
         ends = np.cumsum([len(points[number]) for number in younger])
         for number, own in zip(younger, np.split(z, ends[:-1]), strict=True):
             beneath[number].add(own, older, RULES[surfaces[older].rule])

@@ -51,18 +51,16 @@ class FaultedTile:
     part: np.ndarray
 
 
-def build_faulted_tile(
-    work: Work, frame: Frame, whole: Whole, window: Window, name: Name, threads: int
-) -> FaultedTile:
+def build_faulted_tile(work: Work, frame: Frame, whole: Whole, window: Window, name: Name) -> FaultedTile:
     """Raises InputRefused."""
     inputs, few = window.inputs, window.structures
     began = time.perf_counter()
-    built = build_joined(work, inputs, few, "columns", threads, 0.0, 0.8, window.reach)
+    built = build_joined(work, inputs, few, "columns", 0.0, 0.8, window.reach)
     project = replace(
         frame.project, rocks=[entry.rock for entry in inputs], faults=few.faults, bodies=few.bodies
     )
     timings = {"intersect": time.perf_counter() - began}
-    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8, few))
+    model = Model.of(assemble(work, project, inputs, built, timings, 0.8, few))
     model.warnings = [warning for warning in model.warnings if warning.kind != "no_block"]
     owner = owners(model.complex, frame.grid)
     mine = (owner == name).all(axis=1)

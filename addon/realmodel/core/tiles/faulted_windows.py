@@ -14,7 +14,7 @@ from ..base.algebra import norm
 from ..base.mapped_arrays import Keep, as_it_is
 from ..base.sheet import Sheet
 from ..base.triangles import extents
-from ..base.work import Work, native_module, on_threads
+from ..base.work import Work, native_module
 from ..cells.joining import beyond_all
 from ..cells.reach import Reach
 from ..project.structure_entries import Body, Fault
@@ -91,15 +91,14 @@ class Windows:
         work: Work,
         inputs: list[RockInput],
         structures: Structures,
-        threads: int,
         keep: Keep = as_it_is,
     ):
         self.inputs, self.snapped = inputs, None
-        self.structures, self._threads, self._keep = structures, threads, keep
-        self._reach = Reach(work, structures, threads)
+        self.structures, self._keep = structures, keep
+        self._reach = Reach(work, structures)
         self._find_plans()
-        if _are_any_close(work, [plan.vertices for plan in self._all], threads):
-            self.inputs, self.snapped = _snapped(work, inputs, threads, keep)
+        if _are_any_close(work, [plan.vertices for plan in self._all]):
+            self.inputs, self.snapped = _snapped(work, inputs, keep)
             self._find_plans()
         ends = [
             beyond_all(entry.divided().of_compartment(c), structures)
@@ -220,7 +219,7 @@ class Windows:
             plan = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
             middles = np.column_stack([plan, np.full(len(plan), sum(self._ends) / 2)])
             shape = self.structures.fault_shapes()[fault]
-            self._sides[fault] = fault_sides(work, middles, shape, self._threads)
+            self._sides[fault] = fault_sides(work, middles, shape)
         return self._sides[fault]
 
     def _few(self, present: list[int], fixed: np.ndarray, around: Box) -> tuple[Structures, np.ndarray]:
@@ -323,20 +322,15 @@ class Windows:
         return of_plan[plan]
 
 
-def _are_any_close(work: Work, plans: list[np.ndarray], threads: int) -> bool:
+def _are_any_close(work: Work, plans: list[np.ndarray]) -> bool:
     """Whether any x, or any y, of positions in plan differ by rounding alone. Without triangles, which
     might keep them apart: that is to be decided by those of all sheets."""
     none = np.empty((0, 3), np.int32)
     rocks: list[tuple] = [([], (plan, none), None, []) for plan in plans]
-    return (
-        work.native(native_module().find_joins, rocks, borders=False, execution=on_threads(threads))
-        is not None
-    )
+    return work.native(native_module().find_joins, rocks, borders=False) is not None
 
 
-def _snapped(
-    work: Work, inputs: list[RockInput], threads: int, keep: Keep
-) -> tuple[list[RockInput], str | None]:
+def _snapped(work: Work, inputs: list[RockInput], keep: Keep) -> tuple[list[RockInput], str | None]:
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
     and the warning about that, or None."""
     distinct = [
@@ -347,7 +341,7 @@ def _snapped(
         ([sheet.arrays for sheet in sheets], None if entry.region is None else entry.region.arrays, None, [])
         for sheets, entry in zip(distinct, inputs, strict=True)
     ]
-    joins = work.native(native_module().find_joins, rocks, borders=False, execution=on_threads(threads))
+    joins = work.native(native_module().find_joins, rocks, borders=False)
     if joins is None:
         return inputs, None
 

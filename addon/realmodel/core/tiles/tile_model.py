@@ -17,7 +17,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, on_threads, run
+from ..base.work import Work, native_module, run
 from ..cells.assembly import assemble
 from ..cells.blocks import Block
 from ..cells.built_cells import BuiltCells
@@ -167,10 +167,8 @@ def write_certain_heights(
                 z = heights.setdefault(name, np.empty(len(nodes)))
                 left = waiting.setdefault(name, np.arange(len(nodes)))
                 asked, window = np.ascontiguousarray(nodes[left]), windows.window(number)
-                task = partial(
-                    local.certain_heights, points=near.of(name), nodes=asked, window=window, threads=1
-                )
-                found, certain = run(task)
+                task = partial(local.certain_heights, points=near.of(name), nodes=asked, window=window)
+                found, certain = run(task, threads=1)
                 z[left[certain]] = found[certain]
                 waiting[name] = left[~certain]
                 if certain.all():
@@ -207,7 +205,7 @@ def _part(rock: int, surface: int | str) -> str:
     return f"{rock}-{surface}.arrays"
 
 
-def _parts(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> tuple[dict, dict]:
+def _parts(work: Work, frame: Frame, box: Box, folder: Path) -> tuple[dict, dict]:
     """What the tile has of each surface and REGION, by rock mass and number; and of the surfaces that it
     interpolates Interpolated."""
     parts, made = {}, {}
@@ -220,7 +218,7 @@ def _parts(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> tu
         parts[r, k] = plans[r]
         if len(plans[r].vertices):
             of_rock = {number: part for (rock, number), part in parts.items() if rock == r}
-            made[r, k] = _interpolated(work, frame, (r, k), of_rock, box, folder, threads)
+            made[r, k] = _interpolated(work, frame, (r, k), of_rock, box, folder)
             parts[r, k] = made[r, k].part
     return parts, made
 
@@ -246,7 +244,7 @@ class Interpolated:
 
 
 def _interpolated(
-    work: Work, frame: Frame, key: tuple[int, int], parts: dict, box: Box, folder: Path, threads: int
+    work: Work, frame: Frame, key: tuple[int, int], parts: dict, box: Box, folder: Path
 ) -> Interpolated:
     """parts: of the rock mass, this one with the plan alone."""
     local, plan, (r, k) = frame.local[key], parts[key[1]], key
@@ -254,7 +252,7 @@ def _interpolated(
     near = read_mapped(folder / _part(r, f"{k}-near")) if local.takes_points else {}
     points = near.get("points", np.empty((0, 3)))
     others = {n: part.vertices[:, 2] for n, part in parts.items() if n != REGION}
-    z = near["z"] if "z" in near else local.heights(work, points, nodes, threads, others)
+    z = near["z"] if "z" in near else local.heights(work, points, nodes, others)
     known = z[np.isfinite(z)]
     found = PartHeights(
         float(known.min(initial=np.inf)),
@@ -263,12 +261,12 @@ def _interpolated(
     )
     own = ((nodes >= box[:2]) & (nodes < box[2:])).all(axis=1)  # each node in one tile
     if local.settings.get("radius") is not None:
-        beyond = local.beyond_radius(work, points, np.ascontiguousarray(nodes[own]), threads)
+        beyond = local.beyond_radius(work, points, np.ascontiguousarray(nodes[own]))
         found = replace(found, alone=int(beyond.sum()))
     above = None
     if local.least is not None:
         shape = Sheet(np.column_stack([nodes, z]), plan.triangles)
-        above = _older_above(work, shape, folder / _part(r, f"{k - 1}-own"), k, threads)
+        above = _older_above(work, shape, folder / _part(r, f"{k - 1}-own"), k)
         raised, lift = raise_to(z, others[k - 1] + local.least)
         lift = np.where(own, lift, 0.0)
         z = z if raised is None else raised
@@ -292,16 +290,16 @@ def _where_known(part: Part) -> Part:
     return replace(rest, numbers=part.numbers[known], of_vertices=part.of_vertices[rest.of_vertices])
 
 
-def _older_above(work: Work, shape: Sheet, file: Path, number: int, threads: int) -> WrongPoints | None:
+def _older_above(work: Work, shape: Sheet, file: Path, number: int) -> WrongPoints | None:
     """The points of the older surface, in a file if there are some, above one that is to keep off it."""
     if not file.exists():
         return None
     own = read_mapped(file)
-    beyond = own["points"][:, 2] - heights_at(work, shape, own["points"][:, :2], threads)
+    beyond = own["points"][:, 2] - heights_at(work, shape, own["points"][:, :2])
     return WrongPoints.of(own["points"], beyond, number, own["numbers"])
 
 
-def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: int) -> dict:
+def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path) -> dict:
     """The WrongPoints of a tile by rock mass and number of their surface."""
     found = {}
     for r, rock in enumerate(frame.project.rocks):
@@ -313,7 +311,7 @@ def _wrong_points(work: Work, frame: Frame, parts: dict, folder: Path, threads: 
         shapes = [parts[r, k] for k in range(len(rock.surfaces))]
         shapes = [part.sheet if len(part.triangles) else None for part in shapes]
         points = {k: arrays["points"] for k, arrays in own.items()}
-        below = below_older(work, rock, shapes, points, frame.off[r] if own else (), threads)
+        below = below_older(work, rock, shapes, points, frame.off[r] if own else ())
         for k, (beyond, others) in below.items():
             wrong = WrongPoints.of(points[k], beyond, others, own[k]["numbers"])
             if wrong is not None:
@@ -334,9 +332,9 @@ class BuiltTile:
     heights: dict[tuple[int, int], PartHeights]
 
 
-def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -> BuiltTile:
+def build_tile(work: Work, frame: Frame, box: Box, folder: Path) -> BuiltTile:
     """folder: with the files that are written here."""
-    parts, made = _parts(work, frame, box, folder, threads)
+    parts, made = _parts(work, frame, box, folder)
     inputs, rocks = [], []
     for r, rock in enumerate(frame.project.rocks):
         surfaces = [parts[r, k] for k in range(len(rock.surfaces))]
@@ -364,18 +362,16 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path, threads: int) -
     began = time.perf_counter()
     with work.phase(0.0, 0.8, "intersecting and cutting"):
         try:
-            arrays = work.native(
-                native.build_tile, rocks, box, cells=frame.cell_kind, execution=on_threads(threads)
-            )
+            arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
         except native.InputError as error:
             raise refused_stack(_NumberedError(error, numbers), inputs) from error
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
     built = BuiltCells.of(arrays, frame.cell_kind)
     no_structures = structures_of(project, [], [])
-    model = Model.of(assemble(work, project, inputs, built, threads, timings, 0.8, no_structures))
+    model = Model.of(assemble(work, project, inputs, built, timings, 0.8, no_structures))
     model.warnings = _warnings(inputs, built, numbers)
-    wrong = _wrong_points(work, frame, parts, folder, threads)
+    wrong = _wrong_points(work, frame, parts, folder)
     above = {(r, k - 1): each.above for (r, k), each in made.items() if each.above is not None}
     heights = {key: each.heights for key, each in made.items()}
     return BuiltTile(model, BorderVertices.arrays_of(arrays), wrong, above, heights)

@@ -179,11 +179,13 @@ def _pieces(
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
     beginning of the file. reading: its decimal mark, columns, filters and missing values."""
     native = native_module()
-    mark, *others = reading
+    mark, columns, filters, missing = reading
     begin, line, counts = table.layout.body, table.layout.body_line, np.zeros(2, np.int64)
 
     def read(piece: bytes):
-        return native.read_numbers(piece, (table.layout.separator, mark), *others, on_threads(1))
+        return native.read_numbers(
+            piece, (table.layout.separator, mark), columns, filters, missing, on_threads(1)
+        )
 
     def numbers() -> Iterator[np.ndarray]:
         nonlocal begin, line, counts

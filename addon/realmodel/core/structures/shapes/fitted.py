@@ -139,7 +139,7 @@ def _shares(stick: np.ndarray) -> np.ndarray:
     return way / way[-1]
 
 
-def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = True, threads: int = 0):
+def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = True):
     """The smooth surface through scattered points, over the plane that fits them best.
 
     points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
@@ -158,7 +158,7 @@ def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = 
     outline = _outline(local[:, :2], extend, extend_sideways)
     nodes, triangles = mesh_rings(work, [outline], MeshOptions(AUTO, points=local[:, :2]))
     options = checked_options(_METHOD, {})
-    task = Task(work, np.ascontiguousarray(local), nodes, options, threads, triangles)
+    task = Task(work, np.ascontiguousarray(local), nodes, options, triangles)
     found = heights(_METHOD, task)
     vertices = middle + nodes[:, :1] * along + nodes[:, 1:] * down + found.z[:, None] * normal
     return vertices, triangles

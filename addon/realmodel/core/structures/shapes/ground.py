@@ -45,7 +45,7 @@ def levels_of(tops: list[Top], others: np.ndarray) -> tuple[float, float]:
     return low - lift, high + lift
 
 
-def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> np.ndarray:
+def heights_on(work: Work, plan: np.ndarray, tops: list[Top]) -> np.ndarray:
     """(N,) elevations of surfaces at places (N, 2): on the triangles of ready meshes; else by natural
     neighbors between their points, and beyond these as at the nearest. Raises InputRefused."""
     found, points = np.full(len(plan), np.nan), []
@@ -53,7 +53,7 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> n
     for entry, number in known:
         shape = entry.surfaces[number]
         if shape is not None:
-            own = heights_at(work, shape, plan, threads)
+            own = heights_at(work, shape, plan)
             found = np.where(np.isnan(found), own, found)
         value = _constant(entry.rock.surfaces[number])
         if value is not None and not len(_data(entry, number)):
@@ -70,7 +70,7 @@ def heights_on(work: Work, plan: np.ndarray, tops: list[Top], threads: int) -> n
         raise InputRefused(what, advice="give the elevation, or another surface: elevation = ...")
     options = checked_options(CONTINUATION, CONTINUATION_OPTIONS)
     near = np.ascontiguousarray(np.unique(_near(data, plan[rest]), axis=0))
-    found[rest] = heights(CONTINUATION, Task(work, near, plan[rest], options, threads)).z
+    found[rest] = heights(CONTINUATION, Task(work, near, plan[rest], options)).z
     return found
 
 

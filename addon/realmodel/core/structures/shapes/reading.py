@@ -26,7 +26,7 @@ from .traces import read_trace, trace_surface
 
 
 def read_structures(
-    work: Work, project: Project, threads: int = 0, inputs: list[RockInput] | None = None
+    work: Work, project: Project, inputs: list[RockInput] | None = None
 ) -> tuple[list[Fault], list[Body], list[BuildWarning]]:
     """The faults and bodies of a project, their shapes as vertices (V, 3) float64 and triangles (T, 3) int32
     only; and the warnings of reading and fitting. inputs: the rock masses, read (RockInput), which faults
@@ -37,16 +37,16 @@ def read_structures(
     for number, fault in enumerate(project.faults):
         work.step(number / total)
         if fault.trace is not None:
-            faults.append(_read_traced(work, fault, project, inputs, threads, warnings))
+            faults.append(_read_traced(work, fault, project, inputs, warnings))
         else:
-            faults.append(_read_fault(work, fault, project.units, threads, warnings))
+            faults.append(_read_fault(work, fault, project.units, warnings))
     for number, body in enumerate(project.bodies, len(faults)):
         work.step(number / total)
         bodies.append(_read_body(body, project.units, warnings))
     return faults, bodies, warnings
 
 
-def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: list[BuildWarning]) -> Fault:
+def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarning]) -> Fault:
     shape_file = fault.input_file or fault.shape_file
     try:
         if fault.points is not None:
@@ -55,7 +55,7 @@ def _read_fault(work: Work, fault: Fault, units: str, threads: int, warnings: li
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
             warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in texts]
-            vertices, triangles = _fitted(work, fault, points, threads)
+            vertices, triangles = _fitted(work, fault, points)
         else:
             vertices, triangles = _mesh_of(fault, units, warnings, fault_item(fault))
         triangles = _two_sided(vertices, triangles)
@@ -80,7 +80,6 @@ def _read_traced(
     fault: Fault,
     project: Project,
     inputs: list[RockInput] | None,
-    threads: int,
     warnings: list[BuildWarning],
 ) -> Fault:
     item = fault_item(fault)
@@ -89,7 +88,7 @@ def _read_traced(
         traced, texts = read_trace(fault, project.units)
         if inputs is None:
             return traced
-        (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault), threads)
+        (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault))
     except InputRefused as error:
         raise _within(error, fault, item) from error
     warnings += [BuildWarning(f"{item}: {text}", "trace") for text in (*texts, *more)]
@@ -117,10 +116,10 @@ def _tops(project: Project, inputs: list[RockInput], fault: Fault) -> list[Top]:
     return tops
 
 
-def _fitted(work: Work, fault: Fault, points, threads: int) -> Sheet:
+def _fitted(work: Work, fault: Fault, points) -> Sheet:
     sideways = not fault.dies_out
     if isinstance(points, np.ndarray) or np.ndim(points[0]) < 2:
-        return fit_points(work, checked_points(points), fault.extend, sideways, threads)
+        return fit_points(work, checked_points(points), fault.extend, sideways)
     sticks = [checked_points(stick, f"stick {number}") for number, stick in enumerate(points, 1)]
     return fit_sticks(sticks, fault.extend, sideways)
 

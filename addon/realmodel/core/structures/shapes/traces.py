@@ -64,7 +64,7 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     return replace(fault, trace=line, dip=float(dip), dip_direction=direction, elevation=level), warnings
 
 
-def trace_surface(work: Work, fault: Fault, tops: list[Top], threads: int) -> tuple[Sheet, list[str]]:
+def trace_surface(work: Work, fault: Fault, tops: list[Top]) -> tuple[Sheet, list[str]]:
     """The surface through the trace of a fault that read_trace returned, vertices (V, 3) float64 and
     triangles (T, 3) int32; and warnings.
 
@@ -77,7 +77,7 @@ def trace_surface(work: Work, fault: Fault, tops: list[Top], threads: int) -> tu
     extent = float(norm(plan[1] - plan[0]))
     margin = (high - low) + extent / 4
     low, high = low - margin, high + margin
-    line, given = _with_heights(work, fault, tops, extent, threads)
+    line, given = _with_heights(work, fault, tops, extent)
     run, toward = _dip_of(fault, line)
     # where the surface cuts the level `high`: a line along its strike
     top = (
@@ -236,7 +236,7 @@ def _along(what: str, across: np.ndarray) -> InputRefused:
 
 
 def _with_heights(
-    work: Work, fault: Fault, tops: list[tuple], extent: float, threads: int
+    work: Work, fault: Fault, tops: list[tuple], extent: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The trace with all its elevations, and (N,) bool: the points that were given. Between these it gets
     more where it is put on a surface."""
@@ -252,7 +252,7 @@ def _with_heights(
     if unknown.all():
         line, given = _divided(line, extent / _PIECES)
         unknown = np.ones(len(line), bool)
-    line[unknown, 2] = heights_on(work, np.ascontiguousarray(line[unknown, :2]), tops, threads)
+    line[unknown, 2] = heights_on(work, np.ascontiguousarray(line[unknown, :2]), tops)
     return line, given
 
 

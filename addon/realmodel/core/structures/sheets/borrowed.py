@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...base.algebra import dot, principal_axes
-from ...base.work import Work, native_module, on_threads
+from ...base.work import Work, native_module
 from ...surfaces.sides import FaultShape, fault_sides
 from ...surfaces.wrong_sides import Sheet, heights_at
 from .tips import trace_of
@@ -18,21 +18,21 @@ _FAR = 2.0  # ranges of its heights: a sheet that goes so far beyond them in ano
 _AT_ONCE = 1 << 20  # pairs of a place and a part of a line
 
 
-def as_at_fault(work: Work, sheet: Sheet, fault: FaultShape, side: int, threads: int) -> Sheet | None:
+def as_at_fault(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Sheet | None:
     """A sheet that has the height of the nearest place of its cutoff line everywhere beyond a fault. side: of
     the fault, on which the sheet is known. None where it does not meet the fault."""
     vertices, triangles = sheet
-    line = _cutoff(work, sheet, fault, threads)
+    line = _cutoff(work, sheet, fault)
     if len(line) < 2:
         return None
-    z, beyond = vertices[:, 2].copy(), fault_sides(work, vertices, fault, threads) != side
+    z, beyond = vertices[:, 2].copy(), fault_sides(work, vertices, fault) != side
     z[beyond] = _nearest_heights(line, vertices[beyond, :2])
     return Sheet(np.column_stack([vertices[:, :2], z]), triangles)
 
 
-def _cutoff(work: Work, sheet: Sheet, fault: FaultShape, threads: int) -> np.ndarray:
+def _cutoff(work: Work, sheet: Sheet, fault: FaultShape) -> np.ndarray:
     """(M, 3) places at which a sheet meets a fault, in the order of its strike."""
-    trace = trace_of(work, sheet, fault, lambda points: np.ones(len(points), bool), threads)
+    trace = trace_of(work, sheet, fault, lambda points: np.ones(len(points), bool))
     places = np.unique(np.column_stack([trace.points, trace.heights]), axis=0)
     if len(places) < 2:
         return places
@@ -72,7 +72,6 @@ def between_faults(
     work: Work,
     sheets: list[Sheet],
     faults: list[tuple[np.ndarray, FaultShape, int]],
-    threads: int,
 ) -> Sheet:
     """Several sheets as one, each with a weight of one over its distance from the fault across which it
     comes: so the throw of each fault is that of its own sheet. faults: of each sheet, places (M, 2) along its
@@ -80,13 +79,13 @@ def between_faults(
     elsewhere."""
     vertices, triangles = sheets[0]
     plan = np.ascontiguousarray(vertices[:, :2])
-    own = [vertices[:, 2], *(heights_at(work, sheet, plan, threads) for sheet in sheets[1:])]
+    own = [vertices[:, 2], *(heights_at(work, sheet, plan) for sheet in sheets[1:])]
     heights = np.where(np.isfinite(own), own, np.nan)
-    nearest, run = native_module().nearest_points, on_threads(threads)
-    away = np.array([nearest(places, plan, execution=run)[1][:, 0] for places, _, _ in faults])
+    nearest = native_module().nearest_points
+    away = np.array([work.native(nearest, places, plan)[1][:, 0] for places, _, _ in faults])
     from_there = np.array(
         [
-            fault_sides(work, np.column_stack([plan, np.nan_to_num(z)]), fault, threads) == side
+            fault_sides(work, np.column_stack([plan, np.nan_to_num(z)]), fault) == side
             for z, (_, fault, side) in zip(heights, faults, strict=True)
         ]
     )

@@ -100,7 +100,7 @@ class CompartmentSheets:
                 side = source.family.key[source.fault]
                 faults.append((source.shift.places, shapes[source.fault], side))
             trends = {
-                sides: between_faults(throws.work, [each[sides] for each in taken], faults, throws.threads)
+                sides: between_faults(throws.work, [each[sides] for each in taken], faults)
                 for sides in trends
             }
             self.surface.adopt(trends, taken[0])

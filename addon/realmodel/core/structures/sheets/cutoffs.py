@@ -22,14 +22,14 @@ class Cutoff(NamedTuple):
     inward: np.ndarray
 
 
-def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int, threads: int = 0) -> Cutoff:
+def cutoff_of(work: Work, sheet: Sheet, fault: FaultShape, side: int) -> Cutoff:
     """The cutoff line of a sheet on one side (-1 or +1) of a fault.
 
     It is the border of what of the sheet's triangles lies on that side. So where the sheet goes on beyond it
     in the fault itself, as where it bridges a bay of its own cutoff line, nothing else counts.
     """
     vertices, triangles = sheet
-    crossed = crossed_edges(work, sheet, fault, threads)
+    crossed = crossed_edges(work, sheet, fault)
     own = crossed.side[triangles] == side
     some = np.flatnonzero(own.any(axis=1))
     corners, on = vertices[triangles[some]], crossed.side[triangles[some]] == 0

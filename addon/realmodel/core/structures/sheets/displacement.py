@@ -67,7 +67,7 @@ def _displacements(work: Work, model) -> list[Displacement]:
                 continue
             at = structure.faults.numbers.index(number)
             for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
-                measured = _Measured(work, structure, at, k, model.threads).everywhere()
+                measured = _Measured(work, structure, at, k).everywhere()
                 if len(measured[0]):
                     name = entry.rock.surfaces[k].name
                     found.append(Displacement(fault.name, entry.rock.name, name, *measured))
@@ -98,17 +98,17 @@ class _Places:
 
 
 def throws_between(
-    work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int, threads: int
+    work: Work, structure: RockStructure, fault: int, surface: int, below: int, above: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """places (N, 3) and throw (N,) of a surface along a fault, between two compartments."""
-    return _Measured(work, structure, fault, surface, threads).between(below, above)[:2]
+    return _Measured(work, structure, fault, surface).between(below, above)[:2]
 
 
 class _Measured:
     """Measures the displacement of one surface by one fault."""
 
-    def __init__(self, work: Work, structure: RockStructure, fault: int, surface: int, threads: int):
-        self.work, self.structure, self.fault, self.threads = work, structure, fault, threads
+    def __init__(self, work: Work, structure: RockStructure, fault: int, surface: int):
+        self.work, self.structure, self.fault = work, structure, fault
         active = structure.faults.active(surface)
         self.others = [other for other in np.flatnonzero(active) if other != fault]
         self.rows = np.where(active, structure.compartments, 0)
@@ -157,7 +157,7 @@ class _Measured:
         key = sheet, side
         if key not in self.cutoffs:
             assert sheet is not None  # displacements are asked for of sheets that are made
-            self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side, self.threads)
+            self.cutoffs[key] = cutoff_of(self.work, sheet, shape, side)
         return self.cutoffs[key]
 
     def _places(self, compartment: int) -> _Places:
@@ -172,7 +172,7 @@ class _Measured:
     def _sides(self, points: np.ndarray) -> np.ndarray:
         """(N, F) int8 of the other faults."""
         shapes = self.structure.faults.shapes
-        sides = [fault_sides(self.work, points, shapes[other], self.threads) for other in self.others]
+        sides = [fault_sides(self.work, points, shapes[other]) for other in self.others]
         return np.array(sides, np.int8).reshape(len(self.others), len(points)).T
 
     def _are_within(self, compartment: int, sides: np.ndarray) -> np.ndarray:

@@ -43,12 +43,12 @@ class InterpolatedSurface:
 
     data = "points"
 
-    def __init__(self, work: Work, entry: RockInput, number: int, threads: int):
-        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+    def __init__(self, work: Work, entry: RockInput, number: int):
+        self.work, self.entry, self.number = work, entry, number
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         structure = entry.divided()
-        self.placed = point_sides(work, self.points, entry, number, threads)
+        self.placed = point_sides(work, self.points, entry, number)
         structure.points[number] = self.placed.sides
         names = structure.faults.names
         warning = placed_warning(self.points, self.placed.moved, names, entry.rock.name, self.surface.name)
@@ -87,9 +87,7 @@ class InterpolatedSurface:
         if METHODS[self.surface.method_options()[0]].on_mesh:
             nodes, triangles = self.entry.planar_mesh()
             level = np.column_stack([nodes, np.zeros(len(nodes))])
-            over = np.isfinite(
-                heights_at(self.work, Sheet(level, triangles), self.points[:, :2], self.threads)
-            )
+            over = np.isfinite(heights_at(self.work, Sheet(level, triangles), self.points[:, :2]))
             if over.any():
                 self.data = "points on the mesh"
                 return over
@@ -139,13 +137,13 @@ class InterpolatedSurface:
             if sheet in found:
                 continue
             found[sheet] = sheet
-            level = as_at_fault(self.work, sheet, shape, side, self.threads)
+            level = as_at_fault(self.work, sheet, shape, side)
             if level is None:
                 continue
             if len(points):
                 is_level = self._spread(points, level) < self._spread(points, sheet)
             else:
-                known = fault_sides(self.work, sheet.vertices, shape, self.threads) == side
+                known = fault_sides(self.work, sheet.vertices, shape) == side
                 is_level = sheet_runs_away(sheet, known, within)
             if is_level:
                 found[sheet] = level
@@ -153,7 +151,7 @@ class InterpolatedSurface:
 
     def _spread(self, points: np.ndarray, sheet: Sheet) -> float:
         """How different the heights of points (P, 3) above a sheet are."""
-        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2], self.threads)
+        off = points[:, 2] - heights_at(self.work, sheet, points[:, :2])
         off = off[np.isfinite(off)]
         return float(off.std()) if len(off) else 0.0
 
@@ -179,7 +177,7 @@ class InterpolatedSurface:
         known = np.isfinite(z)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
         flat = Sheet(np.column_stack([nodes, np.where(known, z, 0.0)]), meshed)
-        traces = [trace_of(self.work, flat, fault, self._within(family), self.threads) for fault in faults]
+        traces = [trace_of(self.work, flat, fault, self._within(family)) for fault in faults]
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
@@ -227,7 +225,6 @@ class InterpolatedSurface:
             [faults[number] for number in met],
             sorted(of_members),
             values_of,
-            self.threads,
         )
         found = self._with_equal_ends(family, met, values, meshed, self.made[common][0])
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
@@ -267,7 +264,6 @@ class InterpolatedSurface:
             [shapes[fault] for fault in faults],
             self._within(family),
             [0.0 if fault in family.settled else ramp for fault in faults],
-            self.threads,
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
@@ -326,7 +322,7 @@ class InterpolatedSurface:
             attributes={},
             structure=None,
         )
-        give_heights(self.work, one, self.number, self.threads, trend and self._trend(trend))
+        give_heights(self.work, one, self.number, trend and self._trend(trend))
         return one
 
     def _counts_by_node(self, surface) -> bool:
@@ -378,7 +374,7 @@ class InterpolatedSurface:
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        placed = point_sides(self.work, points, self.entry, self.number, self.threads)
+        placed = point_sides(self.work, points, self.entry, self.number)
         return replace(surface, points=points[self._within(family).has(placed.sides)])
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Sheet:
@@ -398,7 +394,7 @@ class InterpolatedSurface:
             total[there] += z[there]
             known += there
             at = np.column_stack([nodes, np.where(there, z, 0.0)])
-            rows = sides_of(self.work, at, structure.faults, self.threads)
+            rows = sides_of(self.work, at, structure.faults)
             its = [each for each in members if structure.sheets[each][other] is sheet]
             inside = (rows[:, None] == structure.compartments[its]).all(axis=2).any(axis=1)
             chosen = np.where(there & inside & np.isnan(chosen), z, chosen)
@@ -411,10 +407,10 @@ class InterpolatedSurface:
         nodes, _ = self.entry.planar_mesh()
         if len(sheet.vertices) == len(nodes) and np.array_equal(sheet.vertices[:, :2], nodes):
             return sheet.vertices[:, 2]
-        return heights_at(self.work, sheet, nodes, self.threads)
+        return heights_at(self.work, sheet, nodes)
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.divided(), self.number, family, self.threads)
+        return Within(self.work, self.entry.divided(), self.number, family)
 
     def finish(self, sheets: list[Sheet]) -> None:
         """Sets the RockInput's interpolation, to that of the compartment with most points, and its vertex

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...base.work import Work, native_module, on_threads
+from ...base.work import Work, native_module
 from ...surfaces.sides import FaultShape, fault_sides
 
 _RINGS = 2  # of triangles around those in which a compartment is
@@ -23,13 +23,11 @@ def with_neighbors(triangles: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     return found
 
 
-def triangles_met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
+def triangles_met(work: Work, fault: FaultShape, low, high, triangles) -> np.ndarray:
     """(T,) uint8: the triangles that a fault touches, 1, or passes, 2, beyond its ends, between two
     heights."""
     triangles = np.ascontiguousarray(triangles)
-    return work.native(
-        native_module().structure_beyond, fault.native(), low, high, triangles, execution=on_threads(threads)
-    )
+    return work.native(native_module().structure_beyond, fault.native(), low, high, triangles)
 
 
 def near_rows(
@@ -40,7 +38,6 @@ def near_rows(
     faults: Sequence[FaultShape],
     rows: Sequence[tuple[int, ...]],
     values_of: Callable[[tuple[int, ...], np.ndarray], np.ndarray],
-    threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:
     """Values (N, C) at nodes (N, 2), first of all heights, of each row of sides: its own where its
     compartment may be at some height that a row has there, those in `common` elsewhere.
@@ -55,7 +52,7 @@ def near_rows(
     low, high = common[:, 0].copy(), common[:, 0].copy()
     wider = np.isfinite(low)
     while wider.any():
-        _add_sides(work, plan, triangles, wider, (low, high), faults, on, threads)
+        _add_sides(work, plan, triangles, wider, (low, high), faults, on)
         corner_on = {key: own[triangles].any(axis=1) for key, own in on.items()}
         wider = np.zeros(len(plan), bool)
         for sides in rows:
@@ -77,9 +74,7 @@ def near_rows(
     return found
 
 
-def _add_sides(
-    work: Work, plan, triangles, some: np.ndarray, heights, faults, on: dict, threads: int
-) -> None:
+def _add_sides(work: Work, plan, triangles, some: np.ndarray, heights, faults, on: dict) -> None:
     """Adds to `on`, by fault and side, those of some nodes at which a height is on that side, and those of
     triangles that the fault passes between the heights, beyond its ends."""
     places = np.unique(
@@ -90,8 +85,8 @@ def _add_sides(
     low, high = (np.column_stack([plan, np.nan_to_num(z)]) for z in heights)
     changed = triangles[some[triangles].any(axis=1)]
     for number, fault in enumerate(faults):
-        side = fault_sides(work, places, fault, threads)
-        is_passed = triangles_met(work, fault, low, high, changed, threads) > 0
+        side = fault_sides(work, places, fault)
+        is_passed = triangles_met(work, fault, low, high, changed) > 0
         for its in (-1, 1):
             on[number, its][node[side == its]] = True
             on[number, its][changed[is_passed]] = True

@@ -43,9 +43,7 @@ class PointSides(NamedTuple):
         return PointSides(self.sides[chosen], self.moved[chosen], self.reach)
 
 
-def point_sides(
-    work: Work, points: np.ndarray, entry: RockInput, number: int, threads: int = 0
-) -> PointSides:
+def point_sides(work: Work, points: np.ndarray, entry: RockInput, number: int) -> PointSides:
     """The sides of the faults that points (P, 3) of surface `number` of a RockInput belong to.
 
     A point that is near a fault that displaces the surface (distances) gets the sides of those points, beside
@@ -55,7 +53,7 @@ def point_sides(
     """
     structure = entry.divided()
     faults = structure.faults
-    sides = sides_of(work, points, faults, threads)
+    sides = sides_of(work, points, faults)
     active = faults.active(number)
     away = np.full(sides.shape, np.inf)
     shapes = [faults.shapes[fault] for fault in np.flatnonzero(active)]
@@ -70,7 +68,6 @@ def point_sides(
         matters=active & (beside | ~np.array(faults.dies_out, bool)),
         counts=~beside.any(axis=1),
         reach=reach,
-        threads=threads,
     )
     agreement.place(near, beside)
     placed = np.where(active, agreement.rows, sides)
@@ -105,7 +102,6 @@ class _Agreement:
     matters: np.ndarray
     counts: np.ndarray
     reach: float
-    threads: int
 
     def place(self, near: np.ndarray, beside: np.ndarray) -> None:
         """Gives points near faults the sides that they agree with. Points beside faults keep theirs, but do
@@ -177,9 +173,9 @@ class _Agreement:
             if len(group):
                 some = asked[:, number]
                 plan, z = self.points[choice.points[some], :2], self.points[choice.points[some], 2]
-                expected = expected_heights(self.work, group, plan, threads=self.threads)
+                expected = expected_heights(self.work, group, plan)
                 around = (plan + choice.reach * _SHIFTS[: 3 if choice.reach else 1]).reshape(-1, 2)
-                planes = expected_heights(self.work, group, around, _PLANE, self.threads)
+                planes = expected_heights(self.work, group, around, _PLANE)
                 planes = planes.reshape(-1, len(plan))
                 rise = np.abs(planes[1:] - planes[0]).sum(axis=0)
                 off[some, number] = np.abs(expected - z)
@@ -227,9 +223,7 @@ def placed_warning(points: np.ndarray, moved: np.ndarray, names: list[str], rock
     return BuildWarning(text, "points", rock, surface)
 
 
-def expected_heights(
-    work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0, threads: int = 0
-) -> np.ndarray:
+def expected_heights(work: Work, points: np.ndarray, plan: np.ndarray, smoothing: float = 0.0) -> np.ndarray:
     """(N,) the heights at plan points (N, 2) of splines through the nearest of points (P, 3), no two of which
     are at one place."""
     spline, plan = native_module().spline, np.ascontiguousarray(plan)
@@ -239,7 +233,6 @@ def expected_heights(
         plan,
         smoothing=smoothing,
         neighborhood=(_EXPECTED_BY, 0, 0.0),
-        execution=on_threads(threads),
     )
 
 

@@ -28,8 +28,8 @@ class ReadyMesh:
 
     data = "triangles"
 
-    def __init__(self, work: Work, entry: RockInput, number: int, threads: int):
-        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+    def __init__(self, work: Work, entry: RockInput, number: int):
+        self.work, self.entry, self.number = work, entry, number
         surface = entry.rock.surfaces[number]
         assert surface.vertices is not None and surface.triangles is not None  # it is read
         self.vertices, self.triangles = surface.vertices, surface.triangles
@@ -58,7 +58,7 @@ class ReadyMesh:
     def _divide(self, fault: int, shape: FaultShape, is_lip: np.ndarray) -> None:
         """The sides of a fault on which each triangle has a part. is_lip: (V,) bool, the vertices on the
         cutoff line, wherever it lies up to rounding."""
-        side = fault_sides(self.work, self.vertices, shape, self.threads)
+        side = fault_sides(self.work, self.vertices, shape)
         side[on_fault(self.vertices, shape) | is_lip] = 0
         corners = side[self.triangles.T]
         mask = np.where((corners < 0).any(axis=0), LEFT, 0) | np.where((corners > 0).any(axis=0), RIGHT, 0)
@@ -67,7 +67,7 @@ class ReadyMesh:
         mask[clear[crossed]] = LEFT | RIGHT
         along = _as_beside(self.vertices, self.triangles, mask) == 0  # all its corners lie on the fault
         middles = self.vertices[self.triangles[along]].mean(axis=1)
-        mask[along] = np.where(fault_sides(self.work, middles, shape, self.threads) > 0, RIGHT, LEFT)
+        mask[along] = np.where(fault_sides(self.work, middles, shape) > 0, RIGHT, LEFT)
         self.masks[:, fault] = mask
 
     def own(self, family: Family) -> np.ndarray:
@@ -117,7 +117,7 @@ class ReadyMesh:
         within = self._within(family)
 
         def traces_on(sheet: Sheet) -> list:
-            return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
+            return [trace_of(self.work, sheet, fault, within) for fault in faults]
 
         sheet = Sheet(np.column_stack([plan, common]), triangles)
         traces = traces_on(sheet)
@@ -179,7 +179,7 @@ class ReadyMesh:
         faults = self.entry.divided().faults
         for number in met:
             fault, within = family.dying[number], self._within(family)
-            place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
+            place = torn_beyond(self.work, sheet, faults.shapes[fault], within)
             if place is not None:
                 raise _two_heights_beyond(faults.names[fault], place)
 
@@ -199,11 +199,11 @@ class ReadyMesh:
         faults = [shapes[family.dying[number]] for number in some]
         within = self._within(family)
         ramps = [0.0] * len(faults)
-        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps, self.threads)
+        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps)
         return shared({sides: Sheet(np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family) -> Within:
-        return Within(self.work, self.entry.divided(), self.number, family, self.threads)
+        return Within(self.work, self.entry.divided(), self.number, family)
 
     def _continued(
         self,
@@ -234,7 +234,7 @@ class ReadyMesh:
             lips = [Lip(shape, side, _beside(trace, points)) for shape, side, trace in cut]
             beyond = beyond_lips(self.work, points, lips, self.reach, self.method, self.settings)
             points = np.concatenate([points, beyond])
-            task = Task(self.work, points, nodes, self.settings, self.threads, tiles)
+            task = Task(self.work, points, nodes, self.settings, tiles)
             found = heights(self.method, task)
             of_place[missing] = found.z if is_by_node else found.z[missing]
             z = np.where(np.isnan(z), of_place[same], z)

@@ -29,7 +29,6 @@ def make_sheets(
     entry: RockInput,
     start: float,
     end: float,
-    threads: int,
     stage: int | None = None,
     keep: Keep = as_it_is,
     numbers: Collection[int] | None = None,
@@ -53,11 +52,11 @@ def make_sheets(
     )
     steps = np.linspace(start, end, len(ready) + len(interpolated) + 1).tolist()[len(ready) :]
 
-    def begin(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
+    def begin(part: Work, number: int) -> list[CompartmentSheets]:
         """The sheets of a surface that are not all made yet."""
         kind = InterpolatedSurface if rock.surfaces[number].interpolated else ReadyMesh
         with named(rock, number):
-            sheets = CompartmentSheets(entry, number, kind(part, entry, number, own_threads))
+            sheets = CompartmentSheets(entry, number, kind(part, entry, number))
         sheets.make_own()
         if sheets.waiting:
             return [sheets]
@@ -66,9 +65,9 @@ def make_sheets(
         finish(sheets)
         return []
 
-    def begin_ready(part: Work, number: int, own_threads: int) -> list[CompartmentSheets]:
+    def begin_ready(part: Work, number: int) -> list[CompartmentSheets]:
         with part.phase(0.0, 1.0, f"interpolating {rock.surfaces[number].name}"):
-            return begin(part, number, own_threads)
+            return begin(part, number)
 
     def finish(sheets: CompartmentSheets) -> None:
         with named(rock, sheets.number):
@@ -78,19 +77,19 @@ def make_sheets(
     few = entry.divided().few
     # ready meshes need no others
     with work.phase(start, steps[0], "interpolating surfaces"):
-        unfinished = list(itertools.chain(*work.each(begin_ready, ready, threads)))
+        unfinished = list(itertools.chain(*work.each(begin_ready, ready)))
     for number, (low, high) in zip(interpolated, itertools.pairwise(steps), strict=True):
         with work.phase(low, high, f"interpolating {rock.surfaces[number].name}"):
-            unfinished += begin(work, number, threads)
+            unfinished += begin(work, number)
     if unfinished:
         with work.phase(end, end, "interpolating surfaces"):
             begun = {*ready, *interpolated}
             for number in itertools.chain(*reversed(_by_kind(rock, None))):
                 if number not in begun and not entry.divided().is_made(number):
-                    unfinished += begin(work, number, threads)
+                    unfinished += begin(work, number)
             for sheets in unfinished:
                 sheets.surface.work = work
-            make_borrowed(unfinished, Throws(work, entry.divided(), few, threads), finish)
+            make_borrowed(unfinished, Throws(work, entry.divided(), few), finish)
         younger = {surface.name for surface in rock.surfaces[_count(rock, stage) :]}
         warnings = entry.divided().warnings
         entry.divided().warnings = [each for each in warnings if each[1].surface not in younger]
@@ -107,10 +106,10 @@ def _count(rock, stage: int | None) -> int:
     return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
 
 
-def warn_of_doubts(work: Work, entry: RockInput, threads: int, stage: int | None, keep: Keep) -> None:
+def warn_of_doubts(work: Work, entry: RockInput, stage: int | None, keep: Keep) -> None:
     """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
     for number in sorted(interpolation_order(entry.rock, stage)):
-        _warn_of_doubts(work, entry, number, threads, keep)
+        _warn_of_doubts(work, entry, number, keep)
 
 
 def _keep(entry: RockInput, number: int, keep: Keep) -> None:
@@ -134,7 +133,7 @@ def _keep(entry: RockInput, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_doubts(work: Work, entry: RockInput, number: int, threads: int, keep: Keep) -> None:
+def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: Keep) -> None:
     """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
     compartment."""
     structure, surfaces = entry.divided(), entry.rock.surfaces
@@ -152,11 +151,11 @@ def _warn_of_doubts(work: Work, entry: RockInput, number: int, threads: int, kee
         )
 
         def holds(places: np.ndarray, row=row) -> np.ndarray:
-            return (sides_of(work, places, structure.faults, threads) == row).all(axis=1)
+            return (sides_of(work, places, structure.faults) == row).all(axis=1)
 
-        found = points_too_low(work, one, [number], threads)
+        found = points_too_low(work, one, [number])
         if keep is as_it_is:
             of_sheet = points[((sides == row) | ~structure.faults.active(number)).all(axis=1)]
-            found += doubtful_heights(work, one, [number], threads, Compartment(of_sheet, holds))
+            found += doubtful_heights(work, one, [number], Compartment(of_sheet, holds))
         for warning in found:
             structure.warn([compartment], warning)

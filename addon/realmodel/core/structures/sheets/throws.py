@@ -85,8 +85,8 @@ class Throws:
     """The throws of a rock mass's faults, measured between the sheets that are there, and those that are told
     to it. few: the surfaces of those that are there which few points show."""
 
-    def __init__(self, work: Work, structure: RockStructure, few: list[int], threads: int):
-        self.work, self.threads = work, threads
+    def __init__(self, work: Work, structure: RockStructure, few: list[int]):
+        self.work = work
         self.structure = replace(structure, sheets=[list(sheets) for sheets in structure.sheets])
         known = [[sheet is not None for sheet in sheets] for sheets in structure.sheets]
         self.rank = np.where(known, OWN, UNKNOWN)
@@ -137,7 +137,7 @@ class Throws:
 
         So its thickness from one of these is that of the source; between two it is the share of theirs.
         """
-        within = Within(self.work, self.structure, number, source, self.threads)
+        within = Within(self.work, self.structure, number, source)
         pairs = [
             pair if pair[0] in family.members else pair[::-1] for pair in self._pairs(fault, source, family)
         ]
@@ -165,7 +165,7 @@ class Throws:
         in compartment `here`, where it lies likewise on or between others; NaN where these have none."""
         plan, z = np.ascontiguousarray(vertices[:, :2]), vertices[:, 2]
         from_there, own = (
-            [heights_at(self.work, self.structure.sheet(each, n), plan, self.threads) for n in surfaces]
+            [heights_at(self.work, self.structure.sheet(each, n), plan) for n in surfaces]
             for each in (there, here)
         )
         if len(own) == 1:
@@ -209,7 +209,7 @@ class Throws:
         for pair in pairs:
             different.setdefault(tuple(self.structure.sheets[each][number] for each in pair), pair)
         parts = [
-            throws_between(self.work, self.structure, fault, number, below, above, self.threads)
+            throws_between(self.work, self.structure, fault, number, below, above)
             for below, above in different.values()
         ]
         parts = [part for part in parts if len(part[0])]
@@ -226,7 +226,7 @@ class Throws:
             sheets = [self.structure.sheets[compartment][each] for each in (older[0], number, younger[0])]
             made = [sheet for sheet in sheets if sheet is not None]
             if len(made) == len(sheets):
-                low, own, high = (heights_at(self.work, sheet, plan, self.threads) for sheet in made)
+                low, own, high = (heights_at(self.work, sheet, plan) for sheet in made)
                 there = (high > low) & np.isfinite(own)  # not where one of them has no height
                 if there.any():
                     share = (own[there] - low[there]) / (high[there] - low[there])

@@ -58,17 +58,16 @@ def trace_of(
     sheet: Sheet,
     fault: FaultShape,
     within: Callable[[np.ndarray], np.ndarray],
-    threads: int = 0,
 ) -> Trace:
     """The trace of a fault in a sheet, edge by edge. within: whether points (K, 3) lie in the compartment; a
     fault that ends elsewhere does not die out."""
     vertices, triangles = sheet
-    crossed = crossed_edges(work, sheet, fault, threads)
+    crossed = crossed_edges(work, sheet, fault)
     on = crossed.side == 0
     begin, end = vertices[crossed.edges[crossed.changing]].transpose(1, 0, 2)
     share = crossed.share[crossed.changing]
     hits = np.isfinite(share)
-    passed = _where_sides_change(work, begin[~hits], end[~hits], fault, threads)
+    passed = _where_sides_change(work, begin[~hits], end[~hits], fault)
     missed = np.zeros(len(crossed.edges), bool)
     missed[crossed.changing[~hits][within(passed)]] = True
     goes_on = missed[crossed.of_triangle].any(axis=1)
@@ -94,10 +93,10 @@ class CrossedEdges(NamedTuple):
     share: np.ndarray
 
 
-def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape, threads: int = 0) -> CrossedEdges:
+def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape) -> CrossedEdges:
     """Where a fault meets the edges of a sheet."""
     vertices, triangles = sheet
-    side = fault_sides(work, vertices, fault, threads)
+    side = fault_sides(work, vertices, fault)
     side[on_fault(vertices, fault)] = 0
     edges = np.sort(edges_of(triangles), axis=1)
     edges, number = np.unique(edges, axis=0, return_inverse=True)
@@ -108,15 +107,13 @@ def crossed_edges(work: Work, sheet: Sheet, fault: FaultShape, threads: int = 0)
     return CrossedEdges(side, edges, number.reshape(3, -1).T, changing, share)
 
 
-def _where_sides_change(
-    work: Work, begin: np.ndarray, end: np.ndarray, fault: FaultShape, threads: int
-) -> np.ndarray:
+def _where_sides_change(work: Work, begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(K, 3) a point on each segment at which the side of a fault changes, by bisection."""
     low, high = np.zeros(len(begin)), np.ones(len(begin))
-    first = fault_sides(work, begin, fault, threads)
+    first = fault_sides(work, begin, fault)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        same = fault_sides(work, begin + middle[:, None] * (end - begin), fault, threads) == first
+        same = fault_sides(work, begin + middle[:, None] * (end - begin), fault) == first
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return begin + high[:, None] * (end - begin)
 
@@ -199,7 +196,6 @@ def with_equal_ends(
     faults: list[FaultShape],
     within: Within,
     ramps: list[float],
-    threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
     triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
@@ -211,7 +207,7 @@ def with_equal_ends(
         [n for n, other in enumerate(faults) if any(other.vertices is end.vertices for end in fault.ends)]
         for fault in faults
     ]
-    side_of = _sides_of_nodes(work, plan, heights, faults, threads)
+    side_of = _sides_of_nodes(work, plan, heights, faults)
     on_side = {
         sides: [(side == 0) | (of == side) for side, of in zip(sides, side_of[sides], strict=True)]
         for sides in heights
@@ -232,7 +228,7 @@ def with_equal_ends(
         inside = known & within(low) & within(high)
         whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
         doubtful = [
-            whole[triangles_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
+            whole[triangles_met(work, fault, low, high, whole) > 0] if fault.dies_out else whole[:0]
             for fault in faults
         ]
         for nodes, some in zip(passed, doubtful, strict=True):
@@ -257,16 +253,16 @@ def with_equal_ends(
             if before is None or not np.array_equal(before, corners):
                 looked_at[number] = corners
                 _draw_where_passed(
-                    work, places, some, number, fault, continuations[number], within, inside, drawn, threads
+                    work, places, some, number, fault, continuations[number], within, inside, drawn
                 )
         if drawn.is_settled() and not _draw_between(
-            work, plan, triangles, found, faults, continuations, within, near, drawn, threads
+            work, plan, triangles, found, faults, continuations, within, near, drawn
         ):
             return found
 
 
 def _draw_where_passed(
-    work: Work, places, some, number, fault, beyond, within: Within, inside, drawn, threads: int
+    work: Work, places, some, number, fault, beyond, within: Within, inside, drawn
 ) -> None:
     """Lets sheets be equal at the nodes of triangles that a fault passes beyond its ends, in the triangles
     `beyond`, of edges that lie in these, and where it touches them.
@@ -274,17 +270,17 @@ def _draw_where_passed(
     places: of all sheets; some: (T, 3) int32 triangles of these. inside: (N,) bool, the nodes at which all
     sheets are in the compartment."""
     node = places.node
-    met = triangles_met(work, fault, places.points, places.points, some, threads)
+    met = triangles_met(work, fault, places.points, places.points, some)
     passes = met == _PASSES
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
     passes[divided] = _meet_within(places.points[some[divided]], beyond, within)
     drawn.require_equal(number, node[some[passes]])
     edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
-    lie_in = _lie_in(work, fault, places.points[edges], beyond, within, threads)
+    lie_in = _lie_in(work, fault, places.points[edges], beyond, within)
     drawn.require_equal(number, node[edges[lie_in]])
     touched = np.unique(some[met > 0])
     touched = touched[inside[node[touched]]]
-    on = _met_points(work, fault, places.points[touched], threads)
+    on = _met_points(work, fault, places.points[touched])
     drawn.require_equal(number, node[touched[on], None])
 
 
@@ -318,10 +314,10 @@ def _places_of(plan: np.ndarray, heights: list[np.ndarray]) -> _Places:
     return _Places(np.concatenate(points), np.concatenate(nodes), number)
 
 
-def _sides_of_nodes(work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape], threads: int):
+def _sides_of_nodes(work: Work, plan: np.ndarray, heights: dict, faults: list[FaultShape]):
     """By the sides of each sheet: (F, N) int8, on which side of each fault its nodes are."""
     places = _places_of(plan, [np.nan_to_num(z) for z in heights.values()])
-    side = np.array([fault_sides(work, places.points, fault, threads) for fault in faults])
+    side = np.array([fault_sides(work, places.points, fault) for fault in faults])
     return {sides: side[:, number] for sides, number in zip(heights, places.number, strict=True)}
 
 
@@ -361,7 +357,7 @@ class _Drawn:
 
 
 def _draw_between(
-    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn, threads: int
+    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn
 ) -> bool:
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
@@ -374,11 +370,11 @@ def _draw_between(
     for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
         if not fault.dies_out:
             continue
-        some = differ[triangles_met(work, fault, low, high, differ, threads) == _PASSES]
+        some = differ[triangles_met(work, fault, low, high, differ) == _PASSES]
         if len(some):
-            between[number] = _between(work, plan, some, found, number, fault, others, within, threads)
+            between[number] = _between(work, plan, some, found, number, fault, others, within)
     places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
-    sides = [fault_sides(work, places, fault, threads) for fault in faults]
+    sides = [fault_sides(work, places, fault) for fault in faults]
     is_torn, first = False, 0
     for number, own in between.items():
         part = slice(first, first + len(own.places))
@@ -407,11 +403,11 @@ class _Between(NamedTuple):
 
 
 def _between(
-    work: Work, plan, triangles, found: dict, number: int, fault, beyond, within: Within, threads: int
+    work: Work, plan, triangles, found: dict, number: int, fault, beyond, within: Within
 ) -> _Between:
     """Those of one fault over some triangles. Of all pairs of sheets many have the same two triangles there,
     and what lies between these is the same."""
-    side, heights = _corners_with_sides(work, plan, triangles, found, fault, threads)
+    side, heights = _corners_with_sides(work, plan, triangles, found, fault)
     over, given_rows = [], [np.empty((0, 7))]
     for one, other in _pairs(found, number):
         both = np.column_stack([side[one], side[other]])
@@ -430,12 +426,12 @@ def _between(
     return _Between(pairs, places, owner)
 
 
-def _corners_with_sides(work: Work, plan, triangles, sheets: dict, fault: FaultShape, threads: int):
+def _corners_with_sides(work: Work, plan, triangles, sheets: dict, fault: FaultShape):
     """By the sides of each sheet, of the corners of some triangles (T, 3): on which side of a fault they are,
     and their heights."""
     heights = {sides: z[triangles] for sides, z in sheets.items()}
     places = [np.column_stack([plan[triangles.ravel()], np.nan_to_num(z.ravel())]) for z in heights.values()]
-    side = fault_sides(work, np.concatenate(places), fault, threads)
+    side = fault_sides(work, np.concatenate(places), fault)
     return dict(zip(sheets, side.reshape(len(sheets), -1, 3), strict=True)), heights
 
 
@@ -473,9 +469,7 @@ def shared(sheets: dict[tuple[int, ...], Sheet]) -> dict[tuple[int, ...], Sheet]
     return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
-def torn_beyond(
-    work: Work, sheet: Sheet, fault: FaultShape, within: Within, threads: int = 0
-) -> np.ndarray | None:
+def torn_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> np.ndarray | None:
     """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
     on beyond its ends; None where there is none."""
     vertices, triangles = sheet
@@ -498,7 +492,7 @@ def torn_beyond(
     line, shares = parts_of_lines(begin, end, walls, np.tile(np.arange(len(low)), 2))
     share = shares.mean(axis=1)
     low, high = (each[line, 0] + share[:, None] * (each[:, 1] - each[:, 0])[line] for each in (low, high))
-    on = np.all([_met_points(work, fault, places, threads) for places in (low, high)], axis=0)
+    on = np.all([_met_points(work, fault, places) for places in (low, high)], axis=0)
     middles = (low + high)[on] / 2
     middles = middles[within(middles)]
     return middles[0] if len(middles) else None
@@ -509,14 +503,14 @@ def _continued(fault: FaultShape, box: np.ndarray) -> np.ndarray:
     return native_module().structure_continuation(fault.native(), box).reshape(-1, 3, 3)
 
 
-def _met_points(work: Work, fault: FaultShape, points: np.ndarray, threads: int) -> np.ndarray:
+def _met_points(work: Work, fault: FaultShape, points: np.ndarray) -> np.ndarray:
     """(P,) bool: the points at which a fault would go on beyond its ends."""
     alone = np.repeat(np.arange(len(points), dtype=np.int32)[:, None], 3, axis=1)
-    return triangles_met(work, fault, points, points, alone, threads) > 0
+    return triangles_met(work, fault, points, points, alone) > 0
 
 
 def _lie_in(
-    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: Within, threads: int
+    work: Work, fault: FaultShape, lines: np.ndarray, beyond: np.ndarray, within: Within
 ) -> np.ndarray:
     """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
     beyond its ends, in the triangles `beyond`."""
@@ -524,7 +518,7 @@ def _lie_in(
     if len(lines):
         walls = np.concatenate([within.walls(box_of(lines)), beyond])
         line, places = middles_of_parts(lines[:, 0], lines[:, 1], walls)
-        on = _met_points(work, fault, places, threads)
+        on = _met_points(work, fault, places)
         on[on] = within(places[on])
         found[line[on]] = True
     return found

@@ -26,14 +26,13 @@ class Within:
     structure: RockStructure
     number: int
     family: Family
-    threads: int
     known: tuple[np.ndarray, np.ndarray] | None = None  # a box and its walls
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """(N,) bool of points (N, 3)."""
         faults = self.structure.faults
         asked = parting(faults, self.number)
-        return self.has(sides_of(self.work, points, faults, self.threads, asked))
+        return self.has(sides_of(self.work, points, faults, asked))
 
     def has(self, sides: np.ndarray) -> np.ndarray:
         """(N,) bool of points with these sides (N, F) of the faults."""
