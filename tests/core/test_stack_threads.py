@@ -5,7 +5,7 @@ import random
 
 import numpy as np
 import pytest
-from realmodel._native import build_stack
+from realmodel._native import Execution, build_stack
 from stacks import places
 from stacks.case import Stack
 from stacks.generate import placement, sine_surface
@@ -51,8 +51,8 @@ MAKERS = {"sines": sines, "ties": ties, "far away": far_away}
 def test_same_bytes(name, cells):
     stack = MAKERS[name](5)
     digests = {
-        digest(build_stack(stack.surfaces, None, stack.base_elevation, cells=cells, threads=threads))
-        for threads in (1, 2, 3, 8, 2, 0)
+        digest(build_stack(stack.surfaces, None, stack.base_elevation, cells=cells, execution=run))
+        for run in map(Execution, (1, 2, 3, 8, 2, 0))
     }
     assert len(digests) == 1
 

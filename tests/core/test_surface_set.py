@@ -157,7 +157,7 @@ def test_from_the_command_line(tmp_path, write):
     for wrong in (("--eroded",), ("--check-model",), ("--estimate",), ("--memory", 4)):
         refused = command(path, "--surfaces-only", *wrong)
         assert refused.returncode == 2
-        assert "--surfaces-only goes without" in refused.stderr
+        assert "goes without" in refused.stderr and "--surfaces-only" in refused.stderr.splitlines()[-1]
     assert command(path, "--surfaces-only", "--export", tmp_path / "s.foam").returncode == 2
 
 

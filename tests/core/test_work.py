@@ -120,7 +120,7 @@ def test_errors_of_the_work_reach_the_caller():
 
 
 def test_a_defect_of_the_native_part_is_told_as_one():
-    def broken(control):
+    def broken(execution):
         raise RuntimeError("an edge has no end")  # as pybind11 has what C++ takes for impossible
 
     with pytest.raises(BuildFailed, match=r"defect: an edge has no end; please report it"):
@@ -195,36 +195,36 @@ def test_what_runs_within_a_job_is_a_part_of_it():
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_items_give_their_results_in_order_on_any_number_of_threads(threads):
-    def square(work, number, own_threads):
-        assert own_threads >= 1
+    def square(work, number):
+        assert work.threads >= 1
         with work.phase(0.0, 1.0, f"item {number}"):
             work.step(0.5)
             return run(lambda inner: inner is work), number**2
 
     def task(work):
         with work.phase(0.2, 0.8, "items"):
-            return work.each(square, range(7), threads)
+            return work.each(square, range(7))
 
-    assert run(task) == [(True, number**2) for number in range(7)]
+    assert run(task, threads=threads) == [(True, number**2) for number in range(7)]
 
 
 @pytest.mark.parametrize("threads", [1, 4])
 def test_the_error_is_that_of_the_first_item_that_fails(threads):
-    def fail(work, number, _threads):
+    def fail(work, number):
         with work.phase(0.0, 1.0, "failing"):
             if number > 1:
                 time.sleep(0.01 * (5 - number))
                 raise InputRefused(f"item {number}")
 
     with pytest.raises(InputRefused, match="item 2"):
-        run(lambda work: work.each(fail, range(5), threads))
+        run(lambda work: work.each(fail, range(5)), threads=threads)
 
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_cancelling_and_progress_reach_all_items(threads):
     calls, ended = [], []
 
-    def endless(work, number, _threads):
+    def endless(work, number):
         try:
             with work.phase(0.0, 1.0, f"item {number}"):
                 for step in range(ENDLESS):
@@ -235,9 +235,10 @@ def test_cancelling_and_progress_reach_all_items(threads):
 
     with pytest.raises(Cancelled):
         run(
-            lambda work: work.each(endless, range(3), threads),
+            lambda work: work.each(endless, range(3)),
             progress=lambda fraction, text: calls.append((fraction, text)),
             cancel=lambda: bool(calls) and calls[-1][0] > 0.15,
+            threads=threads,
         )
     run(lambda _work: None)  # waits for what was stopped
     assert sorted(ended) == list(range(min(3, threads)))

@@ -284,7 +284,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     options = parser.parse_args(_with_negative_values(arguments))
     values = {option.name: getattr(options, option.attribute) for option in OPTIONS}
     chosen = [option for option in OPTIONS if values[option.name] != parser.get_default(option.attribute)]
-    for option in chosen:
+    for option in sorted(chosen, key=lambda option: not option.needs):  # what is missing is said first
         if problem := _conflict(option, values[option.name], {other.name for other in chosen}):
             parser.error(f"--{option.name} {problem}")
     return options
