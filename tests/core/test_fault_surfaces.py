@@ -77,8 +77,8 @@ def test_too_few_sticks(sticks):
         fit_sticks(sticks)
 
 
-def fitted(points, **options):
-    return run(lambda work: fit_points(work, points, **options))
+def fitted(points, threads=0, **options):
+    return run(lambda work: fit_points(work, points, **options), threads=threads)
 
 
 def test_scattered_points_of_a_vertical_bent_fault():

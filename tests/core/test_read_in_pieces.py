@@ -238,7 +238,7 @@ def peak(scale):
         for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
-        found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
+        found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, arrays), threads=1)
         boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
         write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
         peak = tracemalloc.get_traced_memory()[1]
@@ -311,7 +311,7 @@ def pieces(count):
 def divided(points, arrays, method):
     settings = Surface("S", method=method, points=points[:9]).method_options()
     extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, 1, arrays))
+    found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, arrays), threads=1)
     tiles = folder / method
     boxes = {(0, 0): (500.0, 500, 510, 510), (1, 0): (510.0, 500, 520, 510)}
     for name in boxes:
@@ -324,7 +324,7 @@ def certain(points, arrays):
     # heights by triangles, at the corners of a square in four tiles
     settings = Surface("S", method="natural_neighbour", points=points[:9]).method_options()
     extent = np.array([[0.0, 0], [1000, 1000]])
-    found, left, _ = run(lambda work: local_heights(work, points, extent, 4, *settings, 1, arrays))
+    found, left, _ = run(lambda work: local_heights(work, points, extent, 4, *settings, arrays), threads=1)
     corners = np.array([[500.0, 500, 0], [540, 500, 0], [540, 540, 0], [500, 540, 0]])
     mesh = corners, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
     grid, tiles = tile_grid([corners], (20, 20)), folder / "triangles"

@@ -40,8 +40,9 @@ struct EdgeUses {
     const std::array<NodeId, 2>& ends(std::size_t edge) const { return uses[begins[edge]].edge; }
     /// The uses of the edge between two nodes (lesser, greater).
     std::span<const EdgeUse> between(const std::array<NodeId, 2>& edge) const {
-        return std::ranges::equal_range(std::span(uses.data(), uses.size()), edge, {},
-                                        &EdgeUse::edge);
+        const std::span<const EdgeUse> all(uses.data(), uses.size());
+        const auto first = std::ranges::lower_bound(all, edge, {}, &EdgeUse::edge);
+        return {first, std::ranges::upper_bound(all, edge, {}, &EdgeUse::edge)};
     }
 };
 

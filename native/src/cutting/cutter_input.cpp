@@ -182,9 +182,10 @@ void SurfaceInput::divide_triangle(std::size_t t, std::span<const OnEdge> on_edg
         const NodeId a = corners[i], b = corners[(i + 1) % 3];
         loop.push_back({a, view(at(a))});
         const std::size_t begin = loop.size();
-        for (const OnEdge& on :
-             std::ranges::equal_range(on_edges, unordered(a, b), {}, &OnEdge::edge))
-            loop.push_back({on.node, view(at(on.node))});
+        const auto edge = unordered(a, b);
+        auto on = std::ranges::lower_bound(on_edges, edge, {}, &OnEdge::edge);
+        for (; on != on_edges.end() && on->edge == edge; ++on)
+            loop.push_back({on->node, view(at(on->node))});
         if (a > b) std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
     }
     if (loop.size() == 3) return;
