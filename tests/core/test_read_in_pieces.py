@@ -238,7 +238,8 @@ def peak(scale):
         for name in grid:
             (tiles / str(name)).mkdir(parents=True)
         tracemalloc.start()
-        found, left, _ = run(lambda work: local_heights(work, points, extent, 2, *settings, arrays), threads=1)
+        heights = lambda work: local_heights(work, points, extent, 2, *settings, arrays)
+        found, left, _ = run(heights, threads=1)
         boxes = write_parts(mesh, 0, 0, grid, lambda name: tiles / str(name))
         write_windows(left, 0, 0, found, boxes, lambda name: tiles / str(name))
         peak = tracemalloc.get_traced_memory()[1]

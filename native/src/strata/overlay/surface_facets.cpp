@@ -107,7 +107,8 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
 void add_surface_facets(const NumberedTiling& surface, const std::vector<std::uint8_t>& use,
                         const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
                         Envelope& next, const Execution& execution) {
-    const auto& [tiling, number] = surface;
+    const SurfaceTiling& tiling = surface.tiling;
+    const std::int32_t number = surface.number;
     const std::size_t polygons = tiling.plane.size();
     assert(use.size() == polygons && of_polygon.offsets.size() == polygons + 1);
     // Says what a polygon becomes.
