@@ -73,7 +73,7 @@ class BooleanJob(ThreadJob):
 
     def run(self):
         """Intersects in this thread and puts the result into the scene."""
-        return self._put(work.run(self._work))
+        return self._put(super().run())
 
     def finish(self):
         """Adds the result to the scene. Raises Cancelled, and the errors of the job."""
@@ -84,7 +84,7 @@ class BooleanJob(ThreadJob):
     def _work(self, job):
         try:
             surfaces = [(operand.vertices, operand.triangles) for operand in self._operands]
-            found = intersect_within(job, *surfaces, self._threads, _SHARE)
+            found = intersect_within(job, *surfaces, _SHARE)
             with job.phase(_SHARE, 1.0, "taking over materials and attributes"):
                 if self._operation == DIVIDE:
                     return self._divided(found, job)

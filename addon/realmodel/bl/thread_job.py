@@ -19,12 +19,12 @@ class ThreadJob:
     def run(self):
         """Runs `_work(job)` in this thread; returns its result, and raises its errors."""
         self._threads = threads()
-        return work.run(self._work)
+        return work.run(self._work, threads=self._threads)
 
     def start(self, is_short=False):
         """Starts the work. is_short: it is expected to take less than half a second."""
         self._threads = threads(is_short)
-        self._job = work.start(self._work)
+        self._job = work.start(self._work, self._threads)
 
     @property
     def done(self):

@@ -28,7 +28,7 @@ TEST(NodeLoop, EachNodeOnceAndTheProgressToItsEnd) {
 
 TEST(NodeLoop, TheErrorOfTheLowestNodeReachesTheCaller) {
     for (const int threads : {1, 2, 5}) {
-        const NodeLoop loop{5000, 7, threads, nullptr};
+        const NodeLoop loop{5000, 7, {threads, nullptr}};
         std::string message;
         try {
             loop.over_nodes([] { return 0; },
@@ -48,7 +48,7 @@ TEST(NodeLoop, TheErrorOfTheLowestNodeReachesTheCaller) {
 TEST(NodeLoop, StopsBetweenTwoNodes) {
     Progress progress;
     int done = 0;
-    const NodeLoop loop{1000, 1000, 1, &progress};
+    const NodeLoop loop{1000, 1000, {1, &progress}};
     const auto work = [&](int, std::size_t i) {
         ++done;
         if (i == 4) progress.cancel();

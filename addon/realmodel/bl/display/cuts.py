@@ -214,7 +214,7 @@ def _begun(current, state):
         shapes = block_shapes.by_name(model, made)
         return state, model, shapes, request
 
-    return work.start(task)
+    return work.start(task, threads())
 
 
 def _take(current, made):

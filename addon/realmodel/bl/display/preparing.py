@@ -8,6 +8,7 @@ from ...core import Cancelled, RealModelError
 from ...core.base import work
 from .. import meshes, viewports
 from ..debounce import DebouncedJob
+from ..threads import threads
 from . import cells, modes, replacing, shown_models
 
 
@@ -48,7 +49,7 @@ def _begin(name, _changed_at):
             wanted.make()
         return stage, shapes, wanted
 
-    return work.start(task)
+    return work.start(task, threads())
 
 
 def _hand_over(name, job):
