@@ -12,7 +12,6 @@ import bpy
 import numpy as np
 
 from ..core import BuildFailed, InputRefused
-from ..core.base import work
 from ..core.display.mesh_parts import MeshParts, Operand, mesh_of_parts
 from ..core.results.booleans import SURFACES, intersect_within
 from . import mesh_data, meshes, scene, shapes, versions
