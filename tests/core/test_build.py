@@ -96,6 +96,11 @@ def test_block_boundaries_are_closed_and_turn_outward():
         assert np.array_equal(model.face_surface[shell.faces], shell.face_surface)
 
 
+def test_a_stage_is_built_with_the_threads_of_its_model():
+    whole = build(rock(level("S0", 0.0, 3), level("S1", 1.0, 3), base_elevation=-2.0), threads=2)
+    assert (whole.threads, whole.stage(0).threads) == (2, 2)
+
+
 def test_stages():
     surfaces = [level("S0", 0.0, 3), dome("S1", 1.0), level("S2", 0.4, 5), level("S3", 2.0, 4)]
     project = rock(*surfaces, base_elevation=-2.0)

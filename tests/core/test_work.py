@@ -193,6 +193,14 @@ def test_what_runs_within_a_job_is_a_part_of_it():
         job.result()
 
 
+def test_a_part_of_a_job_has_the_threads_of_the_job_unless_it_says_how_many():
+    def task(work):
+        parts = [run(lambda part: part.threads, threads=threads) for threads in (0, 1)]
+        return [*parts, work.threads]
+
+    assert run(task, threads=3) == [3, 1, 3]
+
+
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_items_give_their_results_in_order_on_any_number_of_threads(threads):
     def square(work, number):

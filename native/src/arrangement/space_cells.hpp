@@ -29,12 +29,10 @@ namespace realmodel::arrangement {
 ///            second are in one cell. So each cell is a set of sides, joined around all edges;
 ///            parts of its boundary that do not touch one another are joined along rays
 ///   way      from a cell through a facet into another one, in direction 1 from side 0 to side 1,
-///   or
-///            -1 back
-///   label    a number or several of each cell, that change with each facet by what it is told to
-///   be:
-///            how often P and Q go round the cell (winding; a surface goes once round what is below
-///            it), on which side of each fault it is. Around an edge all changes add up to nothing
+///            in direction -1 back
+///   label    one or several numbers of each cell, with a known change at each facet: how often P
+///            and Q go round the cell (winding; a surface goes once round what is below it), or on
+///            which side of each fault it is. Around an edge all changes add up to nothing
 ///            where no surface ends there; where one does, two ways may lead to different labels
 class SpaceCells {
 public:

@@ -99,12 +99,12 @@ class Work:
     ) -> Result:
         """Calls a native function that takes an `execution`, as the present phase."""
         native, call = native_module(), cast(Callable[..., Result], function)
-        execution = options.setdefault("execution", native.Execution(self.threads))
+        execution = native.Execution(self.threads)
         with self._lock:
-            self._execution = cast("Native.Execution", execution)
+            self._execution = execution
         try:
             self.check()
-            return call(*arguments, **options)
+            return call(*arguments, **options, execution=execution)
         except native.Cancelled as error:
             raise Cancelled("cancelled") from error
         except MemoryError as error:
@@ -269,11 +269,16 @@ def run(
     KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
     before the work was done.
 
-    Within a job, and without these two, the task is done at once as a part of that job, on its threads.
+    Within a job, and without these two, the task is done at once as a part of that job, with its threads
+    unless `threads` says how many.
     """
     work = getattr(_current, "work", None)
     if work is not None and progress is None and cancel is None:
-        return task(work)
+        before, work.threads = work.threads, threads or work.threads
+        try:
+            return task(work)
+        finally:
+            work.threads = before
     job = start(task, threads)
     try:
         while not job.wait(POLL_SECONDS):

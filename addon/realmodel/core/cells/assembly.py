@@ -53,7 +53,7 @@ def build_stage(
         return type(model).of(assemble(work, project, inputs, built, timings, _STAGE_INTERSECTED, structures))
 
     began = time.perf_counter()
-    return run(task, progress, cancel)
+    return run(task, progress, cancel, threads=model.threads)
 
 
 def intersect(
@@ -71,10 +71,7 @@ def intersect(
     rocks = [entry.native() for entry in inputs]
     with work.phase(start, end, "intersecting and cutting"):
         try:
-            return BuiltCells.of(
-                work.native(native.build_rock_masses, rocks, cells=cells),
-                cells,
-            )
+            return BuiltCells.of(work.native(native.build_rock_masses, rocks, cells=cells), cells)
         except native.InputError as error:
             raise refused_stack(error, inputs) from error
 

@@ -57,7 +57,7 @@ def sums_of(realizer: Realizer, number: int, places: np.ndarray, threads: int = 
     """The sums of one realization. places: (N, 3)."""
     model = realizer.realization(number, threads=threads)
     found = differences(realizer.model, model, threads)
-    blocks = blocks_at(model, places)
+    blocks = blocks_at(model, places, threads)
     return Sums(
         np.array([[block.volume for block in model.blocks]]),
         found,

@@ -56,7 +56,7 @@ def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarr
                 found[own] = at_places(vertices, triangles, points[own, :2], model.threads)
         return found
 
-    return run(task)
+    return run(task, threads=model.threads)
 
 
 def residuals(model: ModelData) -> list[Residuals]:

@@ -55,7 +55,7 @@ def _mean(values: np.ndarray, length: np.ndarray) -> float:
 
 def displacements(model) -> list[Displacement]:
     """The displacements of each fault of a model, for each surface that it displaces where it meets it."""
-    return run(lambda work: _displacements(work, model))
+    return run(lambda work: _displacements(work, model), threads=model.threads)
 
 
 def _displacements(work: Work, model) -> list[Displacement]:
