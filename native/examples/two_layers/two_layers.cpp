@@ -41,7 +41,7 @@ void print_volumes() {
     const std::vector<std::array<double, 3>> boreholes{
         {0, 0, 10}, {100, 0, 20}, {100, 100, 20}, {0, 100, 10}};
     const std::vector<double> heights =
-        realmodel::interpolation::linear_on_triangulation(boreholes, mesh.vertices, 0);
+        realmodel::interpolation::linear_on_triangulation(boreholes, mesh.vertices);
 
     const std::size_t count = mesh.vertices.size();
     const std::array surfaces{Surface(mesh, std::vector<double>(count, 0.0)),
