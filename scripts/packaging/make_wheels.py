@@ -3,7 +3,7 @@
 
     build/packaging/bin/python make_wheels.py PLATFORM FOLDER MODULE...
 
-PLATFORM, FOLDER and MODULE are those of make_zip.py. Files and metadata are what pyproject.toml says, since its
+PLATFORM, FOLDER and MODULE are those of make_zip.py. Files and metadata are what pyproject.toml says, as its
 build backend makes them; nothing is compiled. For Linux auditwheel adds GCC's libgomp, which not every Linux
 has, and proves that nothing else is needed but what the tag promises. The same files give the same bytes.
 """
@@ -78,9 +78,7 @@ def main(platform, folder, *modules):
                 path = self_contained(path, Path(work, "repaired"))
             size = path.stat().st_size
             if size > LARGEST:
-                sys.exit(
-                    f"make_wheels.py: {path.name} has {size / 1e6:.1f} MB; at most {LARGEST / 1e6:.0f} are meant"
-                )
+                sys.exit(f"make_wheels.py: {path.name} has {size} bytes; at most {LARGEST:.0f} are meant")
             os.replace(path, folder / path.name)
             print(f"Made {folder / path.name}: {size / 1e6:.1f} MB")
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zips and wheels that scripts/package.sh made: --zip, --windows-zip and --macos-zip FILE, --wheels FOLDER,
-or those in dist/."""
+"""What scripts/package.sh made: --zip, --windows-zip and --macos-zip FILE, --wheels FOLDER, or those in dist/."""
 
 import os
 import subprocess

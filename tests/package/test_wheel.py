@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wheels: what is in them, and that pip installs each one whose Python is here in an empty environment."""
+"""The wheels: what is in them, and each one whose Python is here, installed in an empty environment."""
 
 import email
 import os
