@@ -3,7 +3,7 @@
 # Makes what users install, from one set of native modules, one for each platform and version of Python:
 #
 #   dist/realmodel-VERSION-PLATFORM.zip             for Blender 3.4 to 5.2
-#   dist/realmodel-VERSION-PLATFORM-extension.zip   for extensions.blender.org, which wants wheels (docs/dev/releasing.md)
+#   dist/realmodel-VERSION-PLATFORM-extension.zip   for Blender's extension platform, which wants wheels (docs/dev/releasing.md)
 #   dist/realmodel-VERSION-cp3xx-*.whl              for pip, CPython 3.11 to 3.14
 #
 # on Linux x86-64, Windows x64 and macOS with Apple's processors. The headers of the Pythons come from

@@ -6,8 +6,8 @@
 
 PLATFORM: as Blender calls it, e.g. windows-x64. FOLDER: where realmodel-VERSION-PLATFORM.zip goes. MODULE:
 the native modules, one for each Python. WHEEL: those of make_wheels.py instead, for
-realmodel-VERSION-PLATFORM-extension.zip: extensions.blender.org takes compiled code in wheels of PyPI only
-(docs/dev/releasing.md), and Blender 4.2 and newer install them.
+realmodel-VERSION-PLATFORM-extension.zip: Blender's extension platform takes compiled code only in wheels of
+PyPI (docs/dev/releasing.md), and Blender 4.2 and newer install them.
 The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
 for which markdown-it-py is needed.
 """

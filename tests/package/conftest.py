@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts/package.sh made: --zip, --windows-zip and --macos-zip FILE, --wheels FOLDER, or those in dist/."""
+"""What scripts/package.sh made: --zip, --windows-zip, --macos-zip FILE, --wheels FOLDER, or all of dist."""
 
 import os
 import subprocess
