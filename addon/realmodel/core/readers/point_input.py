@@ -19,12 +19,11 @@ from ..settings.point_file import PointFile
 from .maps.map_input import is_map_layer, map_companions
 from .maps.map_points import read_map_points
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
-from .rasters.cps3_grid import is_cps3_grid, read_cps3_grid
+from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
 from .rasters.geotiff import is_tiff, read_geotiff, world_file
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.raster import Raster
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
-from .rasters.zmap_grid import is_zmap_grid, read_zmap_grid
 from .tables.points import read_point_rows
 
 _HEAD = 4096  # bytes; comments may come before the first line of a grid

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -51,6 +51,19 @@ class Raster:
                 for axis in (0, 1):
                     points[:, axis] = self.origin[axis] + columns * self.across[axis] + rows * self.down[axis]
                 yield points
+
+
+def known_heights(
+    pieces: Iterable[np.ndarray], none: Sequence[float], gather: Gather, below: float = np.inf
+) -> np.ndarray:
+    """All heights, NaN where none is known. none: values that mean this, as do those from `below` on."""
+
+    def known() -> Iterator[np.ndarray]:
+        for z in pieces:
+            z[z >= below] = np.nan
+            yield without_values(z, none)
+
+    return gather(known(), np.empty(0))
 
 
 def without_values(
