@@ -6,10 +6,8 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
-from ..core import InputRefused
 from ..core.readers import TABLE_ENDINGS, read_boreholes
 from ..core.settings.boreholes import COLUMNS, Boreholes
-from ..core.settings.point_file import ReadingError
 from ..core.settings.schema import READING
 from ..props_schema import items
 from .imports import arrived
@@ -72,10 +70,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         )
         for file in given.files:
             require_file(file)
-        try:
-            given.check()
-        except ReadingError as error:
-            raise InputRefused(error.what, advice=error.advice) from error
+        given.check()
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
         warnings = borehole_points.give(context.scene, rock, found, self.add_surfaces)

@@ -35,7 +35,7 @@ from ..core.readers import (
     read_point_file,
 )
 from ..core.readers.contents import column_values
-from ..core.settings.point_file import ReadingError
+from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
 from ..registration import drop_handler
 from .reporting import Reporting, file_filter, require_file
@@ -259,7 +259,7 @@ def _read(surface, unit):
     given = PointFile(surface.path, **surface.reading)
     try:
         given.check()
-    except ReadingError as error:
+    except OptionRefused as error:
         raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
         surface.places, warnings = read_point_file(given, unit)

@@ -80,7 +80,9 @@ def without_shape(rock: Rock) -> Rock:
         )
         for surface in rock.surfaces
     ]
-    return Rock(rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.region_source()[0])
+    return Rock(
+        rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.shape_source("region")[0]
+    )
 
 
 def without_shapes(project: Project, inputs: list[RockInput]) -> Project:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import BOM, Content, Step, no_step, text_content
 from ..tables.table_layout import is_number
 from .grid_text import GridText, grid_heights, header_lines
@@ -37,7 +37,7 @@ def is_ascii_grid(head: bytes) -> bool:
 
 
 def read_ascii_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid; heights stand at the centers of its cells. nodata: further numbers that mean no height.
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import Step, no_step, text_content
 from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
 from .raster import Raster, known_heights
@@ -30,7 +30,7 @@ def is_zmap_grid(head: bytes) -> bool:
 
 
 def read_cps3_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid. Raises InputRefused naming the line."""
     file = Path(file)
@@ -58,7 +58,7 @@ def read_cps3_grid(
 
 
 def read_zmap_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid. Raises InputRefused naming the line."""
     file = Path(file)
@@ -88,7 +88,7 @@ def _columns(
     lines: tuple[int, int],
     none: Sequence[float],
     step: Step,
-    gather: Gather,
+    gather: JoinPieces,
 ) -> Raster:
     """numbers: rows, columns, west, east, south, north. lines: of the first two, and of the others."""
     west, east, south, north = numbers[2:]

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory, in_pieces
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory, in_pieces
 from ...base.text import Step, no_step
 from ...base.vendored import vendored
 from ...base.work import native_module
@@ -48,7 +48,7 @@ def world_file(file: Path) -> Path | None:
 
 
 def read_geotiff(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
     uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file

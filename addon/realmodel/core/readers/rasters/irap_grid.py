@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
 from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count
 from .raster import Raster, known_heights
@@ -33,7 +33,7 @@ def is_irap_grid(head: bytes) -> bool:
 
 
 def read_irap_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid. Raises InputRefused naming the line or the byte."""
     file = Path(file)

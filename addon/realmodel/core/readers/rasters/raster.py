@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Raster:
     down: tuple[float, float]
     warnings: list[str] = field(default_factory=list)
 
-    def points(self, file: Path, gather: Gather = in_memory) -> np.ndarray:
+    def points(self, file: Path, gather: JoinPieces = in_memory) -> np.ndarray:
         """(P, 3) float64, row after row, those without a height left out.
 
         Raises InputRefused where none is left.
@@ -54,7 +54,7 @@ class Raster:
 
 
 def known_heights(
-    pieces: Iterable[np.ndarray], none: Sequence[float], gather: Gather, below: float = np.inf
+    pieces: Iterable[np.ndarray], none: Sequence[float], gather: JoinPieces, below: float = np.inf
 ) -> np.ndarray:
     """All heights, NaN where none is known. none: values that mean this, as do those from `below` on."""
 

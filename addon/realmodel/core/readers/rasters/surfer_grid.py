@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
 from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
 from .raster import Raster, known_heights
@@ -26,7 +26,7 @@ def is_surfer_grid(head: bytes) -> bool:
 
 
 def read_surfer_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid; its rows go from south to north. Raises InputRefused naming the line or the byte."""
     file = Path(file)
