@@ -28,7 +28,7 @@ def norm(vector: np.ndarray) -> np.ndarray:
 def begins_run(rows: np.ndarray) -> np.ndarray:
     """(N,) bool: the rows (N, ...) that are unlike the one before."""
     found = np.ones(len(rows), bool)
-    found[1:] = (rows[1:] != rows[:-1]).reshape(len(found[1:]), -1).any(axis=1)
+    found[1:] = (rows[1:] != rows[:-1]).any(axis=tuple(range(1, rows.ndim)))
     return found
 
 

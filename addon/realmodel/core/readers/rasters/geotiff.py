@@ -20,7 +20,7 @@ from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory, in_pieces
 from ...base.text import Step, no_step
 from ...base.vendored import vendored
-from ...base.work import native_module
+from ...base.work import native_module, refused_as
 from .raster import Raster, without_values
 
 _MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
@@ -191,14 +191,11 @@ def _cut_off(file: Path) -> InputRefused:
 
 def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:
     """At least the bytes that are there, at most `size`."""
-    native = native_module()
     if compression == _LZW:
         if data[:2] == b"\0\1":
             raise ValueError("LZW from before 1992 is not supported")
-        try:
+        with refused_as(lambda error: ValueError(str(error))) as native:
             return native.decode_lzw(data, size)
-        except native.InputError as error:
-            raise ValueError(str(error)) from error
     if compression in _DEFLATE:
         return zlib.decompressobj().decompress(data, size)
     if compression == _PACKBITS:
