@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.errors import InputRefused
+from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
@@ -65,7 +66,7 @@ class Surface:
     minimum_thickness: float | None = None
     correlation: float | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
@@ -157,7 +158,7 @@ class Rock:
     boreholes: Boreholes | None = None
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @property
     def region_file(self) -> Path | None:

@@ -16,10 +16,11 @@ from ..base.atomic import Outputs, explained
 from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
+from ..base.npz import read_npz
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module, run
 from ..cells.assembly import assemble
-from ..cells.blocks import Block
+from ..cells.blocks import blocks_of_arrays
 from ..cells.built_cells import BuiltCells
 from ..cells.cell_complex import CellComplex
 from ..cells.stack_refusals import refused_stack
@@ -422,19 +423,9 @@ def read_model(project: Project, path: Path) -> Model:
 
 def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     """A tile's model from its arrays."""
-    blocks = [
-        Block(str(name), int(rock), int(surface), int(prop), float(volume), int(cells), int(components))
-        for name, rock, surface, prop, volume, cells, components in zip(
-            *(
-                arrays[f"block_{key}"]
-                for key in ("names", "rock", "surface", "property", "volume", "cells", "components")
-            ),
-            strict=True,
-        )
-    ]
     model = Model(
         CellComplex.of(arrays, str(arrays["cell_kind"])),
-        blocks,
+        blocks_of_arrays(arrays),
         SurfaceArrays.of_arrays(arrays),
         surface_names=arrays["surface_names"].tolist(),
         project=project,
@@ -470,9 +461,8 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
 def read_arrays(path: Path) -> dict[str, np.ndarray]:
     """All arrays of an .npz. Raises BuildFailed where it cannot be read."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return dict(file)
+        return read_npz(path)
     except OSError as error:
         raise OutputFailed(f"{path}: cannot be read: {error.strerror or error}") from error
-    except Exception as error:  # whatever zipfile and NumPy make of a damaged file
+    except ValueError as error:
         raise BuildFailed(f"{path}: cannot be read; delete it and start again") from error
