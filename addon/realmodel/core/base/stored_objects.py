@@ -50,11 +50,13 @@ class StoredClasses:
     def __init__(self, kinds: Iterable[type]):
         self._kinds = {kind.__name__: kind for kind in kinds}
 
-    def write(self, value: object, arrays: NamedArrays, path_text: Callable[[PurePath], str] = str) -> bytes:
+    def write(
+        self, value: object, arrays: NamedArrays, stored: Callable[[Any], Any] = lambda value: value
+    ) -> bytes:
         """The table of a value of these classes, lists, tuples, dicts, paths, arrays, numbers and texts.
 
-        What is one object in several places is one again when it is read; so are equal arrays. path_text:
-        what is stored of a path.
+        What is one object in several places is one again when it is read; so are equal arrays. stored: what
+        is stored in the place of a path or an object.
         """
         table: list[list] = []  # each entry after those that it names
         known: dict[Any, int] = {}  # by the id of an object, or the name of an array
@@ -74,11 +76,12 @@ class StoredClasses:
             return [known[key]]
 
         def entry_of(value: Any) -> list:
+            value = stored(value)
             name = type(value).__name__
             if self._kinds.get(name) is type(value):
                 return [name, [[key, number_of(each)] for key, each in _content(value)]]
             if isinstance(value, PurePath):
-                return [_PATH, path_text(value)]
+                return [_PATH, value.as_posix()]
             if isinstance(value, (list, tuple)):
                 kind = _LIST if isinstance(value, list) else _TUPLE
                 return [kind, [number_of(each) for each in value]]
@@ -111,8 +114,8 @@ class StoredClasses:
         if kind == _PATH:
             return Path(content)
         if kind in (_LIST, _TUPLE):
-            values = [value_of(each) for each in content]
-            return values if kind == _LIST else tuple(values)
+            entries = [value_of(each) for each in content]
+            return entries if kind == _LIST else tuple(entries)
         if kind == _DICT:
             return {value_of(key): value_of(each) for key, each in content}
         made: Any = self._kinds[kind]

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Callable, Mapping
-from pathlib import PurePath
+from dataclasses import replace
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
@@ -25,6 +28,7 @@ from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import RockStructure
 from ..surfaces.sides import FaultShape, RockFaults
 from ..surfaces.surface_arrays import SurfaceArrays
+from .blocks import blocks_of_arrays
 from .model_data import ModelData
 
 RECORDED: tuple[type, ...] = (
@@ -43,7 +47,7 @@ def record_arrays(model: ModelData) -> dict[str, np.ndarray]:
     model.require_project("an .npz file")
     arrays = NamedArrays(_shapes(model.surfaces), f"{RECORD}_")
     values = {name: getattr(model, name) for name in _FIELDS}
-    text = _STORED.write(values, arrays, _name_within(model.project))
+    text = _STORED.write(values, arrays, _within_folder(model.project))
     return {RECORD: np.frombuffer(text, np.uint8), **arrays}
 
 
@@ -68,48 +72,51 @@ def _shapes(surfaces: SurfaceArrays) -> dict[str, np.ndarray]:
     return found
 
 
-def _name_within(project: Project) -> Callable[[PurePath], str]:
-    """What is stored of a path: its part below the folder of the project, else its last part."""
-    folder = None if project.path is None else project.path.parent
+def _within_folder(project: Project) -> Callable[[Any], Any]:
+    """What is stored of a path: its part below the folder of the project, else its last part; and of a
+    warning, which may begin with such a path."""
+    folder = Path() if project.path is None else project.path.parent
+    named = re.compile(f"(^|: ){re.escape(str(folder) + os.sep)}")
 
-    def name(path: PurePath) -> str:
-        is_within = folder is not None and path.is_relative_to(folder)
-        return path.relative_to(folder).as_posix() if is_within else path.name
+    def stored(value: Any) -> Any:
+        if isinstance(value, PurePath):
+            is_within = value.is_relative_to(folder)
+            return value.relative_to(folder) if is_within else PurePath(value.name)
+        if isinstance(value, BuildWarning):
+            return replace(value, text=named.sub(r"\1", value.text))
+        return value
 
-    return name
+    return stored
 
 
 def without_record(arrays: Mapping[str, np.ndarray], surfaces: SurfaceArrays, name: str) -> dict[str, Any]:
     """The fields of ModelData that follow from the arrays of a file of RealModel 0.1, which had no record:
     names, properties and shapes."""
-    block_of = {surface: number for number, surface in enumerate(arrays["block_surface"].tolist())}
-    rocks = [Rock(each, []) for each in arrays["rock_names"].tolist()]
-    faults, bodies, rock = [], [], -1
-    kinds, names = arrays["surface_kind"].tolist(), arrays["surface_names"].tolist()
-    for number, (kind, own) in enumerate(zip(kinds, names, strict=True)):
+    blocks = {block.surface: block for block in blocks_of_arrays(arrays)}
+    inputs = [RockInput(Rock(each, []), []) for each in arrays["rock_names"].tolist()]
+    structures, rock = Structures([], [], [], []), -1
+    named = zip(arrays["surface_kind"].tolist(), arrays["surface_names"].tolist(), strict=True)
+    for number, (kind, own) in enumerate(named):
         vertices, triangles = surfaces.surface(number)
-        block = block_of.get(number)
-        known = {} if block is None else {"property": int(arrays["block_property"][block])}
+        block = blocks.get(number)
+        library_id = 0 if block is None else block.property
         if kind == 1:
-            faults.append(Fault(own, vertices, triangles))
+            structures.faults.append(Fault(own, vertices, triangles))
         elif kind == 2:
-            bodies.append(Body(own, vertices, triangles, **known))
+            structures.bodies.append(Body(own, vertices, triangles, property=library_id))
         else:
             # without a block beneath it a surface is the oldest of its rock mass
-            rock = rock + 1 if block is None else int(arrays["block_rock"][block])
-            named = {} if block is None else {"block": str(arrays["block_names"][block])}
-            rocks[rock].surfaces.append(Surface(own, vertices, triangles, **known, **named))
-    inputs, first = [], 0
-    for each in rocks:
-        entry = RockInput(each, [Sheet(s.vertices, s.triangles) for s in each.surfaces])
-        count = len(each.surfaces)
-        entry.interpolations, entry.file_faces = [None] * count, [None] * count
-        for k in range(count):
-            begin, end = surfaces.vertex_offsets[first + k : first + k + 2]
+            rock = rock + 1 if block is None else block.rock
+            entry = inputs[rock]
+            begin, end = surfaces.vertex_offsets[number : number + 2]
             attributes = {key: arrays[f"surface_{key}"][begin:end] for key in ("variance", "distance")}
-            entry.attributes[k] = attributes
-        first += count
-        inputs.append(entry)
-    structures = Structures(faults, bodies, [], [])
-    project = Project(name, rocks, faults=faults, bodies=bodies)
+            entry.attributes[len(entry.surfaces)] = attributes
+            entry.surfaces.append(Sheet(vertices, triangles))
+            entry.interpolations.append(None)
+            entry.file_faces.append(None)
+            surface = Surface(own, vertices, triangles, property=library_id)
+            surface.block = None if block is None else block.name
+            entry.rock.surfaces.append(surface)
+    rocks = [entry.rock for entry in inputs]
+    project = Project(name, rocks, faults=structures.faults, bodies=structures.bodies)
     return {"project": project, "rock_inputs": inputs, "structures": structures}

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import InputRefused
-from ..base.npz import read_npz
 from ..base.work import Work
 from ..cells.blocks import blocks_of_arrays
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData
 from ..cells.model_record import RECORD, read_record, without_record
+from ..readers.npz import read_npz
 from ..surfaces.surface_arrays import SurfaceArrays
 
 _READ = 0.9  # of the time

@@ -16,7 +16,6 @@ from ..base.atomic import Outputs, explained
 from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
-from ..base.npz import read_npz
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module, run
 from ..cells.assembly import assemble
@@ -28,6 +27,7 @@ from ..exporters.npz import model_arrays, write_arrays
 from ..model.model import Model
 from ..project.project import Project, Rock, Surface
 from ..project.structure_entries import Body, Fault
+from ..readers.npz import read_npz
 from ..structures.parts.parts import structures_of
 from ..surfaces.local_heights import LocalHeights, PartHeights
 from ..surfaces.rock_input import RockInput

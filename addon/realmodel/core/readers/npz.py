@@ -15,7 +15,7 @@ from typing import IO
 
 import numpy as np
 
-from .errors import RealModelError
+from ..base.errors import RealModelError
 
 _PIECE = 1 << 24  # bytes read at once
 _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
