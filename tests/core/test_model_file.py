@@ -320,18 +320,22 @@ def test_arrays_that_do_not_fit_one_another_are_refused(small, tmp_path):
             low = array.copy()
             low.flat[0] = -np.inf if array.dtype.kind == "f" else -9
             wrong += [{name: bad}, {name: low}]
-    for old, new in ((b'"Project"', b'"Popen"'), (b'"two', b'3, "'), (b'"rocks"', b'"socks"'), (b"[[", b"[")):
-        text = arrays["record"].tobytes()
-        assert old in text or old == b'"two'
+    text = arrays["record"].tobytes()
+    for old, new in (
+        (b'"Project"', b'"Popen"'),
+        (b'"rocks"', b'"socks"'),
+        (b"[[", b"["),
+        (b'"erosional"', b"7"),
+        (b'"record_0"', b'"record_x"'),
+        (b'"Two layers"', b"[9999]"),
+    ):
+        assert old in text
         wrong.append({"record": np.frombuffer(text.replace(old, new, 1), np.uint8)})
-    wrong.append(
-        {"record": np.frombuffer(arrays["record"].tobytes().replace(b'"erosional"', b"7"), np.uint8)}
-    )
     for each in wrong:
         file.write_bytes(changed(arrays, **each))
         with pytest.raises(InputRefused) as caught:
             Model.load(file)
-        assert caught.value.file == file and len(str(caught.value).splitlines()) == 1, each
+        assert caught.value.file == file and len(str(caught.value).splitlines()) == 1
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused
 from ..base.work import Work
 from ..cells.blocks import blocks_of_arrays
@@ -47,6 +48,10 @@ _ARRAYS: dict[str, tuple[str, str, int]] = {
     "compartment_names": ("", "U", 0),
     "rock_names": ("", "U", 0),
 }
+_LACKS_PROJECT = (
+    "the file is of RealModel 0.1 and lacks the project: regions, rules, base elevations, and how surfaces "
+    "were made; build it from its project and save it again"
+)
 _AGAIN = "save the model again, or build it from its project"
 
 
@@ -78,7 +83,8 @@ def _model(arrays: Mapping[str, np.ndarray], path: Path, threads: int) -> ModelD
     if RECORD in arrays:
         recorded: dict[str, Any] = read_record(arrays, surfaces)
     else:
-        recorded = {**without_record(arrays, surfaces, path.stem), "lacks_project": path}
+        recorded = without_record(arrays, surfaces, path.stem)
+        recorded |= {"lacks_project": path, "warnings": [BuildWarning(_LACKS_PROJECT, "file")]}
     model = ModelData(
         CellComplex.of(arrays, str(arrays["cell_kind"])),
         blocks_of_arrays(arrays),
