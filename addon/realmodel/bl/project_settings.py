@@ -408,7 +408,7 @@ def fill_surface(row, surface):
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)
             reading_text.fill(row, vars(surface.point_file or surface.mesh_file))
-        elif surface.interpolated and surface.points is None:
+        elif surface.interpolated and not len(surface.point_array()):
             row.source = "NONE"
         else:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The start of a model: empty, from a project file, from meshes; and saving a project file."""
+"""The start of a model: empty, from a project file or a built model, from meshes; and saving a project."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -20,14 +21,18 @@ from ..bl import (
     scene,
     settings,
     shapes,
+    viewports,
 )
 from ..bl.display import cuts
 from ..bl.origin import KEY as ORIGIN_KEY
-from ..core import BuildFailed, load_project
+from ..bl.threads import threads
+from ..core import BuildFailed, Model, load_project
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
 from ..registration import drop_handler
 from .reporting import Reporting, any_surface, chosen_path, file_filter, not_building, selected_meshes
+
+_MODEL_ENDING = ".npz"
 
 
 def _begin(current, name):
@@ -95,7 +100,8 @@ class REALMODEL_OT_new(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
-    """Open a RealModel project file (TOML) in this scene, in place of the model that is there"""
+    """Open a RealModel project file (TOML), or a model that was built (NPZ), in this scene, in place of the
+    model that is there"""
 
     bl_label = "Open RealModel Project"
 
@@ -104,15 +110,17 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     # not kept from one time to the next: with a path, as of a dropped file, no file browser opens
     filepath: StringProperty(
         name="File Path",
-        description="The project file",
+        description="The project file, or the model",
         maxlen=1024,
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
-    filter_glob: file_filter(".toml")
+    filter_glob: file_filter(".toml", _MODEL_ENDING)
 
     build: BoolProperty(
-        name="Build", description="Build the model as soon as it is opened", options={"SKIP_SAVE"}
+        name="Build",
+        description="Build the model of a project as soon as it is opened",
+        options={"SKIP_SAVE"},
     )
 
     def act(self, context):
@@ -120,9 +128,14 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
         if self._browses and not self._asked:  # the file was chosen: now it can be named in the question
             invoke(bpy.ops.realmodel.open_project, self, filepath=self.filepath, build=self.build)
             return
-        _open(context.scene, path)
+        is_model = path.suffix.lower() == _MODEL_ENDING
+        if is_model:
+            for warning in _open_model(context, path):
+                self.report({"WARNING"}, str(warning))
+        else:
+            _open(context.scene, path)
         self.report({"INFO"}, f"Opened {path.name}")
-        if self.build:
+        if self.build and not is_model:
             invoke(bpy.ops.realmodel.build, self)
 
     def comes(self, _context):
@@ -131,7 +144,7 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     def invoke(self, context, event):
         if not self.properties.is_property_set("build"):
             self.build = True
-        if self.filepath and Path(self.filepath).suffix.lower() == ".toml":
+        if Path(self.filepath).suffix.lower() in (".toml", _MODEL_ENDING):
             return self.ask(context)  # a file that was dropped, or chosen before
         self._browses = True
         return ImportHelper.invoke(self, context, event)
@@ -150,6 +163,20 @@ def _open(current, path):
     data_objects.update(current)
     region_size.ask()
     live.touch(current)
+
+
+def _open_model(context, path):
+    """Shows a model from its file, its project as settings whose data are stored; returns its warnings."""
+    model = Model.load(path, threads())
+    library = model.project.library
+    # the files of the project are where it was built, if anywhere
+    model.project = replace(model.project, path=None, library=library and replace(library, path=None))
+    current = context.scene
+    _begin(current, model.project.name)
+    built_scene.write_model(current, model)
+    data_objects.update(current)
+    viewports.frame(current, viewports.spaces(context))
+    return model.warnings
 
 
 class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
@@ -261,7 +288,7 @@ def _base_below(heights):
 
 REALMODEL_FH_project = drop_handler(
     "REALMODEL_FH_project",
-    "A project file that is dropped into the viewport is opened",
+    "A project file, or a model, that is dropped into the viewport is opened",
     "RealModel project",
-    ("realmodel.open_project", (".toml",)),
+    ("realmodel.open_project", (".toml", _MODEL_ENDING)),
 )

@@ -16,7 +16,7 @@ _EXPORT = (
     ("report", "RealModel Report (.json/.csv)", {}),
 )
 _IMPORT = (
-    ("open_project", "RealModel Project (.toml)", {}),
+    ("open_project", "RealModel Project or Model (.toml/.npz)", {}),
     ("surface_add", "RealModel Surfaces (points, meshes, grids, maps)", {}),
     ("fault_body_add", "RealModel Faults and Bodies (meshes, fault sticks)", {}),
     ("boreholes_read", "RealModel Boreholes (.csv/.txt)", {}),

@@ -34,6 +34,7 @@ def build_stage(
     cells: str | None = None,
 ) -> SomeModel:
     """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
+    model.require_project("a stage")
     check_stage(model.project, m)
     kind = model.cell_kind if cells is None else cells
     check_cells(kind)

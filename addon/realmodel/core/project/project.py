@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.errors import InputRefused
+from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
@@ -76,7 +77,7 @@ class Surface(Shaped):
     minimum_thickness: float | None = None
     correlation: float | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
@@ -140,7 +141,7 @@ class Rock(Entry):
     boreholes: Boreholes | None = None
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     @property
     def region_file(self) -> Path | None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.map_layer import is_wkt
 from ..settings.point_file import MeshFile, PointFile
@@ -84,7 +85,7 @@ class Fault(Shaped):
     elevation: float | str | None = None
     traced: Fault | None = field(default=None, repr=False, compare=False)  # as it was, with the line as read
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
     def trace_line(self) -> np.ndarray:
         """(N, 3) the trace, once it is read as one line (traces.read_trace)."""
@@ -123,4 +124,4 @@ class Body(Shaped):
     rock: str | None = None
     mesh: str | Path | MeshFile | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
-    source: Source | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
