@@ -97,7 +97,8 @@ def main() -> int:
         ]
     if "files" in parts:
         rows = files_table.measure(given.quick, memory, _say)
-        tables["files"] = [page.table(files_table.FILES, rows)]
+        loaded = files_table.measure_loading(given.quick, memory, _say)
+        tables["files"] = [page.table(files_table.FILES, rows), page.table(files_table.LOADED, loaded)]
     if "tiles" in parts:
         beside, sizes = tiles_table.measure(given.quick, memory, _say)
         tables["tiles"] = [page.table(tiles_table.BESIDE, beside, 2), page.table(tiles_table.SIZES, sizes)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writing the cells of a model beside writing as many bytes that lie ready (for process.alone)."""
+"""Writing the cells of a model beside writing as many bytes that lie ready, and loading a model (for
+process.alone)."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .made_stacks import StackSpec
-from .process import ROOT
+from .process import ROOT, peak_resident, resident
 
 
 def write_in_turns(spec: dict, endings: list[str], rounds: int, threads: int) -> dict:
@@ -26,7 +27,7 @@ def write_in_turns(spec: dict, endings: list[str], rounds: int, threads: int) ->
     model = build(Project("stack", [Rock("rock", surfaces)]), threads=threads)
     found: dict = {"cells": len(model.cell_block)}
     fsync = os_of_outputs.fsync
-    with tempfile.TemporaryDirectory(dir=_on_disk()) as folder:
+    with tempfile.TemporaryDirectory(dir=on_disk()) as folder:
         for ending in endings:
             path, plain = Path(folder, f"m{ending}"), Path(folder, "plain")
             rows = []
@@ -48,6 +49,30 @@ def write_in_turns(spec: dict, endings: list[str], rounds: int, threads: int) ->
     return found
 
 
+def build_and_save(spec: dict, path: str, threads: int) -> dict:
+    """Cells, seconds of building a model from arrays and of saving it, and the bytes of its file."""
+    from realmodel.core import Project, Rock, Surface, build
+
+    surfaces = [Surface(f"S{k}", *surface) for k, surface in enumerate(StackSpec(**spec).make())]
+    began = time.perf_counter()
+    model = build(Project("stack", [Rock("rock", surfaces)]), threads=threads)
+    built = time.perf_counter()
+    model.save(path)
+    saved = time.perf_counter()
+    size = Path(path).stat().st_size
+    return {"cells": len(model.cell_block), "built": built - began, "saved": saved - built, "bytes": size}
+
+
+def load(path: str) -> dict:
+    """Seconds of loading a model, and the bytes that it took at most."""
+    from realmodel.core import Model
+
+    before, began = resident(), time.perf_counter()
+    Model.load(path)
+    seconds = time.perf_counter() - began
+    return {"loaded": seconds, "taken": peak_resident() - before}
+
+
 def _one_round(model, path: Path, plain: Path, is_synced: bool) -> tuple[int, float, float, float]:
     """Bytes, the processors' seconds, and seconds of ours and of the same bytes; both are removed again."""
     began, before = time.perf_counter(), time.process_time()
@@ -66,7 +91,7 @@ def _one_round(model, path: Path, plain: Path, is_synced: bool) -> tuple[int, fl
     return size, processor, ours, theirs
 
 
-def _on_disk() -> Path:
+def on_disk() -> Path:
     """A folder on the project's disk: /tmp may lie in memory."""
     folder = ROOT / "build"
     folder.mkdir(exist_ok=True)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of files beside the same bytes written at once."""
+"""The tables of files beside the same bytes written at once, and of models loaded beside built ones."""
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 
+from . import files
 from .process import Skipped, alone
 
 FILES = (
@@ -21,6 +23,11 @@ FILES = (
     "asked",
     "",
 )
+LOADED = (
+    *("model", "cells", "MB", "build, s", "save, s", "load, s", "load / build", "goal"),
+    *("memory / file", "goal", ""),
+)
+_LOADED, _TAKEN = 1 / 3, 2.0
 _ENDINGS = (".vtu", ".foam")
 _ASKED = 1.5  # times the disk's own time
 _ROUNDS = 7
@@ -38,6 +45,30 @@ def measure(quick: bool, memory: float, say: Callable[[str], None]) -> list[list
     for row in rows:
         say(" | ".join(row))
     return rows
+
+
+def measure_loading(quick: bool, memory: float, say: Callable[[str], None]) -> list[list[str]]:
+    """Rows for LOADED."""
+    spec = {"surfaces": 10, "quads": 30 if quick else 300}
+    model = f"10 x {2 * spec['quads'] ** 2:,}"
+    with tempfile.TemporaryDirectory(dir=files.on_disk()) as folder:
+        path = f"{folder}/m.npz"
+        try:
+            built = alone("files.build_and_save", spec, path, 0, memory=memory)
+            row = _loaded_row(model, built, alone("files.load", path, memory=memory))
+        except Skipped as why:
+            row = [model, *["-"] * 9, f"SKIPPED: {why}"]
+    say(" | ".join(row))
+    return [row]
+
+
+def _loaded_row(model: str, built: dict, loaded: dict) -> list[str]:
+    share, taken = loaded["loaded"] / built["built"], loaded["taken"] / built["bytes"]
+    row = [model, f"{built['cells']:,}", f"{built['bytes'] / 1e6:.0f}"]
+    row += [f"{seconds:.2f}" for seconds in (built["built"], built["saved"], loaded["loaded"])]
+    is_met = share <= _LOADED and taken <= _TAKEN
+    row += [f"**{share:.2f}**", "1/3", f"**{taken:.2f}**", f"{_TAKEN:.0f}"]
+    return [*row, "met" if is_met else "NOT met"]
 
 
 def _row(ending: str, cells: int, found: dict) -> list[str]:

@@ -73,7 +73,7 @@ class Start(PanelCase):
         self.assertEqual(handler is not None, hasattr(bpy.types, "FileHandler"))
         if handler is None:
             return
-        self.assertEqual(handler.bl_file_extensions, ".toml")
+        self.assertEqual(handler.bl_file_extensions, ".toml;.npz")
         for area, wanted in (("VIEW_3D", True), ("TEXT_EDITOR", False)):
             here = SimpleNamespace(area=SimpleNamespace(type=area))
             self.assertEqual(handler.poll_drop(here), wanted)

@@ -228,7 +228,7 @@ def test_inputs_are_not_overwritten(layers, write):
     region = write("r.json", f'{{"type": "Polygon", "coordinates": {ring}}}')
     before = region.read_text()
     project = layers([0, 1], rock_keys='region = "r.json"')
-    assert "this is a file that the project reads" in refused(run(project, "--report", region), 2)
+    assert "this is a file that is read" in refused(run(project, "--report", region), 2)
     assert region.read_text() == before
 
 

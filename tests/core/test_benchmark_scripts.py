@@ -174,3 +174,12 @@ def test_files_are_measured_beside_their_bytes():
         assert len(row) == len(files_table.FILES)
         assert found[ending]["bytes"] > 40 * found["cells"]
         assert all(seconds > 0 for name in ("cached", "synced") for seconds in found[ending][name])
+
+
+def test_loading_is_measured_beside_building(tmp_path):
+    path = str(tmp_path / "m.npz")
+    built, loaded = files.build_and_save({"surfaces": 2, "quads": 4}, path, 1), files.load(path)
+    assert built["bytes"] == (tmp_path / "m.npz").stat().st_size
+    assert min(built["built"], built["saved"], loaded["loaded"]) > 0
+    row = files_table._loaded_row("2 x 32", built, loaded)
+    assert len(row) == len(files_table.LOADED)

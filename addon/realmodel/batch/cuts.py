@@ -16,11 +16,10 @@ from ..core.exporters import ExportOptions, format_for, write_model
 from ..core.exporters.boreholes import borehole_writer
 from ..core.exporters.mesh_request import cleaned_line
 from ..core.exporters.sections import section_writer
-from ..core.model.build import build
 from ..core.model.section import Section
-from ..core.project.project_file import load_project
 from ..core.readers import MESH_ENDINGS, read_mesh
 from ..core.settings.point_file import MeshFile
+from .sources import ENDINGS, Source
 
 Writer = Callable[[Path | str], Callable]
 
@@ -98,8 +97,8 @@ class CutRequest:
     """A cut and the files of its halves; one of them may be left out.
 
     cell_size, contour_interval, tolerance: as of core.exporters.save_model.
-    cutter: point and normal of a plane (6,), the file of a surface, or (project file or None for the model
-    itself, block).
+    cutter: point and normal of a plane (6,), the file of a surface, or (file of a project or model, or None
+    for the model itself, block).
     """
 
     cutter: np.ndarray | Path | tuple[Path | None, str]
@@ -118,7 +117,7 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             return [self.cutter]
         if isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            return [self.cutter[0], *load_project(self.cutter[0]).input_files()]
+            return Source.of(self.cutter[0]).inputs
         return []
 
     def read(self) -> None:
@@ -126,7 +125,7 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            self._other = build(load_project(self.cutter[0]), cells="blocks")
+            self._other = Source.of(self.cutter[0]).model(cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:
         """Cuts, and stages the halves for writing. Returns the summary for the terminal."""
@@ -197,8 +196,8 @@ def borehole_request(text: str, writer: Writer = borehole_writer) -> BoreholeReq
 
 
 def cut_request(text: str) -> CutRequest:
-    """CUTTER=BELOW,ABOVE: a plane X,Y,Z,NX,NY,NZ, a file of a surface, a block PROJECT.toml:BLOCK or :BLOCK.
-    Raises UsageError."""
+    """CUTTER=BELOW,ABOVE: a plane X,Y,Z,NX,NY,NZ, a file of a surface, a block PROJECT.toml:BLOCK,
+    MODEL.npz:BLOCK or :BLOCK. Raises UsageError."""
     form = "CUTTER=BELOW,ABOVE (one of them may be left out)"
     what, files = _divided("--cut", text, form)
     halves = files.split(",")
@@ -211,15 +210,15 @@ def cut_request(text: str) -> CutRequest:
     if _numbers(what) is not None:
         return CutRequest(_plane("--cut", what), below, above)
     project, colon, block = what.rpartition(":")
-    if colon and (not project or project.lower().endswith(".toml")):
+    if colon and (not project or Path(project).suffix.lower() in ENDINGS):
         if not block:
             raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
     if Path(what).suffix.lower() not in MESH_ENDINGS and not Path(what).is_file():
         raise UsageError(
             f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
-            f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK (:BLOCK for one of the "
-            "model's own)"
+            f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK or "
+            "MODEL.npz:BLOCK (:BLOCK for one of the model's own)"
         )
     return CutRequest(Path(what), below, above)
 

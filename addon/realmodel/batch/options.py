@@ -111,6 +111,8 @@ class Option(NamedTuple):
 _OF_DASK = ("ensemble", "tiles")
 _MESH = ("mesh",)
 _LINES = ("section", "fence", "borehole")
+_OF_BUILDS = (*_OF_DASK, "cells", "memory", "estimate", "surfaces-only")  # a built model has them no more
+MODEL_ENDING = ".npz"
 OPTIONS = (
     Option("blend", "F", "write the scene to F.blend (in Blender)", Path, ending=".blend", in_blender=True),
     Option(
@@ -170,8 +172,9 @@ OPTIONS = (
     Option(
         "cut",
         "CUTTER=BELOW,ABOVE",
-        "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK "
-        "(:BLOCK of the model itself) and write its halves as --export does; one may be left out",
+        "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK, "
+        "MODEL.npz:BLOCK or :BLOCK (of the model itself) and write its halves as --export does; one may be "
+        "left out",
         default=[],
     ),
     Option(
@@ -240,7 +243,6 @@ OPTIONS = (
         "cells",
         ("columns", "blocks"),
         "columns under facets (default), or one cell for each connected part of a block",
-        default="columns",
     ),
     Option("threads", "N", "0 (default): all that there are", _whole, 0),
     Option(
@@ -281,7 +283,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         usage=_USAGE,
         description="Builds a model of sedimentary rock from a project file.",
     )
-    parser.add_argument("project", metavar="PROJECT", type=Path, help="project file (.toml)")
+    parser.add_argument(
+        "project",
+        metavar="PROJECT",
+        type=Path,
+        help="project file (.toml), or a model that was built before (.npz)",
+    )
     for option in OPTIONS:
         option.add_to(parser)
     options = parser.parse_args(_with_negative_values(arguments))
@@ -290,6 +297,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     for option in sorted(chosen, key=lambda option: not option.needs):  # what is missing is said first
         if problem := _conflict(option, values[option.name], {other.name for other in chosen}):
             parser.error(f"--{option.name} {problem}")
+        if option.name in _OF_BUILDS and options.project.suffix.lower() == MODEL_ENDING:
+            parser.error(f"--{option.name} goes with a project file; {options.project} is a built model")
+    options.cells = options.cells or "columns"
     return options
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The main program of build_model.py: builds the project, writes the outputs, prints the table."""
+"""The main program of build_model.py: builds the project or loads the model, writes the outputs, prints the
+table."""
 
 import argparse
 import contextlib
@@ -13,10 +14,8 @@ from ..core import (
     BuildWarning,
     OutputFailed,
     UsageError,
-    build,
     build_surfaces,
     estimate,
-    load_project,
 )
 from ..core.base.atomic import Outputs, make_folder
 from ..core.exporters import FORMATS, ExportOptions, format_for, output_target, write_model
@@ -28,6 +27,7 @@ from ..core.surfaces.prepare import with_arrays
 from .cuts import CutRequest, borehole_request, cut_request, fence_request, section_request
 from .interruption import Interruptible, ignore_interruption
 from .probabilities import ProbabilityRequests
+from .sources import Source
 from .table import ensemble_table, surface_table, tiles_table, volume_table
 from .terminal import TerminalProgress
 
@@ -40,8 +40,9 @@ def run(options: argparse.Namespace) -> None:
         make_folder(options.out)  # they may go there
     mesh_request = _mesh_request(options)
     targets = _checked_targets(options, requests, mesh_request)
-    project = load_project(options.project)
-    _refuse_overwriting([*project.input_files(), *(f for r in requests for f in r.inputs)], targets)
+    source = Source.of(options.project)
+    project = source.project
+    _refuse_overwriting([*source.inputs, *(f for r in requests for f in r.inputs)], targets)
     by_dask = options.ensemble is not None or options.tiles is not None
     progress = TerminalProgress(sys.stdout, options.quiet, time_left=by_dask)
     if options.estimate:
@@ -56,18 +57,11 @@ def run(options: argparse.Namespace) -> None:
     if options.tiles is not None:
         _tiles(options, project, progress)
         return
-    with Outputs(project.input_files()) as outputs, Interruptible(outputs):
+    with Outputs(source.inputs) as outputs, Interruptible(outputs):
         try:
             for request in requests:
                 request.read()
-            model = build(
-                project,
-                cells=options.cells,
-                threads=options.threads,
-                progress=progress,
-                stage=options.stage,
-                memory=options.memory,
-            )
+            model = source.model(options.cells, options.threads, progress, options.stage, options.memory)
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
             mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
@@ -79,7 +73,7 @@ def run(options: argparse.Namespace) -> None:
                 with outputs.file(options.report) as file:
                     write_report(model_report(model, options.stage, validation, erosion, mesh, cells), file)
             if mesh is not None:
-                mesh_request.write(mesh, outputs, project.units, progress)
+                mesh_request.write(mesh, outputs, model.project.units, progress)
             lines = [request.run(model, outputs, options.threads, progress) for request in requests]
             ignore_interruption()
         finally:
@@ -279,7 +273,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
     inputs = {Path(os.path.realpath(file)) for file in files}
     for target in targets:
         if target in inputs:
-            raise UsageError(f"{target}: this is a file that the project reads; choose another name")
+            raise UsageError(f"{target}: this is a file that is read; choose another name")
 
 
 def _export(options: argparse.Namespace, model, outputs, progress, cells) -> None:
@@ -296,8 +290,9 @@ def _write_with_blender(options: argparse.Namespace, project, model, outputs, pr
 
     register_for_batch()
     progress(1.0, "making the scene")
-    # of a stage the project is another one, as the model has it
-    batch.write_scene(model, with_arrays(project) if options.stage is None else None)
+    # of a stage the project is another one, as the model has it; a built model has no other
+    is_whole = options.stage is None and project is not None
+    batch.write_scene(model, with_arrays(project) if is_whole else None)
     if options.blend is not None:
         with outputs.path(options.blend) as path, _named(path, options.blend):
             progress(1.0, f"writing {options.blend.name}")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The start of a model: empty, from a project file, from meshes; and saving a project file."""
+"""The start of a model: empty, from a project file or a built model, from meshes; and saving a project."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -20,13 +21,18 @@ from ..bl import (
     scene,
     settings,
     shapes,
+    viewports,
 )
 from ..bl.display import cuts
 from ..bl.origin import KEY as ORIGIN_KEY
-from ..core import BuildFailed, load_project
+from ..bl.threads import threads
+from ..core import BuildFailed, Model, load_project
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
-from .reporting import Reporting, any_surface, chosen_path, not_building, selected_meshes
+from ..registration import drop_handler
+from .reporting import Reporting, any_surface, chosen_path, file_filter, not_building, selected_meshes
+
+_MODEL_ENDING = ".npz"
 
 
 def _begin(current, name):
@@ -84,7 +90,6 @@ class Replacing(Reporting):
 class REALMODEL_OT_new(Replacing, bpy.types.Operator):
     """Begin an empty model in this scene. The blocks of an earlier one are removed, your own meshes stay"""
 
-    bl_idname = "realmodel.new"
     bl_label = "New Model"
 
     def act(self, context):
@@ -95,9 +100,9 @@ class REALMODEL_OT_new(Replacing, bpy.types.Operator):
 
 
 class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
-    """Open a RealModel project file (TOML) in this scene, in place of the model that is there"""
+    """Open a RealModel project file (TOML), or a model that was built (NPZ), in this scene, in place of the
+    model that is there"""
 
-    bl_idname = "realmodel.open_project"
     bl_label = "Open RealModel Project"
 
     _browses = False
@@ -105,15 +110,17 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     # not kept from one time to the next: with a path, as of a dropped file, no file browser opens
     filepath: StringProperty(
         name="File Path",
-        description="The project file",
+        description="The project file, or the model",
         maxlen=1024,
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml", _MODEL_ENDING)
 
     build: BoolProperty(
-        name="Build", description="Build the model as soon as it is opened", options={"SKIP_SAVE"}
+        name="Build",
+        description="Build the model of a project as soon as it is opened",
+        options={"SKIP_SAVE"},
     )
 
     def act(self, context):
@@ -121,9 +128,14 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
         if self._browses and not self._asked:  # the file was chosen: now it can be named in the question
             invoke(bpy.ops.realmodel.open_project, self, filepath=self.filepath, build=self.build)
             return
-        _open(context.scene, path)
+        is_model = path.suffix.lower() == _MODEL_ENDING
+        if is_model:
+            for warning in _open_model(context, path):
+                self.report({"WARNING"}, str(warning))
+        else:
+            _open(context.scene, path)
         self.report({"INFO"}, f"Opened {path.name}")
-        if self.build:
+        if self.build and not is_model:
             invoke(bpy.ops.realmodel.build, self)
 
     def comes(self, _context):
@@ -132,7 +144,7 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     def invoke(self, context, event):
         if not self.properties.is_property_set("build"):
             self.build = True
-        if self.filepath and Path(self.filepath).suffix.lower() == ".toml":
+        if Path(self.filepath).suffix.lower() in (".toml", _MODEL_ENDING):
             return self.ask(context)  # a file that was dropped, or chosen before
         self._browses = True
         return ImportHelper.invoke(self, context, event)
@@ -153,10 +165,23 @@ def _open(current, path):
     live.touch(current)
 
 
+def _open_model(context, path):
+    """Shows a model from its file, its project as settings whose data are stored; returns its warnings."""
+    model = Model.load(path, threads())
+    library = model.project.library
+    # the files of the project are where it was built, if anywhere
+    model.project = replace(model.project, path=None, library=library and replace(library, path=None))
+    current = context.scene
+    _begin(current, model.project.name)
+    built_scene.write_model(current, model)
+    data_objects.update(current)
+    viewports.frame(current, viewports.spaces(context))
+    return model.warnings
+
+
 class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
     """Open one of the examples that come with RealModel, and build it"""
 
-    bl_idname = "realmodel.open_sample"
     bl_label = "Open Example"
 
     sample: EnumProperty(name="Example", description="Which of them", items=samples.enum_items)
@@ -179,12 +204,11 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
     """Save the model as a project file (TOML) with its library, meshes and points beside it: build_model.py
     builds the same model from it"""
 
-    bl_idname = "realmodel.save_project"
     bl_label = "Save RealModel Project"
     needs = (any_surface,)
 
     filename_ext = ".toml"
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml")
 
     def act(self, context):
         path = chosen_path(self, "the project")
@@ -203,7 +227,6 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
     """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
 
-    bl_idname = "realmodel.from_selected"
     bl_label = "Model from Selected Meshes"
     needs = (not_building, selected_meshes)
 
@@ -263,27 +286,9 @@ def _base_below(heights):
     return math.floor((low - below) / step) * step
 
 
-CLASSES = (
-    REALMODEL_OT_new,
-    REALMODEL_OT_open_project,
-    REALMODEL_OT_open_sample,
-    REALMODEL_OT_save_project,
-    REALMODEL_OT_from_selected,
+REALMODEL_FH_project = drop_handler(
+    "REALMODEL_FH_project",
+    "A project file, or a model, that is dropped into the viewport is opened",
+    "RealModel project",
+    ("realmodel.open_project", (".toml", _MODEL_ENDING)),
 )
-
-
-if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
-
-    class REALMODEL_FH_project(bpy.types.FileHandler):
-        """A project file that is dropped into the viewport is opened"""
-
-        bl_idname = "REALMODEL_FH_project"
-        bl_label = "RealModel project"
-        bl_import_operator = "realmodel.open_project"
-        bl_file_extensions = ".toml"
-
-        @classmethod
-        def poll_drop(cls, context):
-            return context.area is not None and context.area.type == "VIEW_3D"
-
-    CLASSES = (*CLASSES, REALMODEL_FH_project)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,12 @@ class Block:
     volume: float
     cells: int
     components: int
+
+
+def blocks_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Block]:
+    """The blocks of a file, by its arrays `block_...`."""
+    keys = ("names", "rock", "surface", "property", "volume", "cells", "components")
+    return [Block(*row) for row in zip(*(arrays[f"block_{key}"].tolist() for key in keys), strict=True)]
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,13 @@ from __future__ import annotations
 import colorsys
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Self, TypeVar
 
 import numpy as np
 
 from ..base.build_warning import BuildWarning
+from ..base.errors import InputRefused
 from ..heights import Interpolation
 from ..project.project import Project
 from ..structures.parts.parts import Structures
@@ -31,6 +33,8 @@ class ModelData:
     `surface_names` go with the global indices of the surfaces. `project` holds the arrays that the model was
     built from, so that nothing is read again. `rock_inputs` are what the stack builder took, by rock mass.
     `timings` are seconds by phase. `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
+    `lacks_project`: the file of RealModel 0.1 that it was read from, which says nothing of the project but
+    names, properties and shapes.
     """
 
     complex: CellComplex = field(repr=False)
@@ -48,6 +52,7 @@ class ModelData:
     compartment_names: list[str] = field(default_factory=list)
     compartment_sides: np.ndarray | None = field(default=None, repr=False)
     structures: Structures = field(default_factory=lambda: Structures([], [], [], []), repr=False)
+    lacks_project: Path | None = None
 
     @classmethod
     def of(cls, data: ModelData) -> Self:
@@ -59,6 +64,15 @@ class ModelData:
             self.surface_kind = np.zeros(len(self.surface_names), np.int32)
         if self.cell_compartment is None:
             self.cell_compartment = np.zeros(len(self.cell_block), np.int32)
+
+    def require_project(self, what: str) -> None:
+        """Raises InputRefused where the project that `what` needs is not known."""
+        if self.lacks_project is not None:
+            raise InputRefused(
+                f"a model of RealModel 0.1 without its project, which {what} needs",
+                file=self.lacks_project,
+                advice="build it from its project and save it again",
+            )
 
     def native(self) -> dict[str, Any]:
         """The cells as functions of the native module take them."""
@@ -179,6 +193,8 @@ class ModelData:
     def surface_triangle_sheet(self) -> np.ndarray:
         """(Ts,) int32: of each of `surface_triangles` the sheet of its surface that it is of, from 0."""
         structures = np.flatnonzero(self.surface_kind).tolist()
+        if structures:
+            self.require_project("a sheet of a surface")
         count = sum(len(self.surface(number)[1]) for number in structures)
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 

@@ -45,9 +45,12 @@ class Bedding:
         )
 
     @staticmethod
-    def joined(parts: list[Bedding]) -> Bedding:
-        """Several, one after another."""
-        return Bedding(*(np.concatenate([vars(part)[name] for part in parts]) for name in vars(parts[0])))
+    def joined(parts: list[Bedding | None]) -> Bedding | None:
+        """Several, one after another; None where one is not known."""
+        known = [vars(part) for part in parts if part is not None]
+        if len(known) < len(parts):
+            return None
+        return Bedding(*(np.concatenate([part[name] for part in known]) for name in known[0]))
 
 
 def bedding_of(work: Work, model: ModelData, faces: np.ndarray, is_second: np.ndarray) -> Bedding:

@@ -24,7 +24,7 @@ class PolygonMesh:
     None. edges: (E, 2) int32, each once, and corner_edges: (C,) int32, for each corner the edge from it to
     the next; both None where whoever takes the mesh is to find them. smooth: shaded without breaks.
     face_compartment: (F,) int32, the compartment that each polygon bounds, or None for models of one.
-    bedding: of blocks, where its corners lie in their layers.
+    bedding: of blocks, where its corners lie in their layers; None where that is not known.
     """
 
     coordinates: np.ndarray
@@ -170,7 +170,7 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
         corner_edges=np.concatenate(found["corner_edges"]).astype(np.int32),
         face_surface=np.concatenate([part.face_surface for part, _ in given]),
         face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
-        bedding=Bedding.joined([part.bedding for part, _ in given if part.bedding is not None]),
+        bedding=Bedding.joined([part.bedding for part, _ in given]),
     )
 
 
@@ -188,7 +188,7 @@ def _shells(
             shrink,
         )
         there = [arrays for arrays in shells if arrays is not None]
-        if not there:
+        if not there or model.lacks_project is not None:
             return shells, None
         faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
         return shells, bedding_of(work, model, faces, is_second)
@@ -202,7 +202,7 @@ def _shells(
             continue
         coordinates, offsets, corners, faces, _, edges, corner_edges = arrays
         ends = corner + len(corners), polygon + len(faces)
-        own = bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
+        own = bedding and bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
         corner, polygon = ends
         surface = model.face_surface[faces]
         shape = PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges, bedding=own)

@@ -35,6 +35,7 @@ class Realizer:
     _known: dict[tuple[int, int], dict] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
+        self.model.require_project("an ensemble")
         places = [entry.region.vertices for entry in self.model.rock_inputs if entry.region is not None]
         for entry in self.model.rock_inputs:
             places += [np.asarray(s.points)[:, :2] for s in entry.rock.surfaces if s.points is not None]

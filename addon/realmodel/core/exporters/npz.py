@@ -10,6 +10,8 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..cells.model_record import record_arrays
+
 _FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that zip files know: no time of writing in the bytes
 _HEADER = 1024  # more than any header of an array
 
@@ -59,8 +61,8 @@ def texts(given) -> np.ndarray:
 
 
 def write_npz(model, file: BinaryIO, step: Callable[[float], None]) -> None:
-    """Writes the model's arrays."""
-    write_arrays(model_arrays(model), file, step)
+    """Writes the model's arrays, and its record: what it was built from."""
+    write_arrays({**model_arrays(model), **record_arrays(model)}, file, step)
 
 
 def write_arrays(

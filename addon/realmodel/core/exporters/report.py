@@ -35,6 +35,7 @@ def model_report(
     found; mesh: a SimulationMesh of it; cells: its CleanedCells; without them the report says nothing of
     that.
     """
+    model.require_project("the report")
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
     library = model.project.library

@@ -55,6 +55,7 @@ def eroded(
     model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
 ) -> Erosion:
     """Model.eroded."""
+    model.require_project("what was eroded")
     return run(lambda work: _eroded(work, model), progress, cancel, threads=threads)
 
 

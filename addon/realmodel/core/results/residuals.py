@@ -61,6 +61,7 @@ def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarr
 
 def residuals(model: ModelData) -> list[Residuals]:
     """The residuals of each surface of a model that was interpolated from points, in the model's order."""
+    model.require_project("a residual")
     found, number = [], 0
     for r, rock in enumerate(model.project.rocks):
         for at, surface in enumerate(rock.surfaces):

@@ -10,6 +10,7 @@ import numpy as np
 from ..base.build_warning import BuildWarning
 from ..base.errors import InputRefused
 from ..base.sheet import Sheet
+from ..base.stored_objects import NOT_STORED
 from ..heights import Interpolation
 from ..heights.draws import Draw
 from ..project.project import Rock
@@ -26,11 +27,10 @@ class RockInput:
     triangulation in plan, or None. interpolations:
     the result for each surface, None for ready meshes. file_faces: for each surface None, or the face of its
     file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
-    number (`variance`, `distance`). warnings: of reading and interpolating. whole: for a stage, the entry
-    with all surfaces: those of a stage may depend on younger ones. structure: the compartments of a rock mass
-    with faults, and their sheets; a surface is all its sheets. overlapping: by number, the error of a surface
-    whose triangles overlap in a sheet because of a fault. draws: how each surface is drawn in a realization
-    of an ensemble; else None.
+    number (`variance`, `distance`). warnings: of reading and interpolating. structure: the compartments
+    of a rock mass with faults, and their sheets; a surface is all its sheets. overlapping: by number, the
+    error of a surface whose triangles overlap in a sheet because of a fault. draws: how each surface is drawn
+    in a realization of an ensemble; else None.
     """
 
     rock: Rock
@@ -39,11 +39,10 @@ class RockInput:
     interpolations: list[Interpolation | None] = field(default_factory=list)
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
-    whole: RockInput | None = None
     attributes: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
     structure: RockStructure | None = None
     overlapping: dict[int, InputRefused] = field(default_factory=dict)
-    draws: list[Draw] | None = None
+    draws: list[Draw] | None = field(default=None, metadata=NOT_STORED)
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
@@ -101,7 +100,6 @@ class RockInput:
             self.interpolations[: m + 1],
             self.file_faces[: m + 1],
             [warning for warning in self.warnings if warning.surface not in gone],
-            self,
             {number: each for number, each in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
             self.overlapping,

@@ -17,9 +17,9 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, run
+from ..base.work import Work, refused_as, run
 from ..cells.assembly import assemble
-from ..cells.blocks import Block
+from ..cells.blocks import blocks_of_arrays
 from ..cells.built_cells import BuiltCells
 from ..cells.cell_complex import CellComplex
 from ..cells.stack_refusals import refused_stack
@@ -27,6 +27,7 @@ from ..exporters.npz import model_arrays, write_arrays
 from ..model.model import Model
 from ..project.project import Project, Rock, Surface
 from ..project.structure_entries import Body, Fault
+from ..readers.npz import read_npz
 from ..structures.parts.parts import structures_of
 from ..surfaces.local_heights import LocalHeights, PartHeights
 from ..surfaces.rock_input import RockInput
@@ -80,7 +81,9 @@ def without_shape(rock: Rock) -> Rock:
         )
         for surface in rock.surfaces
     ]
-    return Rock(rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.region_source()[0])
+    return Rock(
+        rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.shape_source("region")[0]
+    )
 
 
 def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
@@ -358,13 +361,10 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path) -> BuiltTile:
     numbers = [
         parts[r, k].numbers for r, rock in enumerate(frame.project.rocks) for k in range(len(rock.surfaces))
     ]
-    native = native_module()
     began = time.perf_counter()
-    with work.phase(0.0, 0.8, "intersecting and cutting"):
-        try:
-            arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
-        except native.InputError as error:
-            raise refused_stack(_NumberedError(error, numbers), inputs) from error
+    refused = refused_as(lambda error: refused_stack(_NumberedError(error, numbers), inputs))
+    with work.phase(0.0, 0.8, "intersecting and cutting"), refused as native:
+        arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
     built = BuiltCells.of(arrays, frame.cell_kind)
@@ -422,19 +422,9 @@ def read_model(project: Project, path: Path) -> Model:
 
 def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
     """A tile's model from its arrays."""
-    blocks = [
-        Block(str(name), int(rock), int(surface), int(prop), float(volume), int(cells), int(components))
-        for name, rock, surface, prop, volume, cells, components in zip(
-            *(
-                arrays[f"block_{key}"]
-                for key in ("names", "rock", "surface", "property", "volume", "cells", "components")
-            ),
-            strict=True,
-        )
-    ]
     model = Model(
         CellComplex.of(arrays, str(arrays["cell_kind"])),
-        blocks,
+        blocks_of_arrays(arrays),
         SurfaceArrays.of_arrays(arrays),
         surface_names=arrays["surface_names"].tolist(),
         project=project,
@@ -470,9 +460,8 @@ def model_of(project: Project, arrays: dict[str, np.ndarray]) -> Model:
 def read_arrays(path: Path) -> dict[str, np.ndarray]:
     """All arrays of an .npz. Raises BuildFailed where it cannot be read."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return dict(file)
+        return read_npz(path)
     except OSError as error:
         raise OutputFailed(f"{path}: cannot be read: {error.strerror or error}") from error
-    except Exception as error:  # whatever zipfile and NumPy make of a damaged file
+    except ValueError as error:
         raise BuildFailed(f"{path}: cannot be read; delete it and start again") from error
