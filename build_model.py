@@ -9,76 +9,12 @@ Exit status: 0 done, 1 the input was refused or the build failed (one line on st
 2 wrong usage, 130 interrupted. Files appear whole or not at all.
 """
 
-import contextlib
-import os
-import signal
 import sys
-import traceback
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "addon"))
 
-from realmodel.batch import DONE, IN_BLENDER, INTERRUPTED, REFUSED, USAGE, say
-from realmodel.batch.interruption import terminate
-from realmodel.batch.options import parse
-
-
-def main(arguments: list[str]) -> int:
-    """Runs the command line and returns the exit status."""
-    signal.signal(signal.SIGTERM, terminate)
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")  # a terminal that lacks a letter of a name stops no build
-    if hasattr(signal, "SIGXFSZ"):
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # exceeding the size limit of files becomes an OSError
-    try:
-        options = parse(arguments)
-    except SystemExit as leaving:
-        return leaving.code or DONE
-    try:
-        from realmodel.batch.run import run
-        from realmodel.core import RealModelError, UsageError
-    except ImportError as error:
-        return say(_not_importable(error), REFUSED)
-    try:
-        run(options)
-    except UsageError as error:
-        return say(str(error), USAGE)
-    except RealModelError as error:
-        return say(str(error), REFUSED)
-    except BrokenPipeError:
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - nobody listens any more
-        return say("nobody reads the standard output any more: nothing was written; use --quiet", REFUSED)
-    except MemoryError:
-        return say("not enough memory for this model; use fewer triangles or a longer edge length", REFUSED)
-    return DONE
-
-
-def _not_importable(error: ImportError) -> str:
-    version = f"Python {sys.version_info.major}.{sys.version_info.minor}"
-    if IN_BLENDER:
-        return (
-            f"Blender's {version} cannot run this: {error}; it looks for modules under {sys.prefix}, of the "
-            "python3 that comes first on PATH: install NumPy there, or start Blender with another PATH"
-        )
-    return f"{version} cannot run this: {error}; it takes Python 3.11 or newer with NumPy"
-
-
-def _arguments() -> list[str]:
-    if IN_BLENDER:
-        return sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    return sys.argv[2:] if sys.argv[1:2] == ["--"] else sys.argv[1:]
-
+from realmodel.batch.command import command
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        exit_status = main(_arguments())
-    except KeyboardInterrupt:
-        exit_status = say("interrupted: nothing was written", INTERRUPTED)
-    except Exception:  # a defect: print it in full; Blender hands on this exit status, too
-        traceback.print_exc()
-        exit_status = REFUSED
-    with contextlib.suppress(BrokenPipeError):
-        sys.stdout.flush()
-    sys.exit(exit_status)
+    command()

@@ -7,11 +7,10 @@
 #
 #   scripts/cross_tools.sh PLATFORM [VERSION...]   PLATFORM: windows-x64 or macos-arm64
 #                                                  VERSION: e.g. 3.11, of Python; what modules for it need goes to
-#                                                  build/windows/python3.11 or build/macos/python3.11, through
-#                                                  ${XDG_CACHE_HOME:-~/.cache}/realmodel. tests: GoogleTest, for Windows
+#                                                  build/windows/python3.11 or build/macos/python3.11
+#                                                  (scripts/python_headers.sh). tests: GoogleTest, for Windows
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
 platform=${1-}
 shift || true
 tools=$root/build/${platform%-*}
@@ -71,18 +70,12 @@ gmp() {
 
 # The headers of Python are the same for all systems but for the configuration.
 python() { # VERSION
-    # The oldest release of Debian that has it.
-    local -A suite_of=([3.11]=bookworm [3.13]=trixie [3.14]=sid)
-    local version=$1 headers=$cache/python$1-headers folder=$tools/python$1
-    if [[ -z ${suite_of[$version]-} ]]; then
-        echo "cross_tools.sh: it is not known which release of Debian has Python $version" >&2
-        return 2
-    fi
-    "$root/scripts/foreign_packages.sh" "${suite_of[$version]}" "$headers" "libpython$version-dev" || return 1
+    local version=$1 headers folder=$tools/python$1
+    headers=$("$root/scripts/python_headers.sh" "$version") || return 1
     rm -rf "$folder.part"
     mkdir "$folder.part"
-    cp -R "$headers/usr/include/python$version" "$folder.part/include"
-    "configuration_of_${platform%-*}" "$version" "$headers" "$folder.part" || return 1
+    cp -R "${headers%%:*}" "$folder.part/include"
+    "configuration_of_${platform%-*}" "$version" "${headers##*:}" "$folder.part" || return 1
     mv "$folder.part" "$folder"
 }
 
@@ -103,8 +96,10 @@ configuration_of_windows() { # VERSION HEADERS FOLDER
 }
 
 # Of what Linux's says the headers ask for what is the same on macOS, and for sizes, which pymacconfig.h puts right.
+# Debian's is one that includes that of the processor.
 configuration_of_macos() { # VERSION HEADERS FOLDER
-    { cat "$2/usr/include/x86_64-linux-gnu/python$1/pyconfig.h" && echo '#define _DARWIN_C_SOURCE 1'; } >"$3/include/pyconfig.h"
+    [[ ! -f $2/x86_64-linux-gnu/python$1/pyconfig.h ]] || cp "$2/x86_64-linux-gnu/python$1/pyconfig.h" "$3/include/pyconfig.h"
+    echo '#define _DARWIN_C_SOURCE 1' >>"$3/include/pyconfig.h"
 }
 
 google_test() {

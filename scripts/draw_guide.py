@@ -121,7 +121,7 @@ def tab_panels():
 def open_tab(walk):
     """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
     drawn = []
-    panel = next(cls for cls in TAB if cls.bl_idname == "REALMODEL_PT_start")
+    panel = next(cls for cls in TAB if cls.__name__ == "REALMODEL_PT_start")
     before = panel.draw
 
     def draw(self, context):
@@ -180,7 +180,7 @@ def show_panels(walk, names=()):
         if cls.is_registered:
             bpy.utils.unregister_class(cls)
     for cls in TAB:
-        if not names or cls.bl_idname.removeprefix("REALMODEL_PT_") in names:
+        if not names or cls.__name__.removeprefix("REALMODEL_PT_") in names:
             bpy.utils.register_class(cls)
     yield walk.redrawn(3)
 

@@ -1,12 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes the zips that users install: dist/realmodel-VERSION-PLATFORM.zip, for Blender 3.4 to 5.2 on
-# Linux x86-64, on Windows x64 and on macOS with Apple's processors. Each holds one native module for each version
-# of Python that a Blender comes with. The headers that these need are taken from Debian, whichever release has
-# them, and kept in ${XDG_CACHE_HOME:-~/.cache}/realmodel; those for Windows and macOS in build/windows and
-# build/macos (scripts/cross_tools.sh). The same sources give the same bytes.
+# Makes what users install, from one set of native modules, one for each platform and version of Python:
 #
-#   scripts/package.sh [--platform NAME]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]
+#   dist/realmodel-VERSION-PLATFORM.zip             for Blender 3.4 to 5.2
+#   dist/realmodel-VERSION-PLATFORM-extension.zip   for Blender's extension platform, which wants wheels (docs/dev/releasing.md)
+#   dist/realmodel-VERSION-cp3xx-*.whl              for pip, CPython 3.11 to 3.14
+#
+# on Linux x86-64, Windows x64 and macOS with Apple's processors. The headers of the Pythons come from
+# scripts/python_headers.sh; those for Windows and macOS go to build/windows and build/macos (scripts/cross_tools.sh).
+# The same sources give the same bytes.
+#
+#   scripts/package.sh [--platform NAME]... [--pythons "3.11 3.12 3.13 3.14"] [--skip-missing] [--into FOLDER]
 #     --platform      linux-x64, windows-x64 or macos-arm64 (default: all)
 #     --pythons       the versions to compile for
 #     --skip-missing  leave out a version whose headers cannot be had, and say so, instead of failing
@@ -20,9 +24,8 @@
 # is compiled stays in build/, and the second time takes seconds.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
 
-platforms=() pythons="3.11 3.13 3.14" skip_missing="" into=$root/dist
+platforms=() pythons="3.11 3.12 3.13 3.14" skip_missing="" into=$root/dist
 while (($# > 0)); do
     case $1 in
         --platform)
@@ -42,7 +45,7 @@ while (($# > 0)); do
             ;;
         --into) into=${2:?package.sh: --into needs a folder} && shift ;;
         *)
-            echo 'usage: package.sh [--platform linux-x64|windows-x64|macos-arm64]... [--pythons "3.11 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
+            echo 'usage: package.sh [--platform linux-x64|windows-x64|macos-arm64]... [--pythons "3.11 3.12 3.13 3.14"] [--skip-missing] [--into FOLDER]' >&2
             exit 2
             ;;
     esac
@@ -50,10 +53,11 @@ while (($# > 0)); do
 done
 ((${#platforms[@]} > 0)) || platforms=(linux-x64 windows-x64 macos-arm64)
 if [[ $(uname -sm) != "Linux x86_64" ]]; then
-    echo "package.sh: the zips are made on Linux x86-64; this is $(uname -sm)" >&2
+    echo "package.sh: zips and wheels are made on Linux x86-64; this is $(uname -sm)" >&2
     exit 1
 fi
 
+declare -A tag_of=([linux-x64]=_x86_64 [windows-x64]=win_amd64 [macos-arm64]=_arm64)
 # The interpreter of this machine.
 python=/usr/bin/python3
 [[ -x $python ]] || python=$(command -v python3)
@@ -63,30 +67,18 @@ version_here=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 linux_x64() {
     # Builds the core, which is the same for all, and the module for the interpreter of this machine.
     "$root/scripts/build.sh" "$python"
-    # The oldest release of Debian that has a version of Python.
-    local -A suite_of=([3.11]=bookworm [3.13]=trixie [3.14]=sid)
-    local version suffix include headers
+    local version suffix headers
     for version in $pythons; do
         suffix=cpython-${version/./}-x86_64-linux-gnu.so
         if [[ $version == "$version_here" ]]; then
             modules+=("$root/addon/realmodel/_native.$suffix")
             continue
         fi
-        if [[ -z ${suite_of[$version]-} ]]; then
-            echo "package.sh: it is not known which release of Debian has Python $version" >&2
-            exit 2
+        if ! headers=$("$root/scripts/python_headers.sh" "$version"); then
+            missing+=("$version")
+            continue
         fi
-        if [[ -f /usr/include/python$version/Python.h && -f /usr/include/x86_64-linux-gnu/python$version/pyconfig.h ]]; then
-            include=/usr/include
-        else
-            headers=$cache/python$version-headers
-            include=$headers/usr/include
-            if ! "$root/scripts/foreign_packages.sh" "${suite_of[$version]}" "$headers" "libpython$version-dev"; then
-                missing+=("$version")
-                continue
-            fi
-        fi
-        configured+="$suffix=$include/python$version:$include;"
+        configured+="$suffix=$headers;"
         modules+=("$root/build/release/packaged_modules/_native.$suffix")
     done
 }
@@ -139,5 +131,16 @@ for platform in "${platforms[@]}"; do
         (cd "$root" && cmake --preset "$preset" "-DREALMODEL_PACKAGED_PYTHONS=${configured%;}" "${without_tests[@]}" --log-level=WARNING)
         cmake --build "$root/build/$preset" --target packaged_modules -j "$("$root/scripts/build_jobs.sh")"
     fi
-    "$root/build/tools/bin/python" "$root/scripts/packaging/make_zip.py" "$platform" "$into" "${modules[@]}"
+    "$root/scripts/python_environment.sh" "$root/build/packaging" "$root/scripts/requirements/packaging.txt" "$python"
+    "$root/build/packaging/bin/python" "$root/scripts/packaging/make_wheels.py" "$platform" "$into" "${modules[@]}"
+    version=$(<"$root/VERSION")
+    in_blender=() wheels=() # no Blender has Python 3.12
+    for module in "${modules[@]}"; do
+        if [[ $module =~ _native\.(cpython-|cp)(3[0-9]+)- && ${BASH_REMATCH[2]} != 312 ]]; then
+            in_blender+=("$module")
+            wheels+=("$into/realmodel-$version-cp${BASH_REMATCH[2]}"-*"${tag_of[$platform]}.whl")
+        fi
+    done
+    "$root/build/packaging/bin/python" "$root/scripts/packaging/make_zip.py" "$platform" "$into" "${in_blender[@]}"
+    "$root/build/packaging/bin/python" "$root/scripts/packaging/make_zip.py" "$platform" "$into" "${wheels[@]}"
 done

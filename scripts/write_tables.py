@@ -115,8 +115,8 @@ def _operators():
     rows = []
     for _, node in _classes("operators/*.py"):
         said = _strings(node)
-        if "bl_idname" in said and "bl_label" in said:
-            name = said["bl_idname"].removeprefix("realmodel.")
+        if node.name.startswith("REALMODEL_OT_"):
+            name = node.name.removeprefix("REALMODEL_OT_")
             tip = " ".join((ast.get_docstring(node) or "").split())
             rows.append([f"`{name}({', '.join(_arguments(node))})`", said["bl_label"], tip])
     return _table(["`bpy.ops.realmodel.`", "label", ""], sorted(rows))

@@ -5,6 +5,8 @@ They are the whole input of a model: what a build needs beside them are the obje
 What goes on at the moment (progress, the last problem) is in `window_manager.realmodel` and not saved.
 """
 
+import sys
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -20,6 +22,7 @@ from bpy.props import (
 from . import preferences, props_ensemble, props_rock, props_stage, props_structure, props_surface, props_view
 from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
 from .core.base.units import MODEL_UNIT
+from .registration import classes
 
 
 class RealModelProperty(bpy.types.PropertyGroup):
@@ -305,22 +308,14 @@ class RealModelActivity(bpy.types.PropertyGroup):
     problem_place: StringProperty(options={"SKIP_SAVE"})
 
 
-_CLASSES = (
-    *props_surface.CLASSES,
-    *props_rock.CLASSES,
-    *props_structure.CLASSES,
-    *props_view.CLASSES,
-    *props_stage.CLASSES,
-    *props_ensemble.CLASSES,
-    RealModelProperty,
-    RealModelBlock,
-    RealModelSettings,
-    RealModelActivity,
+_MODULES = (
+    *(props_surface, props_rock, props_structure, props_view, props_stage, props_ensemble),
+    sys.modules[__name__],
 )
 
 
 def register():
-    for cls in _CLASSES:
+    for cls in classes(_MODULES):
         bpy.utils.register_class(cls)
     bpy.types.Scene.realmodel = PointerProperty(type=RealModelSettings, name="RealModel")
     bpy.types.WindowManager.realmodel = PointerProperty(type=RealModelActivity, name="RealModel")
@@ -329,5 +324,5 @@ def register():
 def unregister():
     del bpy.types.WindowManager.realmodel
     del bpy.types.Scene.realmodel
-    for cls in reversed(_CLASSES):
+    for cls in reversed(classes(_MODULES)):
         bpy.utils.unregister_class(cls)

@@ -70,5 +70,3 @@ RealModelRealization = props_slider.slider_group(
     description="The realization that is shown",
     min=1,
 )
-
-CLASSES = (RealModelEnsemble, RealModelRealization)

@@ -104,6 +104,3 @@ class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     blocks: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     exact: StringProperty(options={"HIDDEN"})
-
-
-CLASSES = (RealModelSize, RealModelConstraint, RealModelRock)

@@ -26,5 +26,3 @@ RealModelStage = props_slider.slider_group(
     description=DESCRIPTION,
     min=0,
 )
-
-CLASSES = (RealModelStage,)

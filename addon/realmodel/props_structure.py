@@ -107,6 +107,3 @@ class RealModelBody(
     bpy.types.PropertyGroup,
 ):
     """A body: where its closed surface comes from, and what is in it."""
-
-
-CLASSES = (RealModelFaultEnd, RealModelFaultRock, RealModelFault, RealModelBody)

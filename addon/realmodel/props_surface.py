@@ -118,6 +118,3 @@ class RealModelSurface(
     structures: CollectionProperty(type=RealModelStructure)
     stored: StringProperty(options={"HIDDEN"})
     other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file
-
-
-CLASSES = (RealModelStructure, RealModelFilter, RealModelSurface)

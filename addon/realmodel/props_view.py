@@ -134,6 +134,3 @@ class RealModelView(bpy.types.PropertyGroup):
     message: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     bounds_low: FloatVectorProperty(options={"HIDDEN"})
     bounds_high: FloatVectorProperty(options={"HIDDEN"})
-
-
-CLASSES = (RealModelView,)

@@ -9,9 +9,6 @@
 # gmp/streams.cpp). -z text has the linker refuse code that would have to be changed when it is loaded.
 # It is tried out here; where it does not work the shared library is taken.
 
-find_path(GMP_INCLUDE_DIR gmpxx.h REQUIRED)
-find_library(GMP_LIBRARY gmp REQUIRED)
-find_library(GMPXX_LIBRARY gmpxx REQUIRED)
 find_library(GMP_STATIC_LIBRARY "${CMAKE_STATIC_LIBRARY_PREFIX}gmp${CMAKE_STATIC_LIBRARY_SUFFIX}")
 
 set(gmp_inside_sources "")

@@ -16,9 +16,11 @@ else()
     find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
 endif()
 
-# scripts/build.sh keeps a newer pybind11 in build/tools than Debian 12 has: one that knows NumPy 2.
-file(GLOB pybind11_from_tools
-    "${PROJECT_SOURCE_DIR}/build/tools/lib/python3*/site-packages/pybind11/share/cmake/pybind11")
+# scripts/build.sh keeps a newer pybind11 in build/tools than Debian 12 has: one that knows NumPy 2. pip brings its own.
+if(NOT SKBUILD)
+    file(GLOB pybind11_from_tools
+        "${PROJECT_SOURCE_DIR}/build/tools/lib/python3*/site-packages/pybind11/share/cmake/pybind11")
+endif()
 find_package(pybind11 2.10 REQUIRED CONFIG HINTS ${pybind11_from_tools})
 if(pybind11_VERSION VERSION_LESS 2.12)
     message(STATUS "pybind11 ${pybind11_VERSION} does not know NumPy 2: the module will need NumPy 1. "
@@ -69,7 +71,11 @@ endfunction()
 if(NOT CMAKE_CROSSCOMPILING)
     pybind11_add_module(_native MODULE NO_EXTRAS ${bindings_sources})
     finish_python_module(_native)
-    set_target_properties(_native PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+    if(SKBUILD) # pip: into the wheel, and nothing into the sources
+        install(TARGETS _native LIBRARY DESTINATION realmodel COMPONENT wheel)
+    else()
+        set_target_properties(_native PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+    endif()
 endif()
 
 set(REALMODEL_PACKAGED_PYTHONS "" CACHE STRING "Ends of module names and the folders of the headers, for packaged_modules")

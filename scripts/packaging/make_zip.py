@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Puts the add-on into one zip that Blender installs.
 
-    build/tools/bin/python make_zip.py PLATFORM FOLDER MODULE...
+    build/packaging/bin/python make_zip.py PLATFORM FOLDER MODULE...
+    build/packaging/bin/python make_zip.py PLATFORM FOLDER WHEEL...
 
 PLATFORM: as Blender calls it, e.g. windows-x64. FOLDER: where realmodel-VERSION-PLATFORM.zip goes. MODULE:
-the native modules, one for each Python.
+the native modules, one for each Python. WHEEL: those of make_wheels.py instead, for
+realmodel-VERSION-PLATFORM-extension.zip: Blender's extension platform takes compiled code only in wheels of
+PyPI (docs/dev/releasing.md), and Blender 4.2 and newer install them.
 The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
 for which markdown-it-py is needed.
 """
@@ -22,6 +25,8 @@ ADDON = ROOT / "addon" / "realmodel"
 TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
 LARGEST = 16e6  # bytes
 INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
+# In the zip with wheels: the add-on finds its native module in the package that Blender installed from them.
+NATIVE_OF_WHEEL = b"from realmodel._native import *\n"
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the time of every file in the zip: the zero of the format
 
 
@@ -34,16 +39,19 @@ def files_below(folder):
             yield path
 
 
-def manifest(platform):
+def manifest(platform, wheels):
     """The manifest of the add-on, as that of a zip for one platform."""
     text = (ADDON / "blender_manifest.toml").read_text(encoding="utf-8")
-    changed, count = re.subn(r"^platforms = .*$", f'platforms = ["{platform}"]', text, flags=re.MULTILINE)
+    lines = f'platforms = ["{platform}"]'
+    if wheels:
+        lines += "\nwheels = [{}]".format(", ".join(f'"./wheels/{wheel.name}"' for wheel in wheels))
+    changed, count = re.subn(r"^platforms = .*$", lines, text, flags=re.MULTILINE)
     if count != 1:
         sys.exit("make_zip.py: blender_manifest.toml has no line for its platforms")
     return changed.encode()
 
 
-def contents(platform, modules):
+def contents(platform, modules, wheels):
     """{name in the zip: its bytes}."""
     files = {
         f"{TOP}/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
@@ -52,10 +60,13 @@ def contents(platform, modules):
     }
     for path in files_below(ROOT / "blend_samples"):
         files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path.read_bytes()
-    files[f"{TOP}/blender_manifest.toml"] = manifest(platform)
+    files[f"{TOP}/blender_manifest.toml"] = manifest(platform, wheels)
     files[f"{TOP}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     for module in modules:
         files[f"{TOP}/{module.name}"] = module.read_bytes()
+    for wheel in wheels:
+        files[f"{TOP}/wheels/{wheel.name}"] = wheel.read_bytes()
+        files[f"{TOP}/_native.py"] = NATIVE_OF_WHEEL
     files |= {f"{TOP}/{name}": content for name, content in web_pages().items()}
     return files
 
@@ -82,15 +93,16 @@ def write_zip(path, files):
         unfinished.unlink(missing_ok=True)
 
 
-def main(platform, folder, *modules):
+def main(platform, folder, *compiled):
     version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
-    path = Path(folder) / f"{TOP}-{version}-{platform}.zip"
+    wheels = [Path(path) for path in compiled if path.endswith(".whl")]
+    modules = [Path(path) for path in compiled if not path.endswith(".whl")]
+    path = Path(folder) / f"{TOP}-{version}-{platform}{'-extension' if wheels else ''}.zip"
     path.parent.mkdir(parents=True, exist_ok=True)
-    files = contents(platform, [Path(module) for module in modules])
+    files = contents(platform, modules, wheels)
     write_zip(path, files)
-    print(
-        f"Made {path}: {len(files)} files, {path.stat().st_size / 1e6:.1f} MB, {len(modules)} native modules"
-    )
+    size = path.stat().st_size
+    print(f"Made {path}: {len(files)} files, {size / 1e6:.1f} MB, for {len(compiled)} versions of Python")
 
 
 if __name__ == "__main__":

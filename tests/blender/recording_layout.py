@@ -172,7 +172,7 @@ def draw_tab(context):
     for cls in panels:
         parent = getattr(cls, "bl_parent_id", None)
         if (parent is None or parent in shown) and (not hasattr(cls, "poll") or cls.poll(context)):
-            shown.add(cls.bl_idname)
+            shown.add(cls.__name__)
             draw(cls, context, drawing)
     return drawing
 

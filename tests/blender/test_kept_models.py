@@ -24,7 +24,7 @@ class KeptModels(unittest.TestCase):
         return [model.vertices.nbytes for model in built_models._models.values()]
 
     def test_the_oldest_go_where_all_are_too_large(self):
-        with mock.patch.object(built_models, "MOST_BYTES", 100):
+        with mock.patch.object(built_models._models, "_most", 100):
             for size in (40, 50, 30):
                 built_models.remember(_Model(size))
             self.assertEqual(self.kept(), [50, 30])
@@ -38,7 +38,7 @@ class KeptModels(unittest.TestCase):
 
     def test_arrays_of_files_likewise(self):
         texts = [stored_arrays.pack(a=np.full(100, n, np.uint8)) for n in range(3)]
-        with mock.patch.object(stored_arrays, "_MOST_BYTES", 250):
+        with mock.patch.object(stored_arrays._unpacked, "_most", 250):
             for text in texts:
                 stored_arrays.unpack(text)
         self.assertEqual([a["a"][0] for a in stored_arrays._unpacked.values()], [1, 2])

@@ -93,12 +93,10 @@ class Registration(unittest.TestCase):
         realmodel.register()
         self.addCleanup(realmodel.unregister)
         from realmodel import props_rock, props_stage, props_structure, props_surface, props_view
+        from realmodel.registration import classes
 
-        found = [
-            (cls.__name__, cls.bl_rna)
-            for m in (props_rock, props_stage, props_structure, props_surface, props_view)
-            for cls in m.CLASSES
-        ]
+        modules = (props_rock, props_stage, props_structure, props_surface, props_view)
+        found = [(cls.__name__, cls.bl_rna) for cls in classes(modules)]
         found.append(("scene.realmodel", bpy.context.scene.realmodel.bl_rna))
         for cls in bpy.types.Operator.__subclasses__():
             if cls.__module__.startswith("realmodel.") and "INTERNAL" not in cls.bl_options:
@@ -124,8 +122,9 @@ class Registration(unittest.TestCase):
         self.addCleanup(realmodel.unregister)
         from realmodel import props
         from realmodel.bl import display
+        from realmodel.registration import classes
 
-        groups = [cls for cls in props._CLASSES if cls is not props.RealModelSettings]
+        groups = [cls for cls in classes(props._MODULES) if cls is not props.RealModelSettings]
         owners = [*((cls.__name__, cls.bl_rna) for cls in groups), ("", props.RealModelSettings.bl_rna)]
         animatable = {
             f"{name}.{prop.identifier}".lstrip(".")
@@ -140,11 +139,12 @@ class Registration(unittest.TestCase):
         realmodel.register()
         self.addCleanup(realmodel.unregister)
         from realmodel import props
+        from realmodel.registration import classes
 
         small = re.findall(r"\w+", "a an and as at by for from in of on or per the to")
         british = re.compile(r"colour|centre|neighbour|metre|honour", re.IGNORECASE)
         wrong = []
-        for cls in props._CLASSES:
+        for cls in classes(props._MODULES):
             for prop in cls.bl_rna.properties:
                 if prop.is_hidden or prop.name == prop.identifier or prop.identifier == "rna_type":
                     continue

@@ -36,6 +36,12 @@ def test_the_manifest_says_what_bl_info_says():
     assert manifest()["id"] == ADDON.name
 
 
+def test_one_address_everywhere():
+    """None, as long as the project has none that is public."""
+    about = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert about.get("urls", {}).get("Homepage") == manifest().get("website")
+
+
 def test_the_package_never_names_itself():
     """As an extension of Blender 4.2 and newer it has another name: bl_ext.user_default.realmodel."""
     for path in ADDON.rglob("*.py"):

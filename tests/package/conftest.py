@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zips that scripts/package.sh made: --zip, --windows-zip and --macos-zip FILE, or those in dist/."""
+"""What scripts/package.sh made: --zip, --windows-zip, --macos-zip FILE, --wheels FOLDER, or all of dist."""
 
+import os
+import subprocess
 import zipfile
 from pathlib import Path
 
@@ -14,6 +16,7 @@ def pytest_addoption(parser):
     platforms = {"--zip": "linux-x64", "--windows-zip": "windows-x64", "--macos-zip": "macos-arm64"}
     for option, platform in platforms.items():
         parser.addoption(option, type=Path, default=ROOT / "dist" / f"realmodel-{VERSION}-{platform}.zip")
+    parser.addoption("--wheels", type=Path, default=ROOT / "dist")
 
 
 def made(request, option):
@@ -66,3 +69,40 @@ def modules(unpacked):
     found = sorted((unpacked / "realmodel").glob("_native.*"))
     assert found
     return found
+
+
+@pytest.fixture(scope="session")
+def wheels(request):
+    """The wheels of this version, by their names' ends: {"cp311-cp311-manylinux_2_34_x86_64": path}."""
+    folder = request.config.getoption("--wheels").resolve()
+    found = {path.stem.split("-", 2)[2]: path for path in sorted(folder.glob(f"realmodel-{VERSION}-*.whl"))}
+    if not found:
+        pytest.skip(f"{folder} has no wheels: scripts/package.sh makes them")
+    return found
+
+
+class Environment:
+    """An empty virtual environment; what runs in it knows nothing of this clone."""
+
+    def __init__(self, python, folder):
+        subprocess.run([python, "-m", "venv", folder / "venv"], check=True)
+        self.folder = folder
+        self.programs = folder / "venv" / "bin"
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+        self.variables = kept | {"PATH": f"{self.programs}:/usr/bin:/bin"}
+
+    def run(self, program, *arguments, **options):
+        """Runs one of its programs, away from the clone."""
+        return subprocess.run(
+            [self.programs / program, *map(str, arguments)],
+            env=self.variables | options.pop("variables", {}),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+            **options,
+        )
+
+    def install(self, *requirements, **options):
+        done = self.run("python", "-m", "pip", "install", *requirements, **options)
+        assert done.returncode == 0, done.stdout + done.stderr

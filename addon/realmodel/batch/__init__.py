@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of build_model.py.
+"""The command line of build_model.py, which is the command `realmodel` where pip installed the package.
 
+command        from arguments to the exit status
 options        arguments, checked
 run            build, write, print
 cuts           sections, fences, boreholes and cuts
@@ -9,16 +10,18 @@ interruption   Ctrl-C while Blender renders or saves
 table          the table of volumes
 terminal       the progress bar
 
-`options` and this module import nothing of NumPy: build_model.py says itself what is missing.
+`command`, `options` and this module import nothing of NumPy: `command` says itself what is missing.
 """
 
 import sys
+from pathlib import Path
 
 IN_BLENDER = "bpy" in sys.modules
+PROGRAM = "realmodel" if Path(sys.argv[0]).stem == "realmodel" else "build_model.py"
 DONE, REFUSED, USAGE, TERMINATED, INTERRUPTED = 0, 1, 2, 143, 130  # exit status
 
 
 def say(line: str, status: int) -> int:
     """Prints a line to standard error; returns the status."""
-    print(f"build_model.py: {line}", file=sys.stderr, flush=True)
+    print(f"{PROGRAM}: {line}", file=sys.stderr, flush=True)
     return status

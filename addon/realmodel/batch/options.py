@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The options of build_model.py."""
+"""The options of the command line."""
 
 import argparse
 import math
@@ -8,10 +8,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import IN_BLENDER
+from . import IN_BLENDER, PROGRAM
 
 _NEGATIVE = re.compile(r"-\.?\d")
 _BLENDER_USAGE = "blender -b --factory-startup --python-exit-code 1 -P build_model.py -- PROJECT [options]"
+_USAGE = (
+    "realmodel PROJECT [options without --blend and --render]"
+    if PROGRAM == "realmodel"
+    else f"{_BLENDER_USAGE}\n       python3 build_model.py PROJECT [options without --blend and --render]"
+)
 
 
 def _length(text: str) -> float:
@@ -274,10 +279,8 @@ OPTIONS = (
 def parse(arguments: list[str]) -> argparse.Namespace:
     """Raises SystemExit with status 2 where they are wrong."""
     parser = argparse.ArgumentParser(
-        prog="build_model.py",
-        usage=(
-            f"{_BLENDER_USAGE}\n       python3 build_model.py PROJECT [options without --blend and --render]"
-        ),
+        prog=PROGRAM,
+        usage=_USAGE,
         description="Builds a model of sedimentary rock from a project file.",
     )
     parser.add_argument(

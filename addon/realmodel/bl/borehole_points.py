@@ -4,10 +4,8 @@
 
 import numpy as np
 
-from ..core import PointFile
-from ..core.readers import read_point_file
 from ..core.surfaces.age_order import age_order
-from . import library_rows, project_settings, reading_text, settings, stored_arrays
+from . import data_objects, library_rows, reading_text, settings, stored_arrays
 
 
 def give(scene, rock, picks, add_surfaces=False):
@@ -50,12 +48,8 @@ def _own_points(scene, row):
         return np.empty((0, 3))
     if row.source != "POINTS_FILE":
         return None
-    if row.stored:
-        return stored_arrays.unpack(row.stored)["points"]
-    path = project_settings.absolute(row.filepath)
-    if path is None:
-        return np.empty((0, 3))
-    return read_point_file(PointFile(path, **reading_text.options(row)), scene.realmodel.units)[0]
+    found = data_objects.read_points(scene, row)
+    return np.empty((0, 3)) if found is None else found
 
 
 def _keep(row, points):

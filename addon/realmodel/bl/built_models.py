@@ -11,8 +11,13 @@ import numpy as np
 
 from . import caches
 
-MOST_BYTES = 1 << 30  # limit of the cache of models; the newest stays, however large
-_models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest first
+
+def _bytes_of(model):
+    """The memory that the arrays of a model take."""
+    return sum(value.nbytes for value in vars(model).values() if isinstance(value, np.ndarray))
+
+
+_models = caches.new(most=1 << 30, size_of=_bytes_of)  # (stamp, cells) -> realmodel.core.Model
 
 
 def remember(model, stamp=None, instead_of=None):
@@ -21,17 +26,8 @@ def remember(model, stamp=None, instead_of=None):
     stamp = stamp or new_stamp()
     for key in [key for key in _models if key[0] == instead_of]:
         del _models[key]
-    _models.pop((stamp, model.cell_kind), None)
     _models[stamp, model.cell_kind] = model
-    total = sum(map(_bytes_of, _models.values()))
-    while total > MOST_BYTES and len(_models) > 1:
-        total -= _bytes_of(_models.pop(next(iter(_models))))
     return stamp
-
-
-def _bytes_of(model):
-    """The memory that the arrays of a model take."""
-    return sum(value.nbytes for value in vars(model).values() if isinstance(value, np.ndarray))
 
 
 def new_stamp():

@@ -6,22 +6,24 @@ _caches = []
 
 
 class _Bounded(dict):
-    """Drops the oldest entry where there would be more than `most`."""
+    """Drops the oldest entries where there would be more than `most`; the newest stays, however large."""
 
-    def __init__(self, most):
+    def __init__(self, most, size_of):
         super().__init__()
-        self._most = most
+        self._most, self._size_of = most, size_of
 
     def __setitem__(self, key, value):
         self.pop(key, None)
         super().__setitem__(key, value)
-        if len(self) > self._most:
-            del self[next(iter(self))]
+        total = sum(map(self._size_of, self.values()))
+        while total > self._most and len(self) > 1:
+            total -= self._size_of(self.pop(next(iter(self))))
 
 
-def new(kind=dict, most=None):
-    """An empty cache, a dict or a list. most: entries that a dict holds; None: any number."""
-    cache = kind() if most is None else _Bounded(most)
+def new(kind=dict, most=None, size_of=lambda _: 1):
+    """An empty cache, a dict or a list. most: entries that a dict holds, or their sizes together; None: any
+    number."""
+    cache = kind() if most is None else _Bounded(most, size_of)
     _caches.append(cache)
     return cache
 

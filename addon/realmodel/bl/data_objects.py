@@ -90,7 +90,7 @@ def row_points(scene, row, depsgraph):
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT") and row.object is not None:
         return project_settings.shapes.points(row.object, depsgraph) + project_settings.model_origin(scene)
     if row.source == "POINTS_FILE":
-        return _read_points(scene, row)
+        return read_points(scene, row)
     if row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)["vertices"]
     path = project_settings.absolute(row.filepath)
@@ -101,7 +101,7 @@ def row_points(scene, row, depsgraph):
     return read_mesh(path).in_model(given.mesh, scene.realmodel.units)[0]
 
 
-def _read_points(scene, row):
+def read_points(scene, row):
     """(P, 3) of a surface's file of points, or of the data stored in the .blend; None where there are
     neither."""
     if row.stored:
@@ -174,7 +174,7 @@ def _checksum(text):
 
 
 def _cloud(scene, row, points):
-    points = _read_points(scene, row) if points is None else points
+    points = read_points(scene, row) if points is None else points
     return points, np.empty((0, 2), np.int32)
 
 
@@ -222,11 +222,9 @@ def _trace(scene, fault):
     else:
         given = PointFile(project_settings.absolute(fault.filepath), **reading_text.options(fault))
         lines = read_fault_trace(given, scene.realmodel.units).lines
-    places = np.concatenate(lines)
+    places, edges = _chains(lines)
     places[np.isnan(places[:, 2]), 2] = project_settings.model_origin(scene)[2]
-    ends = np.cumsum([len(line) for line in lines])
-    first = np.setdiff1d(np.arange(len(places)), ends - 1)
-    return places, np.stack([first, first + 1], 1).astype(np.int32)
+    return places, edges
 
 
 def _new(scene, stamp, name, coordinates, edges):

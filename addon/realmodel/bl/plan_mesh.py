@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from ..core import InputRefused
-from ..core.project.project import rock_item
+from ..core.base.errors import naming
 from ..core.settings.mesh_sizes import AUTO
 from ..core.settings.schema import ROCK, SIZE
 from . import method_settings, settings, shapes, stored_arrays
@@ -45,13 +45,11 @@ def compose(rock, row, depsgraph, origin):
         rock.triangles = row.triangles
     elif row.edges_by == "AUTO":
         rock.triangles = method_settings.value(row, "triangles", ROCK)
-    try:
+    with naming(rock.item):
         rock.size = []
         for entry in row.sizes:
             rock.size += _sizes(entry, depsgraph, origin)
         rock.constraints = _constraints(row, depsgraph, origin)
-    except InputRefused as error:
-        raise error.within(rock_item(rock)) from error
 
 
 def _sizes(entry, depsgraph, origin):

@@ -12,8 +12,9 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core.base.errors import naming
 from ..core.base.work import run
-from ..core.project.project import rock_item, surface_item
+from ..core.project.project import surface_item
 from ..core.results.automatic_library import with_library
 from ..core.settings.methods import CONTINUATION
 from ..core.settings.schema import MESH_READING, READING, ROCK, SURFACE
@@ -107,19 +108,15 @@ def compose(scene, depsgraph, whole=True):
         composed.project.rocks.append(rock)
         for at, surface_row in enumerate(row.surfaces):
             surface = _plain_surface(surface_row)
-            try:
+            with naming(surface_item(rock, surface)):
                 _shape(source, composed, (number, at), surface, surface_row)
-            except InputRefused as error:
-                raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
         if not rock.interpolates:  # no mesh that they could affect
             rock.constraints, rock.size = [], []
     for place, row in settings.structure_rows(scene):
         entry = structure_settings.entry_of(place, row)
-        try:
+        with naming(entry.item):
             _shape(source, composed, place, entry, row)
-        except InputRefused as error:
-            raise error.within(structure_settings.item_of(entry)) from error
         (project.faults if place[0] == "fault" else project.bodies).append(entry)
     composed.origin_is_free = composed.origin_is_free and not composed.edited
     return composed
@@ -145,12 +142,10 @@ def region_rings(row, depsgraph, origin):
 
 
 def _region(source, composed, number, rock, row):
-    try:
+    with naming(rock.item):
         rings = region_rings(row, source.depsgraph, composed.origin)
         if rings is None:
             rings = _stored_rings(source, composed, number, rock, row)
-    except InputRefused as error:
-        raise error.within(rock_item(rock)) from error
     if rings:  # holes are not marked: the even-odd rule decides
         rock.region = rings if len(rings) > 1 else rings[0]
 

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused
+from ..core.base.algebra import begins_run
 from . import exaggeration, meshes, versions
 
 
@@ -127,7 +128,17 @@ def rings(item, depsgraph):
         raise InputRefused(
             "it has no edges", item=where, advice="draw an outline, or choose a curve or a mesh that has one"
         )
-    return [plan[ring] for ring in _closed_chains(edges, len(plan), where, plan)]
+    degree = np.bincount(edges.ravel(), minlength=len(plan))
+    odd = np.flatnonzero((degree != 2) & (degree != 0))
+    if len(odd):
+        x, y = plan[odd[0]]
+        what = "its outline is open" if degree[odd[0]] == 1 else "its outline touches or crosses itself"
+        raise InputRefused(
+            f"{what} near ({x:.6g}, {y:.6g})",
+            item=where,
+            advice="close the curve (Toggle Cyclic), or join the ends of the edges",
+        )
+    return [plan[chain[:-1]] for chain in _chains(edges, degree)]
 
 
 def new_outline(scene, name, corners, z):
@@ -166,7 +177,7 @@ def polyline(item, depsgraph):
     if len(found) > 1:
         raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
     line = found[0][:, :2]
-    line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
+    line = line[begins_run(line)]
     if len(line) < 2:
         raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
     return line
@@ -186,7 +197,13 @@ def lines(item, depsgraph):
         )
     if (degree > 2).any():
         raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
-    onward = [[] for _ in places]
+    return [places[chain] for chain in _chains(edges, degree)]
+
+
+def _chains(edges, degree):
+    """The vertex numbers of each line of edges without branches, open ones first; closed ones end where they
+    begin. degree: (V,), how many edges are at each vertex."""
+    onward = [[] for _ in degree]
     for a, b in edges.tolist():
         onward[a].append(b)
         onward[b].append(a)
@@ -201,7 +218,7 @@ def lines(item, depsgraph):
             if following == start:
                 break
         left[chain] = False
-        found.append(places[chain])
+        found.append(chain)
     return found
 
 
@@ -219,32 +236,3 @@ def _bounding_edges(mesh):
     used = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", used)
     return edges[np.bincount(used, minlength=len(edges)) == 1]
-
-
-def _closed_chains(edges, count, where, plan):
-    """The vertex numbers of each closed loop of the edges."""
-    degree = np.bincount(edges.ravel(), minlength=count)
-    odd = np.flatnonzero((degree != 2) & (degree != 0))
-    if len(odd):
-        place = plan[odd[0]]
-        what = "its outline is open" if degree[odd[0]] == 1 else "its outline touches or crosses itself"
-        raise InputRefused(
-            f"{what} near ({place[0]:.6g}, {place[1]:.6g})",
-            item=where,
-            advice="close the curve (Toggle Cyclic), or join the ends of the edges",
-        )
-    neighbours = [[] for _ in range(count)]
-    for a, b in edges.tolist():
-        neighbours[a].append(b)
-        neighbours[b].append(a)
-    left, found = set(np.flatnonzero(degree).tolist()), []
-    while left:
-        start = min(left)
-        chain, before, at = [start], start, neighbours[start][0]
-        while at != start:
-            chain.append(at)
-            first, second = neighbours[at]
-            before, at = at, second if first == before else first
-        left.difference_update(chain)
-        found.append(chain)
-    return found

@@ -15,8 +15,14 @@ from ..core.exporters.npz import write_arrays
 from . import caches
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
-_MOST_BYTES = 256 << 20  # limit of the cache of arrays; the newest stay, however large
-_unpacked = caches.new()  # by digest of the text: arrays read lately, not to be written to
+
+
+def _bytes_of(arrays):
+    return sum(array.nbytes for array in arrays.values())
+
+
+# by digest of the text: arrays read lately, not to be written to
+_unpacked = caches.new(most=256 << 20, size_of=_bytes_of)
 
 
 def pack(**arrays):
@@ -47,14 +53,7 @@ def unpack(text):
         for array in arrays.values():
             array.flags.writeable = False
         _unpacked[key] = arrays
-        total = sum(map(_bytes_of, _unpacked.values()))
-        while total > _MOST_BYTES and len(_unpacked) > 1:
-            total -= _bytes_of(_unpacked.pop(next(iter(_unpacked))))
     return _unpacked[key]
-
-
-def _bytes_of(arrays):
-    return sum(array.nbytes for array in arrays.values())
 
 
 def file_stamp(path):

@@ -5,7 +5,6 @@ import numpy as np
 
 from ..core import Body, Fault, Project
 from ..core.base import work
-from ..core.project.structure_entries import body_item, fault_item
 from ..core.settings.schema import BODY, FAULT
 from ..core.structures.shapes.reading import read_structures
 from . import method_settings, reading_text, settings, stored_arrays
@@ -65,11 +64,6 @@ def forget_extension(row):
     if settings.kind_of(row) == "fault":
         with settings.filling():
             method_settings.set_value(row, "extend", FAULT, 0.0)
-
-
-def item_of(entry):
-    """The name of a fault or a body in messages."""
-    return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
 
 
 def fill(scene, project):

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..core import BuildWarning, InputRefused, Rock, SurfaceSet, build_surfaces
+from ..core import BuildWarning, Rock, SurfaceSet, build_surfaces
+from ..core.base.errors import naming
 from ..core.base.mapped_arrays import MappedArrays
 from ..core.base.sheet import Sheet
 from ..core.base.work import Work, native_module, run
@@ -166,11 +167,8 @@ def _fit(folder: Path, task: tuple) -> tuple[LocalHeights, Path | np.ndarray, li
         found, left, texts = local_heights(work, given, extent, nodes, method, settings, arrays)
         return found, points if left is given else arrays.place(left), texts
 
-    try:
+    with naming(surface_item(Rock(rock, []), surface), surface.shape_source):
         return run(fitted, threads=1)
-    except InputRefused as error:
-        file, line = surface.shape_source()
-        raise error.within(surface_item(Rock(rock, []), surface), file=file, line=line) from error
 
 
 class SurfaceReader:

@@ -105,9 +105,6 @@ class InBackground(Reporting):
         return {"CANCELLED"}
 
 
-CLASSES = ()
-
-
 def unregister():
     for job in list(running):
         job.cancel()

@@ -45,7 +45,6 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
     """Join, intersect, subtract or divide the active mesh object and one other selected, exactly. Materials,
     attributes, UV maps and vertex groups of both stay on their parts. Esc cancels"""
 
-    bl_idname = "realmodel.boolean"
     bl_label = "Boolean"
     needs = (not_building, _object_mode, _two_meshes, _editable)
 
@@ -81,6 +80,3 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
             self.report({"INFO"}, f"Divided into {len(made.all_objects)} objects: see {made.name}")
         else:
             self.report({"INFO"}, f"{made.name} has {len(made.data.polygons)} faces")
-
-
-CLASSES = (REALMODEL_OT_boolean,)

@@ -6,14 +6,12 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
-from ..core import InputRefused
 from ..core.readers import TABLE_ENDINGS, read_boreholes
 from ..core.settings.boreholes import COLUMNS, Boreholes
-from ..core.settings.point_file import ReadingError
 from ..core.settings.schema import READING
 from ..props_schema import items
 from .imports import arrived
-from .reporting import Reporting, chosen_path, require_file
+from .reporting import Reporting, chosen_path, file_filter, require_file
 from .rocks import add_rock
 
 
@@ -21,13 +19,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     """Read a table with the depths at which boreholes, vertical or not, met the surfaces; the surfaces get
     these points beside their own, and are added where they are not there yet"""
 
-    bl_idname = "realmodel.boreholes_read"
     bl_label = "Import Boreholes"
 
     filename_ext = ""
-    filter_glob: StringProperty(
-        default=";".join(f"*{ending}" for ending in TABLE_ENDINGS), options={"HIDDEN"}
-    )
+    filter_glob: file_filter(*TABLE_ENDINGS)
     collars: StringProperty(
         name="Collars",
         description="Table with hole, x, y and z of each borehole, beside the table of picks or anywhere; "
@@ -75,10 +70,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         )
         for file in given.files:
             require_file(file)
-        try:
-            given.check()
-        except ReadingError as error:
-            raise InputRefused(error.what, advice=error.advice) from error
+        given.check()
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
         warnings = borehole_points.give(context.scene, rock, found, self.add_surfaces)
@@ -96,6 +88,3 @@ def _beside(picks, given):
     """The path of another table, which may stand beside the picks; None where none is given."""
     path = project_settings.absolute(given)
     return picks.parent / given.strip() if path is not None and not path.is_file() else path
-
-
-CLASSES = (REALMODEL_OT_boreholes_read,)

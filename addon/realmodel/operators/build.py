@@ -11,7 +11,6 @@ from .reporting import Reporting, a_model, building, not_building
 class REALMODEL_OT_build(InBackground, bpy.types.Operator):
     """Build the blocks between the surfaces, oldest first. Esc cancels and leaves the scene unchanged"""
 
-    bl_idname = "realmodel.build"
     bl_label = "Build"
     needs = (not_building,)
 
@@ -46,7 +45,6 @@ class REALMODEL_OT_build(InBackground, bpy.types.Operator):
 class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):
     """Cancel the running build or Boolean and leave the scene unchanged"""
 
-    bl_idname = "realmodel.cancel"
     bl_label = "Cancel"
     bl_options = {"REGISTER"}
     needs = (building,)
@@ -59,7 +57,6 @@ class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):
 class REALMODEL_OT_clear(Reporting, bpy.types.Operator):
     """Remove the blocks; keep the interfaces and all settings"""
 
-    bl_idname = "realmodel.clear"
     bl_label = "Clear Blocks"
     needs = (a_model,)
 
@@ -74,7 +71,6 @@ def _a_bad_place(context):
 class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
     """Select the triangles of the refused surface in Edit Mode, or move the 3D cursor there, and zoom in"""
 
-    bl_idname = "realmodel.show_problem"
     bl_label = "Zoom to Error"
     needs = (_a_bad_place,)
 
@@ -90,7 +86,6 @@ def a_message(context):
 class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
     """Remove the message from the panel; the report of the model keeps its warnings"""
 
-    bl_idname = "realmodel.dismiss"
     bl_label = "Dismiss Message"
     bl_options = {"REGISTER", "INTERNAL"}
     needs = (a_message,)
@@ -100,12 +95,3 @@ class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
             problems.forget()
         else:
             context.scene.realmodel.warnings = ""
-
-
-CLASSES = (
-    REALMODEL_OT_build,
-    REALMODEL_OT_cancel,
-    REALMODEL_OT_clear,
-    REALMODEL_OT_show_problem,
-    REALMODEL_OT_dismiss,
-)

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import bpy
 
+from .reporting import Reporting
+
 # Beside the add-on's files where it was installed, as text above them where it runs from its repository.
 _GUIDES = ("docs/guide/index.html", "../../docs/guide/README.md")
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -15,20 +17,18 @@ def guide():
     return next((path for path in map(_PACKAGE.joinpath, _GUIDES) if path.is_file()), None)
 
 
-class REALMODEL_OT_documentation(bpy.types.Operator):
+def _a_guide(_context):
+    return "this copy of RealModel has no documentation" if guide() is None else None
+
+
+class REALMODEL_OT_documentation(Reporting, bpy.types.Operator):
     """Open the user guide in the web browser"""
 
-    bl_idname = "realmodel.documentation"
     bl_label = "RealModel Documentation"
     bl_options = {"REGISTER"}
+    needs = (_a_guide,)
 
-    @classmethod
-    def poll(cls, _context):
-        if guide() is None:
-            cls.poll_message_set("this copy of RealModel has no documentation")
-        return guide() is not None
-
-    def execute(self, _context):
+    def act(self, _context):
         return bpy.ops.wm.url_open(url=guide().resolve().as_uri())
 
 
@@ -43,9 +43,6 @@ def _manual_map():
     tour = "tour.html" if folder and page.suffix == ".html" else "tour.md"
     patterns = ("bpy.ops.realmodel.*", "bpy.types.realmodel*")
     return folder, tuple((pattern, tour) for pattern in patterns) if folder else ()
-
-
-CLASSES = (REALMODEL_OT_documentation,)
 
 
 def register():

@@ -17,7 +17,6 @@ class REALMODEL_OT_ensemble(InBackground, bpy.types.Operator):
     variograms allow: how certain are the volumes, and which block is where? Esc cancels and leaves the scene
     unchanged"""
 
-    bl_idname = "realmodel.ensemble"
     bl_label = "Make Ensemble"
     needs = (not_building, a_model)
 
@@ -68,12 +67,8 @@ def _an_ensemble(context):
 class REALMODEL_OT_ensemble_remove(Reporting, bpy.types.Operator):
     """Remove the ensemble with its section and its table; the model stays"""
 
-    bl_idname = "realmodel.ensemble_remove"
     bl_label = "Remove Ensemble"
     needs = (_an_ensemble, not_building)
 
     def act(self, context):
         ensembles.remove(context.scene)
-
-
-CLASSES = (REALMODEL_OT_ensemble, REALMODEL_OT_ensemble_remove)

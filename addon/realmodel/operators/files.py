@@ -10,7 +10,6 @@ from bpy.props import (
     FloatProperty,
     FloatVectorProperty,
     IntProperty,
-    StringProperty,
 )
 from bpy_extras.io_utils import ExportHelper
 
@@ -25,7 +24,7 @@ from ..core.exporters.mesh_request import MeshRequest
 from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import model_report, write_report
 from .background import InBackground
-from .reporting import Reporting, a_model, chosen_path, not_building, object_mode
+from .reporting import Reporting, a_model, chosen_path, file_filter, not_building, object_mode
 
 _MODELS = tuple(
     (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
@@ -68,11 +67,7 @@ def format_menu(formats):
 
 
 def format_filter(formats):
-    return StringProperty(default=";".join(f"*{e}" for e in _endings(formats)), options={"HIDDEN"})
-
-
-def _endings(formats):
-    return [f".{identifier.lower()}" for identifier, *_ in formats]
+    return file_filter(*(f".{identifier.lower()}" for identifier, *_ in formats))
 
 
 class Exporting(Reporting, ExportHelper):
@@ -135,7 +130,6 @@ class ExportingInBackground(InBackground, Exporting):
 class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     """Export the built model with its cells. Esc cancels"""
 
-    bl_idname = "realmodel.export"
     bl_label = "Export Model"
     command = "export"
     needs = (a_model, not_building)
@@ -190,7 +184,6 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
 class REALMODEL_OT_export_mesh(ExportingInBackground, bpy.types.Operator):
     """Export a mesh of the built model for solvers, with limits of edge length and thickness. Esc cancels"""
 
-    bl_idname = "realmodel.export_mesh"
     bl_label = "Export Simulation Mesh"
     command = "export_mesh"
     needs = (a_model, not_building)
@@ -246,7 +239,6 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
     """Export what is displayed of the model to other 3D programs, with names, materials, looks, and custom
     properties"""
 
-    bl_idname = "realmodel.export_scene"
     bl_label = "Export Scene"
     needs = (a_model, object_mode)
 
@@ -278,7 +270,6 @@ class REALMODEL_OT_export_scene(Exporting, bpy.types.Operator):
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
     """Write a report of the model, or the table of blocks"""
 
-    bl_idname = "realmodel.report"
     bl_label = "Write Report"
     needs = (a_model,)
 
@@ -293,6 +284,3 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
                 file.write(results.as_text(context.scene).encode())
             else:
                 write_report(model_report(model), file)
-
-
-CLASSES = (REALMODEL_OT_export, REALMODEL_OT_export_mesh, REALMODEL_OT_export_scene, REALMODEL_OT_report)

@@ -35,14 +35,16 @@ from ..core.readers import (
     read_point_file,
 )
 from ..core.readers.contents import column_values
-from ..core.settings.point_file import ReadingError
+from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
-from .reporting import Reporting, require_file
+from ..registration import drop_handler
+from .reporting import Reporting, file_filter, require_file
 from .rocks import add_rock
 from .start import invoke
 
 _SHOWN = 8  # columns of a preview
 _PREVIEWED = 3  # files
+_ENDINGS = (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
 
 
 @dataclass
@@ -57,10 +59,24 @@ class _Given:
     places: np.ndarray | None = None
 
 
-class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
+class FilesImportHelper(ImportHelper):
+    """Chooses one file, or several; with a path, as of a dropped file, no file browser opens."""
+
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
+    filename_ext = ""
+
+    def paths(self):
+        names = [file.name for file in self.files if file.name]
+        if names and self.directory:
+            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
+        path = project_settings.absolute(self.filepath)
+        return [] if path is None else [path]
+
+
+class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper):
     """Add surfaces above the youngest one: from one or more files of points or meshes, or a mesh object"""
 
-    bl_idname = "realmodel.surface_add"
     bl_label = "Import Surfaces"
 
     name: StringProperty(
@@ -74,8 +90,6 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},  # with a path, as of a dropped file, no file browser opens
     )
-    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
-    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     use_object: BoolProperty(
         name="Active Object",
         description="Take the active mesh object as the surface instead of a file",
@@ -101,13 +115,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         search=lambda self, _context, _text: [name for p in self._previews for name in p.splits],
         options={"SKIP_SAVE"},
     )
-    filter_glob: StringProperty(
-        default=";".join(
-            f"*{ending}" for ending in (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
-        ),
-        options={"HIDDEN"},
-    )
-    filename_ext = ""
+    filter_glob: file_filter(*_ENDINGS)
     _browses = False
     _folder = ""  # of the last files that were chosen
     _previews = ()
@@ -143,7 +151,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def invoke(self, context, event):
         if self.use_object or self.empty:
             return self.execute(context)
-        if not self._paths():
+        if not self.paths():
             self._browses = True
             folder = self._folder or os.path.dirname(bpy.data.filepath) or os.path.expanduser("~")
             self.filepath = os.path.join(folder, "")  # no name of a .blend as a proposal
@@ -178,15 +186,8 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
             column.prop(self, "split_column")
             column.label(text=f"{len(values)} values: {', '.join(values)}"[:90])
 
-    def _paths(self):
-        names = [file.name for file in self.files if file.name]
-        if names and self.directory:
-            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
-        path = project_settings.absolute(self.filepath)
-        return [] if path is None else [path]
-
     def _looked_at(self):
-        for path in self._paths():
+        for path in self.paths():
             if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
                 with contextlib.suppress(
                     InputRefused
@@ -202,7 +203,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                 raise InputRefused("the active object is no mesh", advice="make a mesh object active")
             shapes.require_open(item)
             return [_Given(self.name.strip() or item.name, item=item)], []
-        paths = [] if self.empty else self._paths()
+        paths = [] if self.empty else self.paths()
         if not paths:
             return [_Given(self.name.strip() or "surface")], []
         found, warnings = [], []
@@ -258,7 +259,7 @@ def _read(surface, unit):
     given = PointFile(surface.path, **surface.reading)
     try:
         given.check()
-    except ReadingError as error:
+    except OptionRefused as error:
         raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
         surface.places, warnings = read_point_file(given, unit)
@@ -301,21 +302,9 @@ def arrived(context, rock, places, read=None):
     live.touch(scene)
 
 
-CLASSES = (REALMODEL_OT_surface_add,)
-
-
-if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
-
-    class REALMODEL_FH_surfaces(bpy.types.FileHandler):
-        """Tables, meshes, grids, and maps that are dropped into the viewport become surfaces"""
-
-        bl_idname = "REALMODEL_FH_surfaces"
-        bl_label = "RealModel surfaces"
-        bl_import_operator = "realmodel.surface_add"
-        bl_file_extensions = ";".join((*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS))
-
-        @classmethod
-        def poll_drop(cls, context):
-            return context.area is not None and context.area.type == "VIEW_3D"
-
-    CLASSES = (*CLASSES, REALMODEL_FH_surfaces)
+REALMODEL_FH_surfaces = drop_handler(
+    "REALMODEL_FH_surfaces",
+    "Tables, meshes, grids, and maps that are dropped into the viewport become surfaces",
+    "RealModel surfaces",
+    ("realmodel.surface_add", _ENDINGS),
+)

@@ -27,7 +27,6 @@ class REALMODEL_OT_check_quality(Reporting, bpy.types.Operator):
     """Check how well the active surface fits its points: estimate each point from the others, and measure the
     triangles"""
 
-    bl_idname = "realmodel.check_quality"
     bl_label = "Check Quality"
     bl_options = {"REGISTER"}
     needs = (a_surface, a_model, not_building)
@@ -45,7 +44,6 @@ class REALMODEL_OT_check_quality(Reporting, bpy.types.Operator):
 class REALMODEL_OT_stop_check(Reporting, bpy.types.Operator):
     """Stop checking the quality of a surface"""
 
-    bl_idname = "realmodel.stop_check"
     bl_label = "Cancel"
     bl_options = {"REGISTER", "INTERNAL"}
     needs = (_checking,)
@@ -57,7 +55,6 @@ class REALMODEL_OT_stop_check(Reporting, bpy.types.Operator):
 class REALMODEL_OT_save_chart(Exporting, bpy.types.Operator):
     """Save a chart of the active surface as a picture"""
 
-    bl_idname = "realmodel.save_chart"
     bl_label = "Save Chart"
     needs = (a_surface, _a_result)
 
@@ -76,7 +73,6 @@ class REALMODEL_OT_save_chart(Exporting, bpy.types.Operator):
 class REALMODEL_OT_cursor_to_point(Reporting, bpy.types.Operator):
     """Move the 3D cursor to a point of the active surface, one of those with the largest errors"""
 
-    bl_idname = "realmodel.cursor_to_point"
     bl_label = "Cursor to Point"
     needs = (a_surface, _a_result)
 
@@ -89,14 +85,6 @@ class REALMODEL_OT_cursor_to_point(Reporting, bpy.types.Operator):
             raise UsageError(f"there is no point {self.index}")
         place = result.points[worst[self.index]] - project_settings.model_origin(context.scene)
         context.scene.cursor.location = place
-
-
-CLASSES = (
-    REALMODEL_OT_check_quality,
-    REALMODEL_OT_stop_check,
-    REALMODEL_OT_save_chart,
-    REALMODEL_OT_cursor_to_point,
-)
 
 
 def unregister():

@@ -8,13 +8,12 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from ..bl import display, library_rows, live, looks, properties_of_blocks, settings
 from ..core import Property, load_library
 from ..core.project.project_writer import save_library
-from .reporting import Reporting, a_library, chosen_path, selected_blocks
+from .reporting import Reporting, a_library, chosen_path, file_filter, selected_blocks
 
 
 class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
     """Add a property to the library"""
 
-    bl_idname = "realmodel.library_add"
     bl_label = "Add Property"
 
     name: StringProperty(name="Name", description="Name of the rock", default="New property")
@@ -31,7 +30,6 @@ class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
 class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
     """Remove the active property from the library, and from the surfaces that have it"""
 
-    bl_idname = "realmodel.library_remove"
     bl_label = "Remove Property"
     needs = (a_library,)
 
@@ -53,11 +51,10 @@ class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
     """Import properties from a library file (TOML); they replace those with the same ID"""
 
-    bl_idname = "realmodel.library_import"
     bl_label = "Import Library"
 
     filename_ext = ".toml"
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml")
     replace: BoolProperty(name="Replace", description="Remove all properties of the library first")
 
     def act(self, context):
@@ -78,13 +75,12 @@ class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
 class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
     """Export the library to a file (TOML)"""
 
-    bl_idname = "realmodel.library_export"
     bl_label = "Export Library"
     bl_options = {"REGISTER"}
     needs = (a_library,)
 
     filename_ext = ".toml"
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml")
 
     def act(self, context):
         library = library_rows.library_of(context.scene)
@@ -96,7 +92,6 @@ class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
 class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
     """Assign the active property of the library to the selected blocks and the surfaces above them"""
 
-    bl_idname = "realmodel.assign_property"
     bl_label = "Assign to Selected Blocks"
     needs = (a_library, selected_blocks)
 
@@ -107,12 +102,3 @@ class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
         rows = [row for row in group.results if row.object in selected]
         properties_of_blocks.assign(context.scene, rows, entry.id)
         self.report({"INFO"}, f"{entry.name}: {', '.join(row.name for row in rows)}")
-
-
-CLASSES = (
-    REALMODEL_OT_library_add,
-    REALMODEL_OT_library_remove,
-    REALMODEL_OT_library_import,
-    REALMODEL_OT_library_export,
-    REALMODEL_OT_assign_property,
-)

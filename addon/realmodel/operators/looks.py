@@ -14,7 +14,6 @@ from .reporting import Reporting, a_library, a_model
 class REALMODEL_OT_rock_looks(Reporting, bpy.types.Operator):
     """Give the materials of the library's rocks a look: procedural textures that follow the layers"""
 
-    bl_idname = "realmodel.rock_looks"
     bl_label = "Rock Looks"
     needs = (a_library,)
 
@@ -63,7 +62,6 @@ def _blocks(context):
 class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
     """Weather the selected blocks, or all, for pictures: a modifier on top of the exact blocks"""
 
-    bl_idname = "realmodel.weathering"
     bl_label = "Weathering"
     needs = (a_model,)
 
@@ -126,7 +124,6 @@ class REALMODEL_OT_weathering(Reporting, bpy.types.Operator):
 class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
     """Remove the weathering of the selected blocks, or of all"""
 
-    bl_idname = "realmodel.weathering_remove"
     bl_label = "Remove Weathering"
     needs = (a_model,)
 
@@ -140,7 +137,6 @@ class REALMODEL_OT_weathering_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
     """Make an asset library of the looks and add it to the preferences: materials to drag onto any object"""
 
-    bl_idname = "realmodel.install_looks"
     bl_label = "Install Rock Looks"
     bl_options = {"REGISTER"}
 
@@ -156,11 +152,3 @@ class REALMODEL_OT_install_looks(Reporting, bpy.types.Operator):
         look_assets.write(folder)
         look_assets.register(folder)
         self.report({"INFO"}, f"The asset library '{look_assets.LIBRARY}' is in {folder}")
-
-
-CLASSES = (
-    REALMODEL_OT_rock_looks,
-    REALMODEL_OT_weathering,
-    REALMODEL_OT_weathering_remove,
-    REALMODEL_OT_install_looks,
-)

@@ -16,7 +16,6 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
     """Choose another origin so that a model far from the zero of the scene stands near it. Your objects that
     it is made from move with it; all model coordinates stay. A built model is built again"""
 
-    bl_idname = "realmodel.move_to_zero"
     bl_label = "Move Model to Scene's Zero"
     needs = (any_surface, not_building)
 
@@ -63,6 +62,3 @@ def _top(item):
     while item.parent is not None and exaggeration.KEY not in item.parent:
         item = item.parent
     return item
-
-
-CLASSES = (REALMODEL_OT_move_to_zero,)

@@ -20,7 +20,6 @@ class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
     """Add a camera, sun, sky and ground for the model and choose the renderer, so that Render Image (F12)
     gives a good picture. Earlier ones of RealModel are replaced, your own cameras and lights stay"""
 
-    bl_idname = "realmodel.set_up_picture"
     bl_label = "Light and Camera"
     needs = (a_model,)
 
@@ -67,7 +66,6 @@ class REALMODEL_OT_turntable(Reporting, bpy.types.Operator):
     """Set up light and camera, and have the camera go around the model once. Render Animation (Ctrl-F12)
     writes it; an earlier turntable is replaced"""
 
-    bl_idname = "realmodel.turntable"
     bl_label = "Turntable"
     needs = (a_model,)
 
@@ -94,7 +92,6 @@ class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
     """Set keyframes of the stage from the oldest rock to the whole model. Keyframes that the stage has are
     replaced"""
 
-    bl_idname = "realmodel.animate_stages"
     bl_label = "Animate Stages"
     needs = (a_model,)
 
@@ -111,7 +108,6 @@ class REALMODEL_OT_animate_stages(Reporting, bpy.types.Operator):
 class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
     """Render the model with its camera; where the scene has none, set up light and camera first"""
 
-    bl_idname = "realmodel.render_picture"
     bl_label = "Render Picture"
     needs = (a_model,)
 
@@ -120,11 +116,3 @@ class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
             bpy.ops.realmodel.set_up_picture()
         how = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"  # with a window it stays alive
         bpy.ops.render.render(how)
-
-
-CLASSES = (
-    REALMODEL_OT_set_up_picture,
-    REALMODEL_OT_turntable,
-    REALMODEL_OT_animate_stages,
-    REALMODEL_OT_render_picture,
-)

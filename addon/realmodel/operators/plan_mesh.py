@@ -13,6 +13,7 @@ from .reporting import (
     a_rock,
     an_outline_object,
     chosen_path,
+    file_filter,
     remove_row,
     require_file,
     row_number,
@@ -22,7 +23,6 @@ from .reporting import (
 class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
     """Add smaller triangles: along the outline, or at the active curve or mesh object"""
 
-    bl_idname = "realmodel.size_add"
     bl_label = "Add Smaller Triangles"
     needs = (a_rock,)
 
@@ -39,7 +39,6 @@ class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
 class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
     """Remove the smaller triangles there"""
 
-    bl_idname = "realmodel.size_remove"
     bl_label = "Remove Smaller Triangles"
     needs = (a_rock,)
 
@@ -53,7 +52,6 @@ class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
     """Add the edges of the active curve or mesh object to the mesh, such as a river or a fault trace"""
 
-    bl_idname = "realmodel.constraint_add"
     bl_label = "Add Constraint"
     needs = (a_rock, an_outline_object)
 
@@ -67,7 +65,6 @@ class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
 class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
     """Remove a constraint from the mesh; its object stays in the scene"""
 
-    bl_idname = "realmodel.constraint_remove"
     bl_label = "Remove Constraint"
     needs = (a_rock,)
 
@@ -87,14 +84,11 @@ class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
     """Read lines and points that the mesh must contain from a file (GeoJSON, WKT, shapefile, GeoPackage)"""
 
-    bl_idname = "realmodel.constraint_read"
     bl_label = "Read Constraints"
     needs = (a_rock,)
 
     filename_ext = ""
-    filter_glob: bpy.props.StringProperty(
-        default=";".join(f"*{ending}" for ending in (*MAP_ENDINGS, ".txt")), options={"HIDDEN"}
-    )
+    filter_glob: file_filter(*MAP_ENDINGS, ".txt")
 
     def act(self, context):
         rock = settings.active_rock(context.scene)
@@ -107,12 +101,3 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
 
     def check(self, _context):
         return False  # a file of any ending
-
-
-CLASSES = (
-    REALMODEL_OT_size_add,
-    REALMODEL_OT_size_remove,
-    REALMODEL_OT_constraint_add,
-    REALMODEL_OT_constraint_remove,
-    REALMODEL_OT_constraint_read,
-)

@@ -6,7 +6,7 @@ sentence. Blender shows it at the grayed-out button; in a script it is the text 
 looked at whenever the panel is drawn, so they read nothing but the scene.
 """
 
-from bpy.props import FloatVectorProperty, IntProperty
+from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
 from ..bl import build_job, project_settings, settings, viewports
 from ..bl.display import cuts
@@ -19,6 +19,10 @@ class Reporting:
 
     bl_options = {"REGISTER", "UNDO"}
     needs = ()
+
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        cls.bl_idname = f"realmodel.{cls.__name__.removeprefix('REALMODEL_OT_')}"
 
     @classmethod
     def poll(cls, context):
@@ -162,6 +166,10 @@ def chosen_path(operator, what):
     if not operator.filepath.strip():
         raise InputRefused(f"no file for {what} was given", advice="choose a file name")
     return project_settings.absolute(operator.filepath)
+
+
+def file_filter(*endings):
+    return StringProperty(default=";".join(f"*{ending}" for ending in endings), options={"HIDDEN"})
 
 
 def require_file(path):

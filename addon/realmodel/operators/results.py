@@ -10,7 +10,6 @@ from .reporting import Reporting, a_model
 class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
     """Copy the table of blocks to the clipboard, to be pasted into a spreadsheet"""
 
-    bl_idname = "realmodel.copy_table"
     bl_label = "Copy Table"
     bl_options = {"REGISTER"}
     needs = (a_model,)
@@ -18,6 +17,3 @@ class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
     def act(self, context):
         context.window_manager.clipboard = results.as_text(context.scene, "\t")
         self.report({"INFO"}, f"Copied {len(context.scene.realmodel.results)} rows")
-
-
-CLASSES = (REALMODEL_OT_copy_table,)

@@ -14,7 +14,6 @@ from .reporting import Reporting, a_rock
 class REALMODEL_OT_rock_add(Reporting, bpy.types.Operator):
     """Add a rock mass: a region in plan with surfaces of its own"""
 
-    bl_idname = "realmodel.rock_add"
     bl_label = "Add Rock Mass"
 
     def act(self, context):
@@ -38,7 +37,6 @@ def add_rock(scene):
 class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
     """Remove the active rock mass with its surfaces and blocks; meshes that you brought stay in the scene"""
 
-    bl_idname = "realmodel.rock_remove"
     bl_label = "Remove Rock Mass"
     needs = (a_rock,)
 
@@ -56,7 +54,6 @@ class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_rock_copy(Reporting, bpy.types.Operator):
     """Add a copy of the active rock mass: the same region and settings, its surfaces from the same sources"""
 
-    bl_idname = "realmodel.rock_copy"
     bl_label = "Copy Rock Mass"
     needs = (a_rock,)
 
@@ -80,7 +77,6 @@ class REALMODEL_OT_rock_copy(Reporting, bpy.types.Operator):
 class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
     """Draw the region of the rock mass around the points of its surfaces, as a curve that you can edit"""
 
-    bl_idname = "realmodel.region_around"
     bl_label = "Region Around Points"
     needs = (a_rock,)
 
@@ -138,11 +134,3 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
             )
         row.region = shapes.new_outline(scene, f"{row.name} region", corners, low[2])
         self.report({"INFO"}, f"{row.region.name}: a curve, which you can edit")
-
-
-CLASSES = (
-    REALMODEL_OT_region_around,
-    REALMODEL_OT_rock_add,
-    REALMODEL_OT_rock_remove,
-    REALMODEL_OT_rock_copy,
-)

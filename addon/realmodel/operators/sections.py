@@ -76,7 +76,6 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     """Make an exact section of the model as a mesh object in the materials of its layers, where the section
     plane is unless a location is given"""
 
-    bl_idname = "realmodel.section"
     bl_label = "Make Section"
     needs = (a_model,)
 
@@ -96,7 +95,6 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
 class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
     """Make vertical sections of the model along the active curve, or a mesh of edges, as a mesh object"""
 
-    bl_idname = "realmodel.fence"
     bl_label = "Make Fence"
     needs = (a_model, an_outline_object)
 
@@ -111,7 +109,6 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
 class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     """Save a section as a drawing with axes, legend, and scale, or as polygons"""
 
-    bl_idname = "realmodel.save_section"
     bl_label = "Save Section"
     needs = (a_model,)
 
@@ -163,7 +160,6 @@ class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
     """Cut the model open along a plane that you can move, turn and keyframe as any object"""
 
-    bl_idname = "realmodel.section_plane"
     bl_label = "Section Plane"
     needs = (a_model,)
 
@@ -197,7 +193,6 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
 class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
     """Flip the section plane, so that the cut removes the other side"""
 
-    bl_idname = "realmodel.section_flip"
     bl_label = "Flip Section Plane"
     needs = (a_section_plane,)
 
@@ -218,7 +213,6 @@ def _a_cut(context):
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
     """Cut the model along the section plane now: for scripts, which do not wait for the pause"""
 
-    bl_idname = "realmodel.section_update"
     bl_label = "Cut at Section Plane"
     needs = (a_model, _a_cut)
 
@@ -230,21 +224,9 @@ class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
 class REALMODEL_OT_section_remove(Reporting, bpy.types.Operator):
     """Remove the section plane; the model is whole again"""
 
-    bl_idname = "realmodel.section_remove"
     bl_label = "Remove Section Plane"
     needs = (a_section_plane,)
 
     def act(self, context):
         cuts.remove_plane(context.scene)
         display.section_changed(context.scene)
-
-
-CLASSES = (
-    REALMODEL_OT_section,
-    REALMODEL_OT_fence,
-    REALMODEL_OT_save_section,
-    REALMODEL_OT_section_plane,
-    REALMODEL_OT_section_flip,
-    REALMODEL_OT_section_update,
-    REALMODEL_OT_section_remove,
-)

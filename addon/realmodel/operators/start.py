@@ -29,7 +29,8 @@ from ..bl.threads import threads
 from ..core import BuildFailed, Model, load_project
 from ..core.project.project_writer import save_project
 from ..core.surfaces.prepare import with_arrays
-from .reporting import Reporting, any_surface, chosen_path, not_building, selected_meshes
+from ..registration import drop_handler
+from .reporting import Reporting, any_surface, chosen_path, file_filter, not_building, selected_meshes
 
 _MODEL_ENDING = ".npz"
 
@@ -89,7 +90,6 @@ class Replacing(Reporting):
 class REALMODEL_OT_new(Replacing, bpy.types.Operator):
     """Begin an empty model in this scene. The blocks of an earlier one are removed, your own meshes stay"""
 
-    bl_idname = "realmodel.new"
     bl_label = "New Model"
 
     def act(self, context):
@@ -103,7 +103,6 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     """Open a RealModel project file (TOML), or a model that was built (NPZ), in this scene, in place of the
     model that is there"""
 
-    bl_idname = "realmodel.open_project"
     bl_label = "Open RealModel Project"
 
     _browses = False
@@ -116,7 +115,7 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
-    filter_glob: StringProperty(default="*.toml;*.npz", options={"HIDDEN"})
+    filter_glob: file_filter(".toml", _MODEL_ENDING)
 
     build: BoolProperty(
         name="Build",
@@ -183,7 +182,6 @@ def _open_model(context, path):
 class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
     """Open one of the examples that come with RealModel, and build it"""
 
-    bl_idname = "realmodel.open_sample"
     bl_label = "Open Example"
 
     sample: EnumProperty(name="Example", description="Which of them", items=samples.enum_items)
@@ -206,12 +204,11 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
     """Save the model as a project file (TOML) with its library, meshes and points beside it: build_model.py
     builds the same model from it"""
 
-    bl_idname = "realmodel.save_project"
     bl_label = "Save RealModel Project"
     needs = (any_surface,)
 
     filename_ext = ".toml"
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml")
 
     def act(self, context):
         path = chosen_path(self, "the project")
@@ -230,7 +227,6 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
     """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
 
-    bl_idname = "realmodel.from_selected"
     bl_label = "Model from Selected Meshes"
     needs = (not_building, selected_meshes)
 
@@ -290,27 +286,9 @@ def _base_below(heights):
     return math.floor((low - below) / step) * step
 
 
-CLASSES = (
-    REALMODEL_OT_new,
-    REALMODEL_OT_open_project,
-    REALMODEL_OT_open_sample,
-    REALMODEL_OT_save_project,
-    REALMODEL_OT_from_selected,
+REALMODEL_FH_project = drop_handler(
+    "REALMODEL_FH_project",
+    "A project file, or a model, that is dropped into the viewport is opened",
+    "RealModel project",
+    ("realmodel.open_project", (".toml", _MODEL_ENDING)),
 )
-
-
-if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
-
-    class REALMODEL_FH_project(bpy.types.FileHandler):
-        """A project file, or a model, that is dropped into the viewport is opened"""
-
-        bl_idname = "REALMODEL_FH_project"
-        bl_label = "RealModel project"
-        bl_import_operator = "realmodel.open_project"
-        bl_file_extensions = f".toml;{_MODEL_ENDING}"
-
-        @classmethod
-        def poll_drop(cls, context):
-            return context.area is not None and context.area.type == "VIEW_3D"
-
-    CLASSES = (*CLASSES, REALMODEL_FH_project)

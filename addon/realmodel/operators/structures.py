@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The lists of faults and of bodies."""
 
-import os
-
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, CollectionProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
+from ..bl import built_scene, data_objects, library_rows, live, settings, shapes
 from ..core import InputRefused, MapLayer, MeshFile
 from ..core.base.errors import HeightsMissing
 from ..core.base.triangles import open_edges
@@ -16,12 +14,14 @@ from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_fil
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.settings.point_file import PointFile
 from ..core.structures.shapes.traces import VERTICAL
-from .imports import arrived
+from ..registration import drop_handler
+from .imports import FilesImportHelper, arrived
 from .reporting import (
     Reporting,
     a_body,
     a_fault,
     a_structure,
+    file_filter,
     remove_row,
     require_file,
     row_number,
@@ -94,7 +94,6 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
     """Add the selected objects: a closed mesh as a body, an open one as a fault, and a curve or a mesh of
     edges as the trace of a vertical fault, whose dip can be set then"""
 
-    bl_idname = "realmodel.fault_body_from_selected"
     bl_label = "From Selected Meshes"
     needs = (selected_shapes,)
 
@@ -132,11 +131,10 @@ class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
         return "fault", "TRACE_OBJECT"
 
 
-class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
+class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelper):
     """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...), fault sticks and points, through
     which a surface is fitted, or lines of a map, which continue down their dip"""
 
-    bl_idname = "realmodel.fault_body_add"
     bl_label = "Import Faults and Bodies"
 
     filepath: StringProperty(
@@ -145,20 +143,14 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
-    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
-    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     kind: EnumProperty(name="Kind", description="What they are", items=_KINDS, options={"SKIP_SAVE"})
     empty: BoolProperty(
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
-    filter_glob: StringProperty(
-        default=";".join(f"*{e}" for e in (*MESH_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)),
-        options={"HIDDEN"},
-    )
-    filename_ext = ""
+    filter_glob: file_filter(*MESH_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)
 
     def invoke(self, context, event):
-        if self.empty or self._paths():  # with a path, as of a dropped file, no file browser opens
+        if self.empty or self.paths():
             return self.execute(context)
         return ImportHelper.invoke(self, context, event)
 
@@ -171,7 +163,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             kind = scene.realmodel.structure_kind.lower() if self.kind == "AUTO" else self.kind.lower()
             _add(scene, kind, kind, "MESH_OBJECT")
             return
-        found = [self._looked_at(path, scene.realmodel.units) for path in self._paths()]
+        found = [self._looked_at(path, scene.realmodel.units) for path in self.paths()]
         if not found:
             raise InputRefused("no file was given", advice="choose a file")
         for kind, source, path, places in found:
@@ -182,13 +174,6 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
         of_data = ("POINTS_FILE", "TRACE_FILE")
         arrived(context, None, [places for _, source, _, places in found if source in of_data])
         self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
-
-    def _paths(self):
-        names = [file.name for file in self.files if file.name]
-        if names and self.directory:
-            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
-        path = project_settings.absolute(self.filepath)
-        return [] if path is None else [path]
 
     def _looked_at(self, path, units):
         """(kind, source, path, vertices or points) of a file. Raises InputRefused."""
@@ -214,7 +199,6 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
 class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
     """Remove the active fault or body; a mesh that you brought stays in the scene"""
 
-    bl_idname = "realmodel.fault_body_remove"
     bl_label = "Remove Fault or Body"
     needs = (a_structure,)
 
@@ -239,7 +223,6 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
     """Add a copy of the active fault or body just below it in the list, from the same source"""
 
-    bl_idname = "realmodel.fault_body_copy"
     bl_label = "Copy Fault or Body"
     needs = (a_structure,)
 
@@ -263,7 +246,6 @@ class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
 class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
     """Move the active fault or body in its list; of bodies that overlap the later one counts"""
 
-    bl_idname = "realmodel.fault_body_move"
     bl_label = "Move Fault or Body"
     needs = (a_structure,)
 
@@ -289,7 +271,6 @@ class REALMODEL_OT_fault_body_hide(Reporting, bpy.types.Operator):
     """Hide the surface of the active fault or body in the viewport, or show it again; it is built all the
     same"""
 
-    bl_idname = "realmodel.fault_body_hide"
     bl_label = "Hide or Show Fault or Body"
     needs = (a_structure,)
 
@@ -301,7 +282,6 @@ class REALMODEL_OT_fault_body_hide(Reporting, bpy.types.Operator):
 class REALMODEL_OT_fault_body_edit(Reporting, bpy.types.Operator):
     """Edit the surface of the active fault or body: show the blocks with it and enter Edit Mode"""
 
-    bl_idname = "realmodel.fault_body_edit"
     bl_label = "Edit Fault or Body"
     needs = (a_structure, _its_surface)
 
@@ -312,7 +292,6 @@ class REALMODEL_OT_fault_body_edit(Reporting, bpy.types.Operator):
 class REALMODEL_OT_body_property(Reporting, bpy.types.Operator):
     """Choose the property of the active body from the library"""
 
-    bl_idname = "realmodel.body_property"
     bl_label = "Property of the Body"
     needs = (a_body,)
 
@@ -331,7 +310,6 @@ _LISTS = (
 class REALMODEL_OT_fault_list_add(Reporting, bpy.types.Operator):
     """Add a row for a fault at which the active one ends, or for a rock mass that it displaces"""
 
-    bl_idname = "realmodel.fault_list_add"
     bl_label = "Add"
     needs = (a_fault,)
 
@@ -344,7 +322,6 @@ class REALMODEL_OT_fault_list_add(Reporting, bpy.types.Operator):
 class REALMODEL_OT_fault_list_remove(Reporting, bpy.types.Operator):
     """Remove a row from the faults at which the active one ends, or from its rock masses"""
 
-    bl_idname = "realmodel.fault_list_remove"
     bl_label = "Remove"
     needs = (a_fault,)
 
@@ -357,32 +334,9 @@ class REALMODEL_OT_fault_list_remove(Reporting, bpy.types.Operator):
         live.touch(context.scene)
 
 
-CLASSES = (
-    REALMODEL_OT_fault_body_from_selected,
-    REALMODEL_OT_fault_body_add,
-    REALMODEL_OT_fault_body_remove,
-    REALMODEL_OT_fault_body_copy,
-    REALMODEL_OT_fault_body_move,
-    REALMODEL_OT_fault_body_hide,
-    REALMODEL_OT_fault_body_edit,
-    REALMODEL_OT_body_property,
-    REALMODEL_OT_fault_list_add,
-    REALMODEL_OT_fault_list_remove,
+REALMODEL_FH_faults_and_bodies = drop_handler(
+    "REALMODEL_FH_faults_and_bodies",
+    "Meshes and fault sticks that are dropped into the viewport become faults and bodies",
+    "RealModel faults and bodies",
+    ("realmodel.fault_body_add", (*MESH_ENDINGS, *_STICK_ENDINGS)),
 )
-
-
-if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
-
-    class REALMODEL_FH_faults_and_bodies(bpy.types.FileHandler):
-        """Meshes and fault sticks that are dropped into the viewport become faults and bodies"""
-
-        bl_idname = "REALMODEL_FH_faults_and_bodies"
-        bl_label = "RealModel faults and bodies"
-        bl_import_operator = "realmodel.fault_body_add"
-        bl_file_extensions = ";".join((*MESH_ENDINGS, *_STICK_ENDINGS))
-
-        @classmethod
-        def poll_drop(cls, context):
-            return context.area is not None and context.area.type == "VIEW_3D"
-
-    CLASSES = (*CLASSES, REALMODEL_FH_faults_and_bodies)

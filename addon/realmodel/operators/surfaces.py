@@ -12,7 +12,6 @@ from .reporting import Reporting, a_surface
 class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
     """Remove the active surface; a mesh that you brought stays in the scene"""
 
-    bl_idname = "realmodel.surface_remove"
     bl_label = "Remove Surface"
     needs = (a_surface,)
 
@@ -32,7 +31,6 @@ class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
 class REALMODEL_OT_surface_copy(Reporting, bpy.types.Operator):
     """Add a copy of the active surface just above it, from the same source"""
 
-    bl_idname = "realmodel.surface_copy"
     bl_label = "Copy Surface"
     needs = (a_surface,)
 
@@ -55,7 +53,6 @@ class REALMODEL_OT_surface_copy(Reporting, bpy.types.Operator):
 class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
     """Make the active surface younger (up) or older (down)"""
 
-    bl_idname = "realmodel.surface_move"
     bl_label = "Move Surface"
     needs = (a_surface,)
 
@@ -84,7 +81,6 @@ class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
     """Sort the surfaces of the rock mass by age, as their points show it: the older one is the lower one at
     the same places. Where points do not decide, by name"""
 
-    bl_idname = "realmodel.surface_sort"
     bl_label = "Sort Surfaces"
     needs = (a_surface,)
 
@@ -111,7 +107,6 @@ class REALMODEL_OT_surface_sort(Reporting, bpy.types.Operator):
 class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):
     """Hide the active surface's interface in the viewport, or show it again; it is built all the same"""
 
-    bl_idname = "realmodel.surface_hide"
     bl_label = "Hide or Show Surface"
     needs = (a_surface,)
 
@@ -136,7 +131,6 @@ def library_items(_operator, context):
 class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
     """Choose the property of the rock beneath the active surface from the library"""
 
-    bl_idname = "realmodel.surface_property"
     bl_label = "Property of the Surface"
     needs = (a_surface,)
 
@@ -144,13 +138,3 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
 
     def act(self, context):
         settings.active_surface(context.scene).property_id = int(self.property_id)
-
-
-CLASSES = (
-    REALMODEL_OT_surface_remove,
-    REALMODEL_OT_surface_copy,
-    REALMODEL_OT_surface_move,
-    REALMODEL_OT_surface_sort,
-    REALMODEL_OT_surface_hide,
-    REALMODEL_OT_surface_property,
-)

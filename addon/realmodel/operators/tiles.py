@@ -2,23 +2,22 @@
 """A model in tiles in Blender: all of it coarsened, or chosen tiles as they are."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, IntProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import tile_objects
 from ..core import InputRefused, open_tiles
-from .reporting import Reporting, chosen_path
+from .reporting import Reporting, chosen_path, file_filter
 
 
 class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
     """Read a model that was built in tiles: all of it with coarse blocks, or some of its tiles as they are.
     The model of this scene stays"""
 
-    bl_idname = "realmodel.tiles_read"
     bl_label = "Import Tiles"
 
     filename_ext = ".toml"
-    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    filter_glob: file_filter(".toml")
     what: EnumProperty(
         name="Read",
         description="Part of the model to import",
@@ -78,6 +77,3 @@ class REALMODEL_OT_tiles_read(Reporting, bpy.types.Operator, ImportHelper):
                 advice="they are counted from 0",
             )
         return found
-
-
-CLASSES = (REALMODEL_OT_tiles_read,)

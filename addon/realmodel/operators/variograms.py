@@ -12,7 +12,6 @@ from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
     """Add a structure to the variogram of the active surface: structures of several ranges make it nested"""
 
-    bl_idname = "realmodel.structure_add"
     bl_label = "Add Structure"
     needs = (a_surface,)
 
@@ -40,7 +39,6 @@ def _take_single(surface):
 class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
     """Remove a structure from the variogram of the active surface"""
 
-    bl_idname = "realmodel.structure_remove"
     bl_label = "Remove Structure"
     needs = (a_surface,)
 
@@ -69,7 +67,6 @@ def _filtered(context, of_fault):
 class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
     """Read only the rows of the file that have a value in a column; values of one column are alternatives"""
 
-    bl_idname = "realmodel.filter_add"
     bl_label = "Add Filter"
     needs = (_a_file,)
 
@@ -82,7 +79,6 @@ class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
 class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
     """Remove a filter from the active surface, or fault"""
 
-    bl_idname = "realmodel.filter_remove"
     bl_label = "Remove Filter"
     needs = (_a_file,)
 
@@ -93,11 +89,3 @@ class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
         surface = _filtered(context, self.of_fault)
         remove_row(surface.filters, self.index, "filter")
         changes.reading(surface, context)
-
-
-CLASSES = (
-    REALMODEL_OT_structure_add,
-    REALMODEL_OT_structure_remove,
-    REALMODEL_OT_filter_add,
-    REALMODEL_OT_filter_remove,
-)

@@ -2,7 +2,7 @@
 """Operators of the view: standard views, capture, coordinates, hiding blocks by their property."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, IntProperty
 from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
@@ -17,6 +17,7 @@ from .reporting import (
     an_edit,
     an_interface,
     chosen_path,
+    file_filter,
     place_property,
 )
 
@@ -33,7 +34,6 @@ _LOOKING = {
 class REALMODEL_OT_view(Reporting, bpy.types.Operator):
     """Look at the whole model along an axis, without perspective"""
 
-    bl_idname = "realmodel.view"
     bl_label = "Look at Model"
     bl_options = {"REGISTER"}
     needs = (a_viewport,)
@@ -55,7 +55,6 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
 class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
     """Go back to the previous view of the viewports"""
 
-    bl_idname = "realmodel.view_previous"
     bl_label = "Previous View"
     bl_options = {"REGISTER"}
     needs = (a_viewport,)
@@ -67,7 +66,6 @@ class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
 class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
     """Go forth to the next view of the viewports, after Previous View"""
 
-    bl_idname = "realmodel.view_next"
     bl_label = "Next View"
     bl_options = {"REGISTER"}
     needs = (a_viewport,)
@@ -79,7 +77,6 @@ class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
 class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
     """Zoom to the whole model, without rotating the view"""
 
-    bl_idname = "realmodel.view_all"
     bl_label = "Frame Model"
     bl_options = {"REGISTER"}
     needs = (a_viewport,)
@@ -91,12 +88,11 @@ class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
 class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
     """Write the 3D viewport as it is seen to a picture (PNG) of any size"""
 
-    bl_idname = "realmodel.capture"
     bl_label = "Capture View"
     bl_options = {"REGISTER"}
 
     filename_ext = ".png"
-    filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
+    filter_glob: file_filter(".png")
     width: IntProperty(
         name="Width",
         description="Width in pixels; 0: that of the viewport",
@@ -133,7 +129,6 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
 class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
     """Edit the interface of the active surface: show the blocks with it and enter Edit Mode"""
 
-    bl_idname = "realmodel.edit_surface"
     bl_label = "Edit Surface"
     needs = (a_surface, an_interface)
 
@@ -155,7 +150,6 @@ def edit_interface(context, item):
 class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):
     """Leave Edit Mode and show the surfaces again"""
 
-    bl_idname = "realmodel.edit_done"
     bl_label = "Done"
     needs = (an_edit,)
 
@@ -168,7 +162,6 @@ class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):
 class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
     """Hide the blocks of a property, or show them again; renders follow"""
 
-    bl_idname = "realmodel.hide_property"
     bl_label = "Hide or Show Blocks by Property"
     needs = (a_model,)
 
@@ -210,7 +203,6 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
     """Show the coordinates of the model, its block, property and thickness: under the mouse until you click,
     or at the 3D cursor"""
 
-    bl_idname = "realmodel.coordinates"
     bl_label = "Coordinates"
     needs = (a_model,)
 
@@ -298,7 +290,6 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
     """Set the point that distances are measured from: the last coordinates, or the 3D cursor. The model
     itself does not move"""
 
-    bl_idname = "realmodel.set_origin"
     bl_label = "Set Origin"
 
     action: EnumProperty(
@@ -323,17 +314,3 @@ class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
             if place is None:
                 raise InputRefused("no coordinates were asked for yet", advice="use Coordinates first")
             coordinates.set_zero(scene, (place.x, place.y, place.z))
-
-
-CLASSES = (
-    REALMODEL_OT_view,
-    REALMODEL_OT_view_previous,
-    REALMODEL_OT_view_next,
-    REALMODEL_OT_view_all,
-    REALMODEL_OT_capture,
-    REALMODEL_OT_edit_surface,
-    REALMODEL_OT_edit_done,
-    REALMODEL_OT_hide_property,
-    REALMODEL_OT_coordinates,
-    REALMODEL_OT_set_origin,
-)

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl.boolean_job import OPERATIONS
-from .panel import TabPanel, hint
+from .panel import FoldedPanel, hint
 
 _ICONS = {
     "UNION": "SELECT_EXTEND",
@@ -14,11 +14,9 @@ _ICONS = {
 }
 
 
-class REALMODEL_PT_booleans(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_booleans(FoldedPanel, bpy.types.Panel):
     bl_label = "Booleans"
-    bl_idname = "REALMODEL_PT_booleans"
     bl_order = 8
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, _group):
         if len(context.selected_objects) < 2:
@@ -26,6 +24,3 @@ class REALMODEL_PT_booleans(TabPanel, bpy.types.Panel):
         grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
         for operation, name, *_ in OPERATIONS:
             grid.operator("realmodel.boolean", text=name, icon=_ICONS[operation]).operation = operation
-
-
-CLASSES = (REALMODEL_PT_booleans,)

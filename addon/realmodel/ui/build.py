@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import method_settings, notices, problems, settings
-from .panel import OfAModel, TabPanel, hint, letters, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, hint, letters, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
 _ICON = 5  # letters that are as wide as an icon and the border of a box
@@ -12,7 +12,6 @@ _ICON = 5  # letters that are as wide as an icon and the border of a box
 
 class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Build"
-    bl_idname = "REALMODEL_PT_build"
     bl_order = 1
 
     def draw_in(self, layout, context, group):
@@ -36,11 +35,9 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             _draw_warnings(layout.box(), group, activity)
 
 
-class REALMODEL_PT_build_options(OfAModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_build_options(OfAModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Options"
-    bl_idname = "REALMODEL_PT_build_options"
     bl_parent_id = "REALMODEL_PT_build"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, _context, group):
         layout.prop(group, "cells")
@@ -99,6 +96,3 @@ def _draw_warnings(box, group, activity):
 
 def _cut(text, most):
     return text if len(text) <= most else f"{text[: most - 3].rstrip()}..."
-
-
-CLASSES = (REALMODEL_PT_build, REALMODEL_PT_build_options)

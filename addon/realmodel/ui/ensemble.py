@@ -8,16 +8,14 @@ import bpy
 from ..bl import units
 from ..bl.display import ensembles
 from ..props_ensemble import slider_of
-from .panel import OfABuiltModel, TabPanel, hint
+from .panel import FoldedPanel, OfABuiltModel, hint, right_label
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 
 
-class REALMODEL_PT_ensemble(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_ensemble(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Ensemble"
-    bl_idname = "REALMODEL_PT_ensemble"
     bl_parent_id = "REALMODEL_PT_results"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         scene, ensemble = context.scene, group.ensemble
@@ -68,14 +66,9 @@ def _row(column, name, texts):
     line.label(text=name)
     cells = line.row()
     for text in texts:
-        cell = cells.row()
-        cell.alignment = "RIGHT"
-        cell.label(text=text)
+        right_label(cells, text)
 
 
 def _short(value):
     """Three digits of a number below 1000."""
     return f"{value:.{0 if value >= 99.95 else 1 if value >= 9.995 else 2}f}"
-
-
-CLASSES = (REALMODEL_PT_ensemble,)

@@ -4,16 +4,14 @@
 import bpy
 
 from ..bl import quality, settings, units
-from .panel import TabPanel, hint, wrapped
+from .panel import FoldedPanel, hint, wrapped
 
 _WORST = 5  # points in the table
 
 
-class REALMODEL_PT_quality(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_quality(FoldedPanel, bpy.types.Panel):
     bl_label = "Quality"
-    bl_idname = "REALMODEL_PT_quality"
     bl_parent_id = "REALMODEL_PT_surfaces"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
@@ -78,6 +76,3 @@ def _draw_worst(layout, scene, result):
         error.alignment = "RIGHT"
         error.label(text=f"{result.errors[point]:+.3g}")
         error.operator("realmodel.cursor_to_point", text="", icon="PIVOT_CURSOR").index = number
-
-
-CLASSES = (REALMODEL_PT_quality,)

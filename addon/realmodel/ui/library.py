@@ -4,14 +4,12 @@
 import bpy
 
 from ..bl import library_rows
-from .panel import TabPanel, hint
+from .panel import FoldedPanel, hint
 
 
-class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_library(FoldedPanel, bpy.types.Panel):
     bl_label = "Library"
-    bl_idname = "REALMODEL_PT_library"
     bl_order = 7
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, _context, group):
         if not len(group.library):
@@ -44,6 +42,3 @@ class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
         line = layout.row(align=True)
         line.operator("realmodel.weathering", icon="MOD_NOISE")
         line.operator("realmodel.weathering_remove", text="", icon="X")
-
-
-CLASSES = (REALMODEL_PT_library,)

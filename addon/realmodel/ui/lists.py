@@ -4,9 +4,17 @@
 import bpy
 
 from ..bl import library_rows, units
+from .panel import right_label
 
 
-class YoungestOnTop:
+class OfRows:
+    """A list whose rows draw themselves by `draw_row(context, row, item)`."""
+
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
+        self.draw_row(context, layout.row(align=True), item)
+
+
+class YoungestOnTop(OfRows):
     """A list of what was deposited one on another, the last row first."""
 
     def filter_items(self, _context, data, name):
@@ -19,20 +27,16 @@ class YoungestOnTop:
         return shown, list(range(len(rows) - 1, -1, -1))
 
 
-class REALMODEL_UL_rocks(bpy.types.UIList):
+class REALMODEL_UL_rocks(OfRows, bpy.types.UIList):
     """Rock masses."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
-        row = layout.row(align=True)
+    def draw_row(self, _context, row, item):
         row.prop(item, "name", text="", emboss=False, icon="OUTLINER_OB_VOLUME")
-        count = row.row()
-        count.alignment = "RIGHT"
-        count.label(text=str(len(item.surfaces)))
+        right_label(row, str(len(item.surfaces)))
 
 
-def draw_swatch(row, context, item):
-    """The color of the property of a surface or a body."""
-    entry = library_rows.find(context.scene, item.property_id)
+def draw_swatch(row, entry):
+    """The color of an entry of the library, if there is one."""
     if entry is not None:
         swatch = row.row()
         swatch.scale_x = 0.3
@@ -42,27 +46,21 @@ def draw_swatch(row, context, item):
 class REALMODEL_UL_surfaces(YoungestOnTop, bpy.types.UIList):
     """Surfaces, the youngest on top, as in the field."""
 
-    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
-        row = layout.row(align=True)
-        draw_swatch(row, context, item)
+    def draw_row(self, context, row, item):
+        draw_swatch(row, library_rows.find(context.scene, item.property_id))
         row.prop(item, "name", text="", emboss=False)
         if item.rule != "erosional":
             row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
 
 
-class REALMODEL_UL_library(bpy.types.UIList):
+class REALMODEL_UL_library(OfRows, bpy.types.UIList):
     """Properties."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
-        row = layout.row(align=True)
-        swatch = row.row()
-        swatch.scale_x = 0.3
-        swatch.prop(item, "color", text="")
+    def draw_row(self, _context, row, item):
+        draw_swatch(row, item)
         row.prop(item, "name", text="", emboss=False)
-        number = row.row()
-        number.alignment = "RIGHT"
-        number.label(text=str(item.id))
+        right_label(row, str(item.id))
 
 
 def result_columns(layout):
@@ -83,11 +81,8 @@ def share_text(row):
 class REALMODEL_UL_results(YoungestOnTop, bpy.types.UIList):
     """Blocks, the youngest on top."""
 
-    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
-        name, volume, share = result_columns(layout)
+    def draw_row(self, context, row, item):
+        name, volume, share = result_columns(row)
         name.label(text=item.name)
         volume.label(text=units.volume_text(context.scene, item) if item.volume else "eroded")
         share.label(text=share_text(item))
-
-
-CLASSES = (REALMODEL_UL_rocks, REALMODEL_UL_surfaces, REALMODEL_UL_library, REALMODEL_UL_results)

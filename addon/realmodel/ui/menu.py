@@ -37,8 +37,6 @@ class _Menu:
 class REALMODEL_MT_add(_Menu, bpy.types.Menu):
     """Begin a model, or add to it"""
 
-    bl_idname = "REALMODEL_MT_add"
-
     def entries(self, context):
         yield "new", None, {}
         for sample, name, *_ in samples.enum_items(None, context):
@@ -58,8 +56,6 @@ class REALMODEL_MT_add(_Menu, bpy.types.Menu):
 
 class REALMODEL_MT_object(_Menu, bpy.types.Menu):
     """Build the model; what can be done with the selected objects"""
-
-    bl_idname = "REALMODEL_MT_object"
 
     def entries(self, _context):
         yield "build", None, {}
@@ -84,8 +80,6 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
 
 class REALMODEL_MT_view(_Menu, bpy.types.Menu):
     """How the model is looked at"""
-
-    bl_idname = "REALMODEL_MT_view"
 
     def entries(self, _context):
         yield "view_all", None, {}
@@ -123,7 +117,7 @@ def _draw(layout, entries):
 def _submenu(cls):
     def draw(self, _context):
         self.layout.separator()
-        self.layout.menu(cls.bl_idname)
+        self.layout.menu(cls.__name__)
 
     return draw
 
@@ -135,7 +129,6 @@ def _flat(entries):
     return draw
 
 
-CLASSES = (REALMODEL_MT_add, REALMODEL_MT_object, REALMODEL_MT_view)
 _IN_BLENDER = (  # its menu, what is drawn at the end of it
     ("VIEW3D_MT_add", _submenu(REALMODEL_MT_add)),
     ("VIEW3D_MT_object", _submenu(REALMODEL_MT_object)),

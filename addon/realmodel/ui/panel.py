@@ -20,6 +20,12 @@ class TabPanel:
         self.draw_in(layout, context, context.scene.realmodel)
 
 
+class FoldedPanel(TabPanel):
+    """A panel that is closed until it is opened."""
+
+    bl_options = {"DEFAULT_CLOSED"}
+
+
 def ui_scale():
     """Pixels per unit of Blender's interface, which has none before its first window is drawn."""
     return bpy.context.preferences.system.ui_scale or 1.0
@@ -41,6 +47,12 @@ class OfABuiltModel:
         return len(context.scene.realmodel.results) > 0
 
 
+def right_label(layout, text):
+    row = layout.row()
+    row.alignment = "RIGHT"
+    row.label(text=text)
+
+
 def file_field(layout, row, key, text=""):
     """A field of a file that shows its name; the icon beside it is of the field with the whole path."""
     path = getattr(row, key)
@@ -48,9 +60,7 @@ def file_field(layout, row, key, text=""):
         layout.prop(row, key, **({"text": text} if text else {}))
         return
     line = layout.split(factor=0.4)
-    label = line.row()
-    label.alignment = "RIGHT"
-    label.label(text=text or row.bl_rna.properties[key].name)
+    right_label(line, text or row.bl_rna.properties[key].name)
     field = line.row(align=True)
     field.label(text=re.split(r"[\\\\/]", path)[-1])
     button = field.row()

@@ -5,12 +5,11 @@ import bpy
 
 from ..bl import compartments, quality, units
 from .lists import result_columns
-from .panel import OfABuiltModel, TabPanel
+from .panel import FoldedPanel, OfABuiltModel, TabPanel, right_label
 
 
 class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Results"
-    bl_idname = "REALMODEL_PT_results"
     bl_order = 3
 
     def draw_in(self, layout, context, group):
@@ -51,11 +50,9 @@ def _block_lines(scene, row):
         yield f"{parts:,} part{'s' * (parts != 1)}{small}, {cells}"
 
 
-class REALMODEL_PT_results_compartments(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_results_compartments(FoldedPanel, bpy.types.Panel):
     bl_label = "Compartments"
-    bl_idname = "REALMODEL_PT_results_compartments"
     bl_parent_id = "REALMODEL_PT_results"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
@@ -86,9 +83,4 @@ def _three(column, name, *values):
     row = column.split(factor=0.4)
     row.label(text=name)
     for value in values:
-        cell = row.row()
-        cell.alignment = "RIGHT"
-        cell.label(text=value)
-
-
-CLASSES = (REALMODEL_PT_results, REALMODEL_PT_results_compartments)
+        right_label(row, value)

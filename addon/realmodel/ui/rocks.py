@@ -6,14 +6,12 @@ import bpy
 from ..bl import method_settings, plan_mesh, region_size, settings
 from ..core.settings.schema import ROCK, SIZE
 from . import setting_rows
-from .panel import OfAModel, TabPanel, file_field, hint
+from .panel import FoldedPanel, OfAModel, file_field, hint
 
 
-class REALMODEL_PT_rocks(OfAModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_rocks(OfAModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Rock Masses"
-    bl_idname = "REALMODEL_PT_rocks"
     bl_order = 6
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         if not len(group.rocks):
@@ -53,11 +51,9 @@ def _draw_density(layout, rock):
     layout.prop(rock, "mesher")
 
 
-class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_rock_mesh(FoldedPanel, bpy.types.Panel):
     bl_label = "Planar Mesh"
-    bl_idname = "REALMODEL_PT_rock_mesh"
     bl_parent_id = "REALMODEL_PT_rocks"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
@@ -95,6 +91,3 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
 def _rounded(count):
     digits = max(0, len(str(int(count))) - 2)
     return round(int(count), -digits)
-
-
-CLASSES = (REALMODEL_PT_rocks, REALMODEL_PT_rock_mesh)

@@ -4,12 +4,11 @@
 import bpy
 
 from ..bl import native
-from .panel import OfAModel, TabPanel, hint, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, hint, wrapped
 
 
 class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
     bl_label = "Start"
-    bl_idname = "REALMODEL_PT_start"
     bl_order = 0
 
     def draw_header_preset(self, _context):
@@ -43,7 +42,6 @@ class REALMODEL_MT_start(bpy.types.Menu):
     """Another model, and this one to a project file"""
 
     bl_label = "Model"
-    bl_idname = "REALMODEL_MT_start"
 
     def draw(self, _context):
         layout = self.layout
@@ -57,11 +55,9 @@ class REALMODEL_MT_start(bpy.types.Menu):
         layout.operator("realmodel.save_project", text="Save Project...", icon="FILE_TICK")
 
 
-class REALMODEL_PT_start_origin(OfAModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_start_origin(OfAModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Units and Origin"
-    bl_idname = "REALMODEL_PT_start_origin"
     bl_parent_id = "REALMODEL_PT_start"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, _context, group):
         layout.prop(group, "units")
@@ -70,6 +66,3 @@ class REALMODEL_PT_start_origin(OfAModel, TabPanel, bpy.types.Panel):
         column.enabled = not len(group.results)
         column.prop(group, "origin")
         layout.operator("realmodel.move_to_zero", icon="EMPTY_AXIS")
-
-
-CLASSES = (REALMODEL_PT_start, REALMODEL_MT_start, REALMODEL_PT_start_origin)

@@ -3,11 +3,11 @@
 
 import bpy
 
-from ..bl import project_settings, settings
+from ..bl import library_rows, project_settings, settings
 from ..core.settings.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
-from .lists import draw_swatch
-from .panel import OfAModel, TabPanel, file_field, hint
+from .lists import OfRows, draw_swatch
+from .panel import FoldedPanel, OfAModel, file_field, hint, right_label
 from .surfaces import draw_figures, draw_filters, draw_property
 
 _EMPTY = {
@@ -18,11 +18,9 @@ _EMPTY = {
 }
 
 
-class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_structures(OfAModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Faults and Bodies"
-    bl_idname = "REALMODEL_PT_structures"
     bl_order = 5
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         kind = group.structure_kind
@@ -99,11 +97,9 @@ def _draw_body(layout, context, body):
     setting_rows.draw(layout, body, "rock", BODY)
 
 
-class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_structure_reading(FoldedPanel, bpy.types.Panel):
     bl_label = "Import Options"
-    bl_idname = "REALMODEL_PT_structure_reading"
     bl_parent_id = "REALMODEL_PT_structures"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
@@ -129,17 +125,14 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
                 setting_rows.draw(layout, entry, key, READING)
 
 
-class REALMODEL_UL_structures(bpy.types.UIList):
+class REALMODEL_UL_structures(OfRows, bpy.types.UIList):
     """Faults, or bodies."""
 
-    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
-        row = layout.row(align=True)
+    def draw_row(self, context, row, item):
         if settings.kind_of(item) == "body" and not item.void:
-            draw_swatch(row, context, item)
+            draw_swatch(row, library_rows.find(context.scene, item.property_id))
         row.prop(item, "name", text="", emboss=False)
-        said = row.row()
-        said.alignment = "RIGHT"
-        said.label(text=_said(item))
+        right_label(row, _said(item))
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
 
 
@@ -148,6 +141,3 @@ def _said(item):
     if settings.kind_of(item) == "body":
         return "void" if item.void else ""
     return "dies out" if item.dies_out else ""
-
-
-CLASSES = (REALMODEL_UL_structures, REALMODEL_PT_structures, REALMODEL_PT_structure_reading)

@@ -8,12 +8,11 @@ from ..core.settings.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.settings.schema import MESH_READING, READING, SURFACE
 from ..core.settings.variogram import VARIOGRAMS
 from . import setting_rows
-from .panel import OfAModel, TabPanel, file_field, hint, wrapped
+from .panel import FoldedPanel, OfAModel, TabPanel, file_field, hint, right_label, wrapped
 
 
 class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Surfaces"
-    bl_idname = "REALMODEL_PT_surfaces"
     bl_order = 4
 
     def draw_in(self, layout, context, _group):
@@ -79,9 +78,7 @@ def draw_property(layout, context, row, operator):
     entry = library_rows.find(context.scene, row.property_id)
     known = f"{entry.name} ({entry.id})" if entry else "None" if not row.property_id else str(row.property_id)
     split = layout.split(factor=0.4)
-    label = split.row()
-    label.alignment = "RIGHT"
-    label.label(text="Property")
+    right_label(split, "Property")
     split.operator_menu_enum(operator, "property_id", text=known)
 
 
@@ -113,8 +110,6 @@ def _figures(scene, figures):
 
 
 class _OfASurface:
-    bl_options = {"DEFAULT_CLOSED"}
-
     @classmethod
     def shown(cls, surface):
         return True
@@ -146,15 +141,13 @@ class _OfTheMethod(_OfASurface):
                 setting_rows.draw(layout, surface, key, OPTIONS)
 
 
-class REALMODEL_PT_surface_method(_OfTheMethod, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surface_method(_OfTheMethod, FoldedPanel, bpy.types.Panel):
     bl_label = "Method Options"
-    bl_idname = "REALMODEL_PT_surface_method"
     bl_parent_id = "REALMODEL_PT_surfaces"
 
 
-class REALMODEL_PT_surface_search(_OfTheMethod, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surface_search(_OfTheMethod, FoldedPanel, bpy.types.Panel):
     bl_label = "Search"
-    bl_idname = "REALMODEL_PT_surface_search"
     bl_parent_id = "REALMODEL_PT_surface_method"
     fold = "search"
 
@@ -192,9 +185,8 @@ def _variogram_text(scene, fitted):
     return f"{'; '.join(said)}; nugget {fitted['nugget']:.4g}"
 
 
-class REALMODEL_PT_surface_reading(_OfASurface, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surface_reading(_OfASurface, FoldedPanel, bpy.types.Panel):
     bl_label = "Import Options"
-    bl_idname = "REALMODEL_PT_surface_reading"
     bl_parent_id = "REALMODEL_PT_surfaces"
 
     @classmethod
@@ -221,11 +213,3 @@ def draw_filters(layout, surface, of_fault=False):
         made = row.operator("realmodel.filter_remove", text="", icon="X")
         made.index, made.of_fault = number, of_fault
     layout.operator("realmodel.filter_add", icon="ADD").of_fault = of_fault
-
-
-CLASSES = (
-    REALMODEL_PT_surfaces,
-    REALMODEL_PT_surface_method,
-    REALMODEL_PT_surface_search,
-    REALMODEL_PT_surface_reading,
-)

@@ -6,14 +6,14 @@ import bpy
 from .. import props_stage
 from ..bl import compartments, library_rows, project_settings, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing, residuals, viewpoints
-from .panel import OfABuiltModel, TabPanel, hint, wrapped
+from .lists import draw_swatch
+from .panel import FoldedPanel, OfABuiltModel, TabPanel, hint, wrapped
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
 
 class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "View"
-    bl_idname = "REALMODEL_PT_view"
     bl_order = 2
 
     def draw_in(self, layout, context, group):
@@ -85,11 +85,9 @@ def _stage(layout, scene):
         hint(layout, f"just after {rows[group.stage].name} ({group.stage} of {last})")
 
 
-class REALMODEL_PT_view_properties(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_properties(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Blocks by Property"
-    bl_idname = "REALMODEL_PT_view_properties"
     bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         hidden = modes.hidden_properties(context.scene)
@@ -97,13 +95,9 @@ class REALMODEL_PT_view_properties(OfABuiltModel, TabPanel, bpy.types.Panel):
         for property_id in sorted({row.property_id for row in group.results}):
             row = column.row(align=True)
             entry = library_rows.find(context.scene, property_id)
-            if entry is not None:
-                swatch = row.row()
-                swatch.scale_x = 0.3
-                swatch.prop(entry, "color", text="")
-                row.label(text=entry.name)
-            else:
-                row.label(text=f"Property {property_id}" if property_id else "No property")
+            draw_swatch(row, entry)
+            plain = f"Property {property_id}" if property_id else "No property"
+            row.label(text=plain if entry is None else entry.name)
             icon = "HIDE_ON" if property_id in hidden else "HIDE_OFF"
             made = row.operator("realmodel.hide_property", text="", icon=icon, emboss=False)
             made.property_id, made.action = property_id, "TOGGLE"
@@ -113,11 +107,9 @@ class REALMODEL_PT_view_properties(OfABuiltModel, TabPanel, bpy.types.Panel):
             column.operator("realmodel.hide_property", text="Show All").action = "ALL"
 
 
-class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_section(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Section"
-    bl_idname = "REALMODEL_PT_view_section"
     bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         view, scene = group.view, context.scene
@@ -160,11 +152,9 @@ def _section_buttons(layout, operator, along, saving):
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
-class REALMODEL_PT_view_camera(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_camera(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Viewpoint"
-    bl_idname = "REALMODEL_PT_view_camera"
     bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, _context, _group):
         grid = layout.grid_flow(row_major=True, columns=3, align=True)
@@ -177,11 +167,9 @@ class REALMODEL_PT_view_camera(OfABuiltModel, TabPanel, bpy.types.Panel):
         layout.operator("realmodel.capture", text="Capture...", icon="RESTRICT_RENDER_OFF")
 
 
-class REALMODEL_PT_view_picture(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_picture(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Picture and Animation"
-    bl_idname = "REALMODEL_PT_view_picture"
     bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, _group):
         if not viewpoints.camera_sees(context.scene):
@@ -193,11 +181,9 @@ class REALMODEL_PT_view_picture(OfABuiltModel, TabPanel, bpy.types.Panel):
         row.operator("realmodel.animate_stages", icon="KEYFRAME_HLT")
 
 
-class REALMODEL_PT_view_coordinates(OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_coordinates(OfABuiltModel, FoldedPanel, bpy.types.Panel):
     bl_label = "Coordinates"
-    bl_idname = "REALMODEL_PT_view_coordinates"
     bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, _group):
         column = layout.column(align=True)
@@ -225,13 +211,3 @@ def _lines(scene, place):
     away = coordinates.from_zero(scene, place)
     if away is not None:
         yield "From origin", "  ".join(f"{value:+.2f}" for value in away)
-
-
-CLASSES = (
-    REALMODEL_PT_view,
-    REALMODEL_PT_view_properties,
-    REALMODEL_PT_view_section,
-    REALMODEL_PT_view_camera,
-    REALMODEL_PT_view_picture,
-    REALMODEL_PT_view_coordinates,
-)

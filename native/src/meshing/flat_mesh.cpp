@@ -66,8 +66,8 @@ HalfEdge FlatMesh::flip(HalfEdge edge) {
     assert(!other.is_none() && !is_fixed(edge));
     const std::int32_t t = edge.triangle(), u = other.triangle();
     const std::int32_t p = from(edge), q = to(edge), left = apex(edge), right = apex(other);
-    assert(orient2d(points[right], points[left], points[p]) > 0);
-    assert(orient2d(points[left], points[right], points[q]) > 0);
+    assert(points.empty() || orient2d(points[right], points[left], points[p]) > 0);
+    assert(points.empty() || orient2d(points[left], points[right], points[q]) > 0);
     const Outer t_next = outer(edge.next()), t_prev = outer(edge.prev());
     const Outer u_next = outer(other.next()), u_prev = outer(other.prev());
     corners[t] = {right, left, p};

@@ -25,6 +25,13 @@ def norm(vector: np.ndarray) -> np.ndarray:
     return np.sqrt(dot(vector, vector))
 
 
+def begins_run(rows: np.ndarray) -> np.ndarray:
+    """(N,) bool: the rows (N, ...) that are unlike the one before."""
+    found = np.ones(len(rows), bool)
+    found[1:] = (rows[1:] != rows[:-1]).any(axis=tuple(range(1, rows.ndim)))
+    return found
+
+
 def principal_axes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The principal axes of points (N, D): the spread around their mean along D directions, and these, in
     rows.

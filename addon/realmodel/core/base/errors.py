@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import contextmanager
 from pathlib import Path
 
 _LONGEST = 500
@@ -70,6 +72,16 @@ class InputRefused(RealModelError):
             triangles=self.triangles,
             place=self.place,
         )
+
+
+@contextmanager
+def naming(item: str, source: Callable[[], tuple[Path | None, int | None]] | None = None):
+    """Within it errors name an item, and its file and line where they have none yet."""
+    try:
+        yield
+    except InputRefused as error:
+        file, line = source() if source else (None, None)
+        raise error.within(item, file=file, line=line) from error
 
 
 class HeightsMissing(InputRefused):

@@ -17,9 +17,9 @@ import numpy as np
 
 from .errors import BuildFailed, OutputFailed
 
-Keep = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
+StoreArray = Callable[[np.ndarray], np.ndarray]  # the same values, kept in another place
 # One array of pieces, one after another; the second is empty, and has the type and the columns of all.
-Gather = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
+JoinPieces = Callable[[Iterable[np.ndarray], np.ndarray], np.ndarray]
 MakeZeros = Callable[[tuple[int, ...], type], np.ndarray]  # zeros, for the caller to change
 
 ROWS_AT_ONCE = 1 << 16  # of an array that is taken piece by piece

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Packages of others that travel in the add-on, in the folder vendor (scripts/requirements/vendor.txt)."""
+"""Packages of others that travel in the add-on, in the folder vendor (scripts/requirements/vendor.txt). Where
+pip installed RealModel, they are its dependencies."""
 
 from __future__ import annotations
 
@@ -24,6 +25,6 @@ def vendored(module: str, package: str, purpose: str) -> ModuleType:
             if error.name not in (name, FOLDER):
                 raise BuildFailed(f"{package} cannot be loaded ({error})") from error
     raise BuildFailed(
-        f"{purpose} needs the package {package}, which is not in addon/realmodel/vendor; "
-        "scripts/build.sh puts it there"
+        f"{purpose} needs the package {package}, which is missing: install it with pip, or run "
+        "scripts/build.sh in a clone of the repository"
     )

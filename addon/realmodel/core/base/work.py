@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
@@ -326,6 +326,16 @@ def _waiting_threads_sleep():
         yield
     finally:
         os.environ.pop(name, None)
+
+
+@contextmanager
+def refused_as(refusal: Callable[[Any], Exception]) -> Iterator[Native]:
+    """The native module; its InputErrors within are raised as what `refusal` makes of them."""
+    native = native_module()
+    try:
+        yield native
+    except native.InputError as error:
+        raise refusal(error) from error
 
 
 def native_module() -> Native:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, refused_as, run
 from ..project.build_options import check_cells, check_stage
 from ..project.project import Project
 from ..structures.parts.parts import Structures
@@ -68,13 +68,10 @@ def intersect(
     """The cells of all rock masses, divided by structures where there are some."""
     if structures.is_divided:
         return build_joined(work, inputs, structures, cells, start, end)
-    native = native_module()
     rocks = [entry.native() for entry in inputs]
-    with work.phase(start, end, "intersecting and cutting"):
-        try:
-            return BuiltCells.of(work.native(native.build_rock_masses, rocks, cells=cells), cells)
-        except native.InputError as error:
-            raise refused_stack(error, inputs) from error
+    refused = refused_as(lambda error: refused_stack(error, inputs))
+    with work.phase(start, end, "intersecting and cutting"), refused as native:
+        return BuiltCells.of(work.native(native.build_rock_masses, rocks, cells=cells), cells)
 
 
 def assemble(

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, refused_as
 from ..structures.parts.part_models import (
     DEEP,
     FILLER,
@@ -68,20 +68,17 @@ def build_joined(
             parts.append(number)
     if not models:
         return _nothing(inputs, structures, cells)
-    native = native_module()
     divides = blocks_divided(inputs, structures)
-    with work.phase(begin, end, "joining the compartments"):
-        try:
-            joined = work.native(
-                native.join_structured,
-                models,
-                structures.native(),
-                divides,
-                continued=structures.continued or [],
-                largest=structures.largest,
-            )
-        except native.InputError as error:
-            raise refused_structure(error, structures) from error
+    refused = refused_as(lambda error: refused_structure(error, structures))
+    with work.phase(begin, end, "joining the compartments"), refused as native:
+        joined = work.native(
+            native.join_structured,
+            models,
+            structures.native(),
+            divides,
+            continued=structures.continued or [],
+            largest=structures.largest,
+        )
     part = np.array(parts, np.int32)[joined["cell_part"]]
     found = BuiltCells(CellComplex.of(joined, cells), joined["volumes"], list(warnings))
     return _with_parts(found, part, inputs, structures, divides)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..base.errors import BuildFailed, InputRefused, number_list, place_text
-from ..project.project import rock_item, surface_item
+from ..project.project import surface_item
 from ..surfaces.rock_input import RockInput
 
 _ONE_HEIGHT = "a surface may have only one height at each place"
@@ -16,12 +16,12 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
     near = f" near {place_text(place)}" if place else ""
     if error.kind == "rocks_overlap":
         first, second = (inputs[int(i)].rock for i in error.items)
-        file, line = second.region_source() if second.region is not None else (None, None)
+        file, line = second.shape_source("region") if second.region is not None else (None, None)
         return InputRefused(
-            f"it overlaps {rock_item(first)} in plan{near}",
+            f"it overlaps {first.item} in plan{near}",
             file=file,
             line=line,
-            item=rock_item(second),
+            item=second.item,
             advice="rock masses may share borders but no area: correct the regions",
             place=place,
         )
@@ -30,17 +30,13 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
         return InputRefused(str(error), place=place)
     rock = entry.rock
     if error.kind == "base_not_below":
-        file, line = (
-            (rock.source.document.file, rock.source.line("base_elevation")) if rock.source else (None, None)
-        )
+        file, line = rock.place_of("base_elevation")
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
         lowest = f", whose lowest point is {place_text(place)}" if place else ""
         lower = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
         if place and (beyond := _beyond_its_points(entry, place[2])):
             lower = f"{lower}; {beyond}"
-        return InputRefused(
-            what + lowest, file=file, line=line, item=rock_item(rock), advice=lower, place=place
-        )
+        return InputRefused(what + lowest, file=file, line=line, item=rock.item, advice=lower, place=place)
     surface = rock.surfaces[number]
     file, line = surface.shape_source()
     items = tuple(int(i) for i in error.items)

@@ -14,6 +14,7 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
+from ..base.algebra import begins_run
 from ..exporters.encodings.text_rows import write_rows
 from ..exporters.encodings.vtk_xml import write_grid, write_image
 from ..exporters.endings import by_ending
@@ -118,8 +119,7 @@ def draw_probabilities(
 def _joined(samples: SectionSamples, colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Corners (M, 4, 2) and colors (M, 3) of cells that are not white; those of one color in a row as one."""
     shades = np.rint(colors * _SHADES) / _SHADES
-    differs = np.ones(len(shades), bool)
-    differs[1:] = (shades[1:] != shades[:-1]).any(axis=1)
+    differs = begins_run(shades)
     differs[:: samples.columns] = True
     first = np.flatnonzero(differs)
     last = np.append(first[1:], len(shades)) - 1

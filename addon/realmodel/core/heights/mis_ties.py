@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.errors import place_text
-from ..base.mapped_arrays import ROWS_AT_ONCE, Gather, MakeZeros, in_memory, in_pieces
+from ..base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeZeros, in_memory, in_pieces
 
 # of the height range of all points: beyond this it is a mistake in the data, and interpolation refuses it
 LARGEST_SHARE = 0.05
@@ -16,7 +16,7 @@ _AT_ONCE = 1 << 18  # points among which those at one place are looked for
 
 
 def without_mis_ties(
-    points: np.ndarray, zeros: MakeZeros = np.zeros, gather: Gather = in_memory
+    points: np.ndarray, zeros: MakeZeros = np.zeros, gather: JoinPieces = in_memory
 ) -> tuple[np.ndarray, str | None]:
     """Points with one height at each position, and a warning (None: nothing was changed).
 
@@ -29,7 +29,7 @@ def without_mis_ties(
 
 
 def each_place_once(
-    points: np.ndarray, zeros: MakeZeros, gather: Gather
+    points: np.ndarray, zeros: MakeZeros, gather: JoinPieces
 ) -> tuple[np.ndarray, str | None, bool]:
     """without_mis_ties, and of points that are equal only the first; whether no two have one place now:
     larger contradictions are left in."""
@@ -72,7 +72,7 @@ class _Places:
         x, y = rows[first[worst], :2].tolist()
         self._worst = max(self._worst, (float(apart[worst]), -x, -y))  # of equals the first from the west
 
-    def kept(self, gather: Gather) -> np.ndarray:
+    def kept(self, gather: JoinPieces) -> np.ndarray:
         """The points themselves where all are left as they are."""
         if not self._changed and all(piece.all() for piece in in_pieces(self._keeps)):
             return self._points

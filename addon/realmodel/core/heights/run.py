@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
-from ..base.work import Work, native_module
+from ..base.work import Work, refused_as
 from ..settings.methods import METHODS, SURFACE_OPTIONS, checked_options
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
@@ -19,13 +19,13 @@ from .mis_ties import without_mis_ties
 
 def heights(method: str, task: Task) -> Interpolation:
     """interpolate within a work that is already running. Points may contradict one another."""
-    native, settings, nodes = native_module(), task.settings, task.nodes
+    settings, nodes = task.settings, task.nodes
     if not len(task.points) and METHODS[method].needs_points(settings):
         raise InputRefused("there are no points", item="points")
     points, mis_ties = without_mis_ties(task.points)
     task = replace(task, points=points)
     reason = ""
-    try:
+    with refused_as(refused_points):
         if method == "auto":
             method, reason, result = automatic.automatic(task)
             settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
@@ -34,8 +34,6 @@ def heights(method: str, task: Task) -> Interpolation:
             result = run_method(method, task)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
-    except native.InputError as error:
-        raise InputRefused(str(error), item="points", place=error.place) from error
     warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, nodes)]
     warnings += result.warnings
     if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
@@ -56,18 +54,20 @@ def heights(method: str, task: Task) -> Interpolation:
 def chosen(work: Work, points, settings: dict) -> tuple[str, dict]:
     """The method that "auto" with these settings takes for points, and its options: they give the same
     heights. Raises InputRefused."""
-    native = native_module()
     if not len(points):
         raise InputRefused("there are no points", item="points")
     points, _ = without_mis_ties(points)
-    try:
+    with refused_as(refused_points):
         trial, _ = automatic.choose(Task(work, points, np.empty((0, 2)), settings))
-    except native.InputError as error:
-        raise InputRefused(str(error), item="points", place=error.place) from error
     method, options = trial.candidate.method, trial.candidate.options
     if "extrapolate" in METHODS[method].options:
         options = {**options, "extrapolate": settings["extrapolate"]}
     return method, options
+
+
+def refused_points(error) -> InputRefused:
+    """The refusal of points that the native part found fault with."""
+    return InputRefused(str(error), item="points", place=error.place)
 
 
 def few_points(points: np.ndarray, method: str) -> list[str]:
@@ -120,8 +120,5 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
 
 def left_out_heights(method: str, task: Task) -> Result:
     """The height of each point, estimated from the others by a method that leaves one out."""
-    native = native_module()
-    try:
+    with refused_as(refused_points):
         return run_method(method, replace(task, nodes=np.empty((0, 2)), left_out=True))
-    except native.InputError as error:
-        raise InputRefused(str(error), item="points", place=error.place) from error

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError, number_list, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
 from ..results.automatic_library import model_with_library
@@ -129,11 +129,8 @@ def _cut(
     def task(work: Work) -> Cut[SomeModel]:
         began = time.perf_counter()
         function, *cutter = call(native)
-        with work.phase(0.0, _CUT_SHARE, "cutting"):
-            try:
-                halves = work.native(function, model.native(), *cutter)
-            except native.InputError as error:
-                raise _refused(error) from error
+        with work.phase(0.0, _CUT_SHARE, "cutting"), refused_as(_refused):
+            halves = work.native(function, model.native(), *cutter)
         return _assembled(work, model, halves, began)
 
     return run(task, progress, cancel, threads=threads)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.build_warning import BuildWarning
 from ..base.errors import UsageError
-from ..base.mapped_arrays import Keep, as_it_is
+from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..exporters.surfaces import save_surfaces
 from ..heights import Interpolation
@@ -78,7 +78,7 @@ def build_surfaces(
     cancel: Cancel | None = None,
     *,
     stage: int | None = None,
-    keep: Keep = as_it_is,
+    keep: StoreArray = as_it_is,
     reader: Reader = read_each,
     flat: Callable[[Rock], Collection[int]] | None = None,
 ) -> SurfaceSet:
@@ -102,7 +102,9 @@ def build_surfaces(
     )
 
 
-def _build(work: Work, project: Project, stage: int | None, keep: Keep, reader: Reader, flat) -> SurfaceSet:
+def _build(
+    work: Work, project: Project, stage: int | None, keep: StoreArray, reader: Reader, flat
+) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs, with_arrays = read_inputs(work, project, reader)
     mesh_inputs(work, inputs, _READ, _MESHED, keep)

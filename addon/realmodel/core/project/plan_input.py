@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.errors import InputRefused, place_text
 from ..base.units import MODEL_UNIT
 from ..readers import read_shapes
@@ -16,10 +17,8 @@ from ..readers.maps.shapes import Shapes
 from ..readers.maps.wkt import parse_wkt
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.mesh_sizes import AT_WORDS
-from ..settings.point_file import ReadingError
+from .entry import Refuse, check_file, refused_by
 from .region_rings import NamedRing, checked_region, given_rings, is_several, rings_of_shapes
-
-Refuse = Callable[..., InputRefused]
 
 
 def map_layer(given) -> MapLayer | None:
@@ -37,17 +36,14 @@ def layer_files(given) -> list[Path]:
     return [] if layer is None else [Path(layer.file), *map_companions(Path(layer.file))]
 
 
-def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]) -> None:
+def check_layer(given, key: str, refuse: Refuse) -> None:
     """Refuses a file that does not exist, and invalid options of it."""
     layer = map_layer(given)
     if layer is None:
         return
-    try:
+    with refused_by(refuse, key):
         layer.check()
-    except ReadingError as error:
-        raise refuse(error.what, key, error.advice) from error
-    if not is_file(Path(layer.file)):
-        raise refuse(f"file not found: {layer.file}", key, "check the path")
+    check_file(layer.file, key, refuse)
 
 
 def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
@@ -144,13 +140,7 @@ def places_of_constraint(given) -> np.ndarray:
     bad = np.flatnonzero(~np.isfinite(places).all(axis=1))
     if len(bad):
         raise InputRefused(f"place {bad[0]} is {place_text(places[bad[0]])}, not finite")
-    return _without_repetition(places)
-
-
-def _without_repetition(places: np.ndarray) -> np.ndarray:
-    new = np.ones(len(places), bool)
-    new[1:] = (places[1:] != places[:-1]).any(axis=1)
-    return places[new]
+    return places[begins_run(places)]
 
 
 def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
@@ -159,7 +149,7 @@ def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
     found += [point.reshape(1, 2) for _, point in shapes.points]
     if not found:
         raise InputRefused("there are no lines or points in it", file=None if layer is None else layer.file)
-    return [_without_repetition(line) for line in found]
+    return [line[begins_run(line)] for line in found]
 
 
 def ring_path(region, items) -> tuple:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import builtins
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from ..settings.boreholes import Boreholes
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
-from ..settings.method_options import OptionRefused, checked, is_name
+from ..settings.method_options import is_name
 from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
@@ -29,18 +30,27 @@ from ..settings.methods import (
     check_method,
     checked_options,
 )
-from ..settings.point_file import MeshFile, PointFile, ReadingError
+from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE
 from ..settings.schema import ROCK, SURFACE
+from .entry import (
+    Entry,
+    check_file,
+    check_property,
+    check_values,
+    named_once,
+    refused_by,
+    shapes_given,
+)
 from .library import Library
 from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .region_rings import is_several
 from .structure_checks import check_structures
-from .structure_entries import Body, Fault
+from .structure_entries import Body, Fault, Shaped
 
 
 @dataclass
-class Surface:
+class Surface(Shaped):
     """One bounding surface of the layers.
 
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
@@ -53,6 +63,7 @@ class Surface:
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
+    kind = "surface"
     name: str
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
@@ -85,39 +96,10 @@ class Surface:
     def block_name(self) -> str:
         return self.block or f"{self.name} block"
 
-    @builtins.property  # a field of this class is called property
-    def input_file(self) -> Path | None:
-        """The file that gives this surface its shape; None where arrays do."""
-        if self.interpolated:
-            return None if self.point_file is None else Path(self.point_file.file)
-        return None if self.mesh_file is None else Path(self.mesh_file.file)
-
-    @builtins.property  # a field of this class is called property
-    def mesh_file(self) -> MeshFile | None:
-        """The file of its ready mesh; None where it has none."""
-        return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
-
-    @builtins.property  # a field of this class is called property
-    def point_file(self) -> PointFile | None:
-        """The file of its points and how it is read; None where they are an array, or there are none."""
-        return (
-            PointFile(self.points)
-            if isinstance(self.points, (str, Path))
-            else (self.points if isinstance(self.points, PointFile) else None)
-        )
-
     def point_array(self) -> np.ndarray:
         """(P, 3) float64 the points of a surface that is read; none where it has none."""
         assert not isinstance(self.points, (str, Path, PointFile))
         return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
-
-    def shape_source(self) -> tuple[Path | None, int | None]:
-        """The source of the shape, for messages: its file, or its line in the project file."""
-        if self.shape_file is not None:
-            return self.shape_file, None
-        if self.source is not None:
-            return self.source.document.file, self.source.line()
-        return None, None
 
     def method_options(self) -> tuple[str, dict]:
         """The method and its complete options; of a ready mesh those by which it is continued to faults.
@@ -129,7 +111,7 @@ class Surface:
 
 
 @dataclass
-class Rock:
+class Rock(Entry):
     """A rock mass: a region in plan, and surfaces oldest first.
 
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
@@ -145,6 +127,7 @@ class Rock:
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
 
+    kind = "rock"
     name: str
     surfaces: list[Surface]
     region: np.ndarray | Sequence | str | Path | MapLayer | None = None
@@ -179,20 +162,6 @@ class Rock:
         """The points (N, 2) of constraints that are arrays; None where there are none."""
         points = [point for point in self.constraints if len(point) == 1]
         return np.concatenate(points) if points else None
-
-    def region_source(self) -> tuple[Path | None, int | None]:
-        """The source of the region, for messages: its file, or its line in the project file."""
-        if self.shape_file is not None:
-            return self.shape_file, None
-        if self.source is not None:
-            return self.source.document.file, self.source.line("region")
-        return None, None
-
-    def edge_length_source(self) -> tuple[Path | None, int | None]:
-        """The place of the edge length in the project file, for messages."""
-        if self.source is not None:
-            return self.source.document.file, self.source.line("edge_length")
-        return None, None
 
     @property
     def interpolates(self) -> bool:
@@ -237,20 +206,9 @@ class Project:
         return replace(self, rocks=rocks)
 
 
-def rock_item(rock: Rock) -> str:
-    return f"rock '{rock.name}'"
-
-
 def surface_item(rock: Rock, surface: Surface) -> str:
+    """The name of a surface in messages; of rows of the panel, too."""
     return f"rock '{rock.name}', surface '{surface.name}'"
-
-
-def is_file(path: Path) -> bool:
-    """Whether a path leads to a file; no for one that cannot be a path at all."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def check_project(project: Project) -> None:
@@ -262,41 +220,16 @@ def check_project(project: Project) -> None:
         raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
-    seen: set[str] = set()
-    for rock in project.rocks:
-        if not is_name(rock.name):
-            raise _refuse(rock.source, "a rock mass", "it has no name", "name")
-        if rock.name in seen:
-            advice = "give each rock mass a unique name"
-            raise _refuse(rock.source, rock_item(rock), "another rock mass has this name", "name", advice)
-        seen.add(rock.name)
+    for rock in named_once(project.rocks, "rock mass"):
         _check_rock(project, rock)
     check_structures(project)
 
 
-def _refuse(
-    source: Source | None, item: str, what: str, key: str | None = None, advice: str | None = None
-) -> InputRefused:
-    file = source.document.file if source else None
-    return InputRefused(what, file=file, line=source.line(key) if source else None, item=item, advice=advice)
-
-
-def _check_values(entry, settings, keys, refuse) -> None:
-    """Refuses what the declarations of settings do not allow."""
-    for key in keys:
-        try:
-            checked(key, settings[key], getattr(entry, key))
-        except OptionRefused as error:
-            raise refuse(error.what, key, error.advice) from error
-
-
 def _check_rock(project: Project, rock: Rock) -> None:
-    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
-        return _refuse(rock.source, rock_item(rock), what, key, advice)
-
+    refuse = rock.refused
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
-    _check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
+    check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
     _check_mesh(rock, refuse)
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
@@ -304,9 +237,9 @@ def _check_rock(project: Project, rock: Rock) -> None:
         raise refuse(
             "holes need a region given by coordinates", "holes", "put the holes into the region's file"
         )
-    check_layer(rock.region, "region", refuse, is_file)
+    check_layer(rock.region, "region", refuse)
     for given in rock.constraints:
-        check_layer(given, "constraints", refuse, is_file)
+        check_layer(given, "constraints", refuse)
     if len(rock.constraints) and not rock.interpolates:
         what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
@@ -315,13 +248,9 @@ def _check_rock(project: Project, rock: Rock) -> None:
     for surface in rock.surfaces:
         _check_surface(project, rock, surface)
         if surface.name in names:
-            raise _refuse(
-                surface.source,
-                surface_item(rock, surface),
-                "another surface has this name",
-                "name",
-                "give each surface of a rock mass a unique name",
-            )
+            advice = "give each surface of a rock mass a unique name"
+            item = surface_item(rock, surface)
+            raise surface.refused("another surface has this name", "name", advice, item)
         names.add(surface.name)
     _check_references(rock)
 
@@ -329,13 +258,10 @@ def _check_rock(project: Project, rock: Rock) -> None:
 def _check_boreholes(rock: Rock, refuse) -> None:
     if rock.boreholes is None:
         return
-    try:
+    with refused_by(refuse, "boreholes", "boreholes: "):
         rock.boreholes.check()
-    except ReadingError as error:
-        raise refuse(f"boreholes: {error.what}", "boreholes", error.advice) from error
     for file in rock.boreholes.files:
-        if not is_file(file):
-            raise refuse(f"file not found: {file}", "boreholes", "check the path")
+        check_file(file, "boreholes", refuse)
     if not rock.interpolates:
         raise refuse("boreholes have no effect, as no surface is interpolated", "boreholes")
 
@@ -356,52 +282,33 @@ def _at_a_place(entry, refuse):
     file; others as they are."""
     if not (isinstance(entry, Mapping) and is_place_elsewhere(entry.get("at"))):
         return entry
-    check_layer(entry["at"], "size", refuse, is_file)
+    check_layer(entry["at"], "size", refuse)
     return {**entry, "at": [0.0, 0.0]}
 
 
 def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     if not is_name(surface.name):
-        raise _refuse(surface.source, rock_item(rock), "a surface has no name", "name")
-    item = surface_item(rock, surface)
-
-    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
-        return _refuse(surface.source, item, what, key, advice)
-
+        raise surface.refused("a surface has no name", "name", item=rock.item)
+    refuse = partial(surface.refused, item=surface_item(rock, surface))
     _check_shape(rock, surface, refuse, bool(project.faults))
-    _check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
-    _check_property(project.library, surface, refuse)
+    check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
+    check_property(project.library, surface.property, refuse)
 
 
 def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
     continued to faults."""
-    arrays = surface.vertices is not None or surface.triangles is not None
-    shapes = [
-        name
-        for name, given in (
-            ("points", surface.points is not None),
-            ("mesh", surface.mesh is not None),
-            ("vertices", arrays),
-        )
-        if given
-    ]
+    shapes = shapes_given(surface, ("points", "mesh"), refuse)
     no_points = not shapes and rock.boreholes is None
     if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
-    if len(shapes) > 1:
-        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "use only one of them")
-    if arrays and (surface.vertices is None or surface.triangles is None):
-        raise refuse("it needs vertices and triangles together")
-    file = surface.input_file
-    if file is not None and not is_file(file):
-        raise refuse(f"file not found: {file}", shapes[0], "check the path")
+    if shapes:
+        check_file(surface.input_file, shapes[0], refuse)
+    with refused_by(refuse):
+        for file in (surface.mesh_file, surface.point_file):
+            if file is not None:
+                file.check()
     if not surface.interpolated:
-        try:
-            if surface.mesh_file is not None:
-                surface.mesh_file.check()
-        except ReadingError as error:
-            raise refuse(error.what, error.key, error.advice) from error
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given = [] if continues else given
         given += [key for key in ("minimum_thickness", "correlation") if getattr(surface, key) is not None]
@@ -411,17 +318,12 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
             _check_method(surface, refuse)
             _check_continuation(surface, refuse)
         return
-    try:
-        if surface.point_file is not None:
-            surface.point_file.check()
-    except ReadingError as error:
-        raise refuse(error.what, error.key, error.advice) from error
     _check_method(surface, refuse, no_points)
     length = rock.edge_length if rock.triangles is None else rock.triangles
     for key, value in (("region", rock.region), ("edge_length", length)):
         if value is None:
             raise refuse(
-                f"its points cannot be interpolated: {rock_item(rock)} has no {key}",
+                f"its points cannot be interpolated: {rock.item} has no {key}",
                 "points",
                 f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
             )
@@ -439,7 +341,7 @@ def _check_continuation(surface: Surface, refuse) -> None:
 
 
 def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
-    try:
+    with refused_by(refuse):
         check_method(surface.method or DEFAULT_METHOD)
         if no_points and surface.needs_points:
             method, _ = surface.method_options()
@@ -447,8 +349,6 @@ def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
             either = f", or {option} = ..." if option else ""
             raise refuse(f"method '{method}' needs points", "method", f"add points = ...{either}")
         surface.method_options()
-    except OptionRefused as error:
-        raise refuse(error.what, error.option, error.advice) from error
 
 
 def _check_references(rock: Rock) -> None:
@@ -462,13 +362,13 @@ def _check_references(rock: Rock) -> None:
             if not isinstance(name, str):
                 continue
             if name not in numbers:
-                what = f"'{option}' names surface '{name}', which {rock_item(rock)} does not have"
-                raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
+                what = f"'{option}' names surface '{name}', which {rock.item} does not have"
+                raise surface.refused(what, option, f"it has {', '.join(numbers)}", item)
             needed.append((option, numbers[name]))
         for key in ("minimum_thickness", "correlation"):
             if number == 0 and getattr(surface, key) is not None:
                 what = f"the oldest surface cannot have a {key}, as there is no surface beneath it"
-                raise _refuse(surface.source, item, what, key)
+                raise surface.refused(what, key, item=item)
         if surface.minimum_thickness is not None:
             needed.append(("minimum_thickness", number - 1))
         needs.append(needed)
@@ -479,7 +379,7 @@ def _check_references(rock: Rock) -> None:
             if needed in (*above, number):
                 surface, other = rock.surfaces[number], rock.surfaces[needed]
                 what = f"'{option}' names '{other.name}', which depends on this surface"
-                raise _refuse(surface.source, surface_item(rock, surface), what, option)
+                raise surface.refused(what, option, item=surface_item(rock, surface))
             if needed not in done:
                 visit(needed, (*above, number))
         done.add(number)
@@ -487,10 +387,3 @@ def _check_references(rock: Rock) -> None:
     for number in range(len(rock.surfaces)):
         if number not in done:
             visit(number, ())
-
-
-def _check_property(library: Library | None, surface: Surface, refuse) -> None:
-    number = surface.property
-    if number and library is not None and number not in library:
-        known = ", ".join(str(entry.id) for entry in library.properties)
-        raise refuse(f"the library has no property {number}", "property", f"it has {known}")

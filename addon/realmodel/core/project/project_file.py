@@ -13,14 +13,15 @@ from ..base.toml_table import Source, Table, TomlDocument
 from ..base.units import METERS, MODEL_UNIT
 from ..settings.boreholes import Boreholes
 from ..settings.map_layer import MapLayer, is_wkt
-from ..settings.method_options import OptionRefused, checked
+from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
 from ..settings.setting import Settings
+from .entry import is_file, refused_by
 from .library import load_library
 from .plan_input import is_place_elsewhere
-from .project import Project, Rock, Surface, check_project, is_file
+from .project import Project, Rock, Surface, check_project
 from .structure_entries import Body, Fault
 
 FORMAT = 1
@@ -80,10 +81,8 @@ def _values(table: Table, settings: Settings, keys: Sequence[str]) -> dict:
     found = {}
     for key in keys:
         if key in table:
-            try:
+            with refused_by(table.refuse, key):
                 found[key] = checked(key, settings[key], table.content[key])
-            except OptionRefused as error:
-                raise table.refuse(error.what, key, error.advice) from error
     return found
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
-from ..base.work import native_module
+from ..base.work import refused_as
 from ..readers.maps.shapes import Shapes
 
 
@@ -122,15 +122,11 @@ def checked_region(
     """
     for ring in rings:
         _require_corners(ring.corners, ring.name)
-    native = native_module()
-    try:
+    names, sizes = [ring.name for ring in rings], [len(ring.corners) for ring in rings]
+    with refused_as(lambda error: refused_rings(error, names, sizes)) as native:
         given = [ring.corners for ring in rings]
         roles = [ring.polygon for ring in rings], [ring.hole for ring in rings]
         checked = (call or _at_once)(native.check_region, given, *roles)
-    except native.InputError as error:
-        raise refused_rings(
-            error, [ring.name for ring in rings], [len(ring.corners) for ring in rings]
-        ) from error
     return [_without_repetition(ring) for ring in checked]
 
 

@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 
-from ..base.errors import InputRefused
-from ..settings.method_options import OptionRefused, checked, is_name
-from ..settings.point_file import ReadingError
 from ..settings.schema import FAULT
-from .structure_entries import Body, Fault, body_item, fault_item
+from .entry import check_file, check_property, check_values, named_once, refused_by, shapes_given
+from .structure_entries import Body, Fault
 from .structure_history import displaced_surfaces
 
 _OF_TRACES = ("dip", "dip_direction", "elevation")
@@ -20,32 +17,15 @@ _OF_TRACES = ("dip", "dip_direction", "elevation")
 
 def check_structures(project) -> None:
     """Raises InputRefused, naming the line where it is written."""
-    for entries, kind, item, check in (
-        (project.faults, "fault", fault_item, _check_fault),
-        (project.bodies, "body", body_item, _check_body),
-    ):
-        seen: set[str] = set()
-        for entry in entries:
-            if not is_name(entry.name):
-                raise _refuse(entry, f"a {kind}", "it has no name", "name")
-            if entry.name in seen:
-                advice = f"give each {kind} a unique name"
-                raise _refuse(entry, item(entry), f"another {kind} has this name", "name", advice)
-            seen.add(entry.name)
-            check(project, entry)
+    for fault in named_once(project.faults, "fault"):
+        _check_fault(project, fault)
+    for body in named_once(project.bodies, "body"):
+        _check_body(project, body)
     _check_ends(project)
 
 
-def _refuse(entry, item: str, what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
-    source = entry.source
-    file = source.document.file if source else None
-    return InputRefused(what, file=file, line=source.line(key) if source else None, item=item, advice=advice)
-
-
 def _check_fault(project, fault: Fault) -> None:
-    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
-        return _refuse(fault, fault_item(fault), what, key, advice)
-
+    refuse = fault.refused
     _check_shape(fault, refuse, ("trace", "points", "mesh"))
     for key in ("rocks", "ends_at"):
         names = getattr(fault, key)
@@ -69,11 +49,7 @@ def _check_trace(project, fault: Fault, refuse) -> None:
             if getattr(fault, key) is not None:
                 raise refuse(f"'{key}' has no effect, as its shape is no trace", key, "add trace = ...")
         return
-    for key in _OF_TRACES:
-        try:
-            checked(key, FAULT[key], getattr(fault, key))
-        except OptionRefused as error:
-            raise refuse(error.what, key, error.advice) from error
+    check_values(fault, FAULT, _OF_TRACES, refuse)
     if fault.trace_file is None and fault.dip is None:
         raise refuse("a trace needs a dip", "trace", "add dip = ... (90 where the fault is vertical)")
     if fault.elevation is not None and np.ndim(fault.elevation):
@@ -87,9 +63,7 @@ def _check_trace(project, fault: Fault, refuse) -> None:
 
 
 def _check_body(project, body: Body) -> None:
-    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
-        return _refuse(body, body_item(body), what, key, advice)
-
+    refuse = body.refused
     _check_shape(body, refuse, ("mesh",))
     if not isinstance(body.void, bool):
         raise refuse(f"'void' must be true or false, not {body.void!r}", "void")
@@ -97,41 +71,22 @@ def _check_body(project, body: Body) -> None:
         raise refuse(f"'property' must be a whole number, not {body.property!r}", "property")
     if body.void and body.property:
         raise refuse("a void has no rock, so 'property' has no effect", "property")
-    library = project.library
-    if body.property and library is not None and body.property not in library:
-        known = ", ".join(str(entry.id) for entry in library.properties)
-        raise refuse(f"the library has no property {body.property}", "property", f"it has {known}")
+    check_property(project.library, body.property, refuse)
     names = () if body.rock is None else (body.rock,)
     _check_names(project, refuse, "rock", names, "after", body.after)
 
 
 def _check_shape(entry, refuse, files: tuple[str, ...]) -> None:
     """Refuses an entry without a shape, or with two."""
-    arrays = entry.vertices is not None or entry.triangles is not None
-    shapes = [key for key in files if getattr(entry, key) is not None] + (["vertices"] if arrays else [])
+    shapes = shapes_given(entry, files, refuse)
     if not shapes:
         advice = " or ".join(f"{key} = ..." for key in reversed(files))
         raise refuse("it has no shape", advice=f"add {advice}")
-    if len(shapes) > 1:
-        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "use only one of them")
-    if arrays and (entry.vertices is None or entry.triangles is None):
-        raise refuse("it needs vertices and triangles together")
-    try:
-        for file in (entry.mesh_file, *(getattr(entry, key, None) for key in ("point_file", "trace_file"))):
+    with refused_by(refuse):
+        for file in (entry.mesh_file, entry.point_file, getattr(entry, "trace_file", None)):
             if file is not None:
                 file.check()
-    except ReadingError as error:
-        raise refuse(error.what, error.key, error.advice) from error
-    file = entry.input_file
-    if file is not None and not _is_file(file):
-        raise refuse(f"file not found: {file}", shapes[0], "check the path")
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+    check_file(entry.input_file, shapes[0], refuse)
 
 
 def _is_length(value) -> bool:
@@ -169,30 +124,26 @@ def _there(names) -> str:
 def _check_ends(project) -> None:
     """Refuses faults that end at unknown faults, at each other, or at faults that displace less."""
     faults = {fault.name: fault for fault in project.faults}
-
-    def refuse(fault: Fault, what: str, advice: str | None = None) -> InputRefused:
-        return _refuse(fault, fault_item(fault), what, "ends_at", advice)
-
     for fault in project.faults:
         own = displaced_surfaces(project, fault)
         for name in fault.ends_at:
             if name not in faults:
                 what = f"'ends_at' names fault '{name}', which does not exist"
-                raise refuse(fault, what, _there(faults))
+                raise fault.refused(what, "ends_at", _there(faults))
             if name == fault.name:
-                raise refuse(fault, "it cannot end at itself")
+                raise fault.refused("it cannot end at itself", "ends_at")
             other = displaced_surfaces(project, faults[name])
             for rock in own.keys() & other.keys():
                 if own[rock] > other[rock]:
                     surface = project.rocks[rock].surfaces[own[rock]].name
                     what = f"it displaces '{surface}', but fault '{name}', at which it ends, does not"
                     advice = f"give '{name}' a younger 'youngest', or this fault an older one"
-                    raise refuse(fault, what, advice)
+                    raise fault.refused(what, "ends_at", advice)
     for fault in project.faults:
         way = _way_back(fault.name, faults)
         if way:
             through = " at ".join(f"'{name}'" for name in way[1:])
-            raise refuse(fault, f"it ends at {through}: no fault of this circle is there first")
+            raise fault.refused(f"it ends at {through}: no fault of this circle is there first", "ends_at")
 
 
 def _way_back(name: str, faults: dict[str, Fault]) -> list[str]:

@@ -13,17 +13,15 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..settings.map_layer import is_wkt
 from ..settings.point_file import MeshFile, PointFile
+from .entry import Entry
 
 
-class _Shape:
-    """The common part of faults and bodies: a mesh from arrays or from a file."""
+class Shaped(Entry):
+    """The common part of surfaces, faults and bodies: a mesh from arrays or from a file."""
 
-    name: str
     vertices: np.ndarray | None
     triangles: np.ndarray | None
     mesh: str | Path | MeshFile | None
-    shape_file: Path | None
-    source: Source | None
 
     def triangulation(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) and triangles (T, 3) of one whose mesh is read or made."""
@@ -36,22 +34,19 @@ class _Shape:
         return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
 
     @property
+    def point_file(self) -> PointFile | None:
+        """The file of its points and how it is read; None where they are an array, or there are none."""
+        return as_point_file(getattr(self, "points", None))
+
+    @property
     def input_file(self) -> Path | None:
         """The file that gives its shape; None where arrays do."""
-        given = self.mesh_file or getattr(self, "point_file", None) or getattr(self, "trace_file", None)
+        given = self.mesh_file or self.point_file or getattr(self, "trace_file", None)
         return None if given is None else Path(given.file)
-
-    def shape_source(self) -> tuple[Path | None, int | None]:
-        """The source of the shape, for messages: its file, or its line in the project file."""
-        if self.shape_file is not None:
-            return self.shape_file, None
-        if self.source is not None:
-            return self.source.document.file, self.source.line()
-        return None, None
 
 
 @dataclass
-class Fault(_Shape):
+class Fault(Shaped):
     """A fault: an open triangulated surface in any position, that displaces surfaces.
 
     Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
@@ -72,6 +67,7 @@ class Fault(_Shape):
     displacement vanishes. rocks: names of the rock masses that it displaces; none: all that have `youngest`.
     """
 
+    kind = "fault"
     name: str
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
@@ -97,24 +93,19 @@ class Fault(_Shape):
         return self.trace
 
     @property
-    def point_file(self) -> PointFile | None:
-        """The file of its points; None where they are an array, or there are none."""
-        return _as_point_file(self.points)
-
-    @property
     def trace_file(self) -> PointFile | None:
         """The file of its trace; None where it is an array or text, or there is none."""
-        return None if isinstance(self.trace, str) and is_wkt(self.trace) else _as_point_file(self.trace)
+        return None if isinstance(self.trace, str) and is_wkt(self.trace) else as_point_file(self.trace)
 
 
-def _as_point_file(given) -> PointFile | None:
+def as_point_file(given) -> PointFile | None:
     if isinstance(given, (str, Path)):
         return PointFile(given)
     return given if isinstance(given, PointFile) else None
 
 
 @dataclass
-class Body(_Shape):
+class Body(Shaped):
     """A body: a closed triangulated surface of any shape, within which there is another rock, or none.
 
     Its shape is `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh`.
@@ -123,6 +114,7 @@ class Body(_Shape):
     is in; None: all that have `after`.
     """
 
+    kind = "body"
     name: str
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
@@ -133,11 +125,3 @@ class Body(_Shape):
     mesh: str | Path | MeshFile | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
-
-
-def fault_item(fault: Fault) -> str:
-    return f"fault '{fault.name}'"
-
-
-def body_item(body: Body) -> str:
-    return f"body '{body.name}'"

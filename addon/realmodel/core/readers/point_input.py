@@ -12,19 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from ..base.errors import InputRefused
-from ..base.mapped_arrays import Gather, in_memory, in_pieces
+from ..base.mapped_arrays import JoinPieces, in_memory, in_pieces
 from ..base.text import Step, no_step
 from ..base.units import MODEL_UNIT, factor
 from ..settings.point_file import PointFile
 from .maps.map_input import is_map_layer, map_companions
 from .maps.map_points import read_map_points
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
-from .rasters.cps3_grid import is_cps3_grid, read_cps3_grid
+from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
 from .rasters.geotiff import is_tiff, read_geotiff, world_file
 from .rasters.irap_grid import is_irap_grid, read_irap_grid
 from .rasters.raster import Raster
 from .rasters.surfer_grid import is_surfer_grid, read_surfer_grid
-from .rasters.zmap_grid import is_zmap_grid, read_zmap_grid
 from .tables.points import read_point_rows
 
 _HEAD = 4096  # bytes; comments may come before the first line of a grid
@@ -73,7 +72,7 @@ OFTEN_NO_VALUE = (
 
 
 def read_point_file(
-    given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step, gather: Gather = in_memory
+    given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step, gather: JoinPieces = in_memory
 ) -> tuple[np.ndarray, list[str]]:
     """(P, 3) float64 points in the model's unit, and warnings, sentences. gather: where the points are kept.
 
@@ -111,7 +110,7 @@ def read_point_file(
 class _InModel:
     """Gathers points of a file in the model's unit. heights: of the file, examined on the way."""
 
-    def __init__(self, given: PointFile, model_unit: str, gather: Gather):
+    def __init__(self, given: PointFile, model_unit: str, gather: JoinPieces):
         self._given, self._unit, self._gather = given, model_unit, gather
         self.heights = _Heights()
 
@@ -124,7 +123,7 @@ class _InModel:
         return in_model(points, self._given, self._unit)
 
 
-def _array_points(file: Path, gather: Gather) -> np.ndarray:
+def _array_points(file: Path, gather: JoinPieces) -> np.ndarray:
     """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
     try:
         found = np.load(file, mmap_mode="r", allow_pickle=False)
@@ -217,7 +216,7 @@ def head_of(file: Path) -> bytes:
 
 
 def _raster_points(
-    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: Gather, kept: Gather
+    given: PointFile, file: Path, known: RasterFormat, step: Step, gather: JoinPieces, kept: JoinPieces
 ) -> tuple[np.ndarray, list[str]]:
     chosen = ["where"] if given.where else []
     refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.triangles import checked_triangulation
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, refused_as, run
 from ..settings.method_options import check_threads
 
 SURFACES = ("the first surface", "the second surface")  # as refusals name them
@@ -217,12 +217,8 @@ def intersect(
 def intersect_within(work: Work, a, b, share: float = 1.0) -> Intersection:
     """`intersect` as the first part of a job, which takes this share of its progress."""
     first, second = _checked(a, 0), _checked(b, 1)
-    native = native_module()
-    with work.phase(0.0, share, "intersecting"):
-        try:
-            return Intersection(work.native(native.intersect, *first, *second))
-        except native.InputError as error:
-            raise _refused(error) from error
+    with work.phase(0.0, share, "intersecting"), refused_as(_refused) as native:
+        return Intersection(work.native(native.intersect, *first, *second))
 
 
 def _checked(surface, number: int) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.errors import UsageError
 from .geological_map import Ground, ground_of
 
@@ -101,7 +102,7 @@ def _lines(corners: np.ndarray, vertices: np.ndarray, solid: np.ndarray, level: 
             path.append(end[at])
             at = after[at]
         points = np.array(path)
-        points = points[np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))]
+        points = points[begins_run(points)]
         if len(points) > 1:
             lines.append(points)
     return lines

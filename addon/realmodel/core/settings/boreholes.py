@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .point_file import ReadingError, check_units
+from .method_options import OptionRefused
+from .point_file import check_units
 
 COLUMNS = ("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination")
 DOWNWARD_DIPS = ("negative", "positive")
@@ -43,19 +44,19 @@ class Boreholes:
         return [Path(file) for file in (self.collars, self.survey, self.picks) if file is not None]
 
     def check(self) -> None:
-        """Raises ReadingError for a key that makes no sense."""
+        """Raises OptionRefused for a key that makes no sense."""
         if not isinstance(self.columns, Mapping):
             what = f"'columns' must be a table of column names, not {self.columns!r}"
-            raise ReadingError("columns", what, 'write columns = { hole = "BHID" }')
+            raise OptionRefused(what, "columns", 'write columns = { hole = "BHID" }')
         for name, column in self.columns.items():
             if name not in COLUMNS:
                 what = f"'columns' has an unknown column '{name}'"
-                raise ReadingError("columns", what, f"there are {', '.join(COLUMNS)}")
+                raise OptionRefused(what, "columns", f"there are {', '.join(COLUMNS)}")
             is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
             if not is_number and not (isinstance(column, str) and column.strip()):
                 what = f"column '{name}' must be a name or a number from 1, not {column!r}"
-                raise ReadingError("columns", what)
+                raise OptionRefused(what, "columns")
         if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
             what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
-            raise ReadingError("downward_dip", what)
+            raise OptionRefused(what, "downward_dip")
         check_units(self.units)

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base.units import METERS
-from .point_file import ReadingError, check_where
+from .method_options import OptionRefused
+from .point_file import check_where
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -41,9 +42,9 @@ class MapLayer:
     units: str | None = None
 
     def check(self) -> None:
-        """Raises ReadingError for a key that makes no sense."""
+        """Raises OptionRefused for a key that makes no sense."""
         if self.layer is not None and not (isinstance(self.layer, str) and self.layer.strip()):
-            raise ReadingError("layer", f"'layer' must be a name, not {self.layer!r}")
+            raise OptionRefused(f"'layer' must be a name, not {self.layer!r}", "layer")
         check_where(self.where)
         if self.units is not None and self.units not in METERS:
-            raise ReadingError("units", f"unknown unit {self.units!r}", f"there are {', '.join(METERS)}")
+            raise OptionRefused(f"unknown unit {self.units!r}", "units", f"there are {', '.join(METERS)}")

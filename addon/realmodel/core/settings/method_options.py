@@ -13,10 +13,10 @@ from .setting import Setting, Settings
 
 
 class OptionRefused(InputRefused):
-    """An option of a method is not as it must be; `option` is its name, for the line in a file."""
+    """A setting is not as it must be; `option` is its name, for the line in a file."""
 
-    def __init__(self, what: str, *, option: str | None = None, **where):
-        super().__init__(what, **where)
+    def __init__(self, what: str, option: str | None = None, advice: str | None = None, **where):
+        super().__init__(what, advice=advice, **where)
         self.option = option
 
 

@@ -3,21 +3,13 @@
 
 from __future__ import annotations
 
-import builtins
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base.units import METERS, factor
-
-
-class ReadingError(ValueError):
-    """A wrong value of a key of PointFile: the key, what is wrong, what to do."""
-
-    def __init__(self, key: str, what: str, advice: str | None = None):
-        self.key, self.what, self.advice = key, what, advice
-        super().__init__(f"{what}; {advice}" if advice else what)
+from .method_options import OptionRefused
 
 
 @dataclass(frozen=True)
@@ -48,30 +40,30 @@ class PointFile:
     layer: str | None = None
     z_axis: str = "up"
 
-    @builtins.property
+    @property
     def nodata_values(self) -> list:
         return list_of(self.nodata)
 
-    @builtins.property
+    @property
     def plan_unit(self) -> str | None:
         return self.units.get("xy") if isinstance(self.units, Mapping) else self.units
 
-    @builtins.property
+    @property
     def height_unit(self) -> str | None:
         return self.units.get("z") if isinstance(self.units, Mapping) else self.units
 
-    @builtins.property
+    @property
     def only_for_tables(self) -> list[str]:
         """The keys given that only a table of text can have."""
         return [key for key in ("columns", "separator", "decimal") if getattr(self, key)]
 
-    @builtins.property
+    @property
     def only_for_shapes(self) -> list[str]:
         """The keys given that only a file of shapes can have."""
         return [key for key in ("height", "layer") if getattr(self, key)]
 
     def check(self) -> None:
-        """Raises ReadingError for a key that makes no sense."""
+        """Raises OptionRefused for a key that makes no sense."""
         if self.columns is not None:
             check_columns(self.columns)
         check_where(self.where)
@@ -82,17 +74,17 @@ class PointFile:
             and not self.separator.isalnum()
             and self.separator not in '.+-"#\n\r'
         ):
-            raise ReadingError("separator", f"'separator' must be one character, not {self.separator!r}")
+            raise OptionRefused(f"'separator' must be one character, not {self.separator!r}", "separator")
         if self.decimal not in (None, ".", ","):
-            raise ReadingError("decimal", f'\'decimal\' must be "." or ",", not {self.decimal!r}')
+            raise OptionRefused(f'\'decimal\' must be "." or ",", not {self.decimal!r}', "decimal")
         if self.decimal == "," == self.separator:
-            raise ReadingError("decimal", "a comma cannot be both 'separator' and 'decimal'")
+            raise OptionRefused("a comma cannot be both 'separator' and 'decimal'", "decimal")
         if not all(_is_value(value) for value in self.nodata_values):
-            raise ReadingError("nodata", f"'nodata' must be a number or text, not {self.nodata!r}")
+            raise OptionRefused(f"'nodata' must be a number or text, not {self.nodata!r}", "nodata")
         for key in ("height", "layer"):
             name = getattr(self, key)
             if name is not None and not (isinstance(name, str) and name.strip()):
-                raise ReadingError(key, f"'{key}' must be a name, not {name!r}")
+                raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
         check_units(self.units)
         check_z_axis(self.z_axis)
 
@@ -106,7 +98,7 @@ class MeshFile:
     z_axis: str = "up"
 
     def check(self) -> None:
-        """Raises ReadingError for a unit or an axis that is not known."""
+        """Raises OptionRefused for a unit or an axis that is not known."""
         check_units(self.units)
         check_z_axis(self.z_axis)
 
@@ -126,22 +118,22 @@ def check_columns(columns) -> None:
     said = "'columns' must be the names or numbers of three columns"
     advice = 'write columns = ["X", "Y", "Z"]'
     if not isinstance(columns, (list, tuple)) or len(columns) != 3:
-        raise ReadingError("columns", f"{said}, not {columns!r}", advice)
+        raise OptionRefused(f"{said}, not {columns!r}", "columns", advice)
     for column in columns:
         if isinstance(column, str) and column.strip():
             continue
         if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
-            raise ReadingError("columns", f"{said}, not {column!r}", "column numbers start at 1")
+            raise OptionRefused(f"{said}, not {column!r}", "columns", "column numbers start at 1")
 
 
 def check_where(where) -> None:
     advice = "write where = { val = 60 }"
     if not isinstance(where, Mapping):
-        raise ReadingError("where", f"'where' must be a table of columns and values, not {where!r}", advice)
+        raise OptionRefused(f"'where' must be a table of columns and values, not {where!r}", "where", advice)
     for column, values in where.items():
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'where' must give a number or text for '{column}', not {values!r}"
-            raise ReadingError("where", what, advice)
+            raise OptionRefused(what, "where", advice)
 
 
 def check_units(units) -> None:
@@ -149,14 +141,14 @@ def check_units(units) -> None:
     for part, unit in parts.items():
         if part not in ("xy", "z"):
             what = f"'units' has a part {part!r}"
-            raise ReadingError("units", what, 'its parts are xy and z: units = { z = "ft" }')
+            raise OptionRefused(what, "units", 'its parts are xy and z: units = { z = "ft" }')
         if unit is not None and unit not in METERS:
-            raise ReadingError("units", f"unknown unit {unit!r}", f"there are {', '.join(METERS)}")
+            raise OptionRefused(f"unknown unit {unit!r}", "units", f"there are {', '.join(METERS)}")
 
 
 def check_z_axis(axis) -> None:
     if axis not in ("up", "down"):
-        raise ReadingError("z_axis", f'\'z_axis\' must be "up" or "down", not {axis!r}')
+        raise OptionRefused(f'\'z_axis\' must be "up" or "down", not {axis!r}', "z_axis")
 
 
 def _is_value(value) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.errors import BuildFailed
 from .patches import boundary_patches, solver_names
 from .volume_mesh import PolyhedralMesh, VolumeMesh
@@ -90,9 +91,7 @@ class ElementFaces:
             np.concatenate(corners).astype(np.int32, copy=False),
             np.concatenate(cells).astype(np.int32, copy=False),
             np.concatenate(surface),
-            np.concatenate([*mesh.element_block.values(), np.empty(0, np.int32)]).astype(
-                np.int32, copy=False
-            ),
+            mesh.all_blocks,
             mesh.block_names,
             mesh.block_property,
             mesh.surface_names,
@@ -164,7 +163,7 @@ class _Faces:
         key = self._key(corners)
         order = np.argsort(key, kind="stable")
         sorted_key = key[order]
-        begins = np.append(True, sorted_key[1:] != sorted_key[:-1])[: len(key)]
+        begins = begins_run(sorted_key)
         at = np.flatnonzero(begins)
         uses = np.diff(np.append(at, len(key)))
         if (uses > 2).any():

@@ -63,6 +63,11 @@ class VolumeMesh:
         """The number of elements."""
         return sum(map(len, self.elements.values()))
 
+    @property
+    def all_blocks(self) -> np.ndarray:
+        """(E,) int32: the block of each element, kind by kind."""
+        return np.concatenate([*self.element_block.values(), np.empty(0, np.int32)]).astype(np.int32)
+
 
 @dataclass(frozen=True, eq=False)
 class PolyhedralMesh:

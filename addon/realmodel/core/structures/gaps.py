@@ -16,7 +16,7 @@ from ..base.errors import InputRefused, place_text
 from ..base.sheet import Sheet
 from ..base.triangles import edges_of
 from ..base.work import Work
-from ..project.structure_entries import Fault, fault_item
+from ..project.structure_entries import Fault
 from ..settings.rules import RULES
 from ..surfaces.planar_mesh import triangulate_rings
 from ..surfaces.rock_input import RockInput
@@ -161,7 +161,7 @@ class _Around:
         fault that dies out may end near walls and surfaces: it only reaches those at which it ends."""
         ending = conditions
         if fault.dies_out:
-            ending = {fault_item(other): conditions[fault_item(other)] for other in ends}
+            ending = {other.item: conditions[other.item] for other in ends}
         vertices, _ = fault.triangulation()
         ways = _smoothed(vertices, border, self.width)
         points, edge, weight = _spread(vertices, border, self.width)
@@ -176,7 +176,7 @@ class _Around:
         return _Samples(points, edge, weight, way, side, inside, near)
 
     def _conditions(self, fault: Fault, ends: list[Fault], has_sheets: bool) -> _Conditions:
-        found = self._walls() | {fault_item(other): self._side_of(fault, other) for other in ends}
+        found = self._walls() | {other.item: self._side_of(fault, other) for other in ends}
         return found | self._tops() if has_sheets else found
 
     def _walls(self) -> _Conditions:
@@ -301,7 +301,7 @@ class _Around:
             if len(own):
                 widest = own[int(high[own].argmax())]
                 text = (
-                    f"{fault_item(fault)}: its border ends up to {high[widest]:.4g} before {name}, near "
+                    f"{fault.item}: its border ends up to {high[widest]:.4g} before {name}, near "
                     f"{place_text(points[widest])}: it is continued to it"
                 )
                 warnings.append(BuildWarning(text, "fault", self.entry.rock.name))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.algebra import norm
 from ..base.errors import BuildFailed
-from ..base.mapped_arrays import Keep, as_it_is
+from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
@@ -43,7 +43,9 @@ def read_inputs(work: Work, project: Project, reader: Reader = read_each) -> tup
     return inputs, replace(project, faults=faults, bodies=bodies)
 
 
-def mesh_inputs(work: Work, inputs: list[RockInput], start: float, end: float, keep: Keep = as_it_is) -> None:
+def mesh_inputs(
+    work: Work, inputs: list[RockInput], start: float, end: float, keep: StoreArray = as_it_is
+) -> None:
     """Meshes the regions of rock masses. Progress goes from `start` to `end`. keep: where the meshes are
     kept. Raises InputRefused."""
     for entry, (begin, finish) in _in_parts(inputs, start, end):
@@ -60,7 +62,7 @@ def make_surfaces(
     stage: int | None,
     start: float,
     end: float,
-    keep: Keep = as_it_is,
+    keep: StoreArray = as_it_is,
     flat: Callable[[Rock], Collection[int]] | None = None,
     joins: bool = True,
 ) -> Structures:
@@ -95,7 +97,7 @@ def make_structures(
     start: float,
     end: float,
     joins: bool = True,
-    keep: Keep = as_it_is,
+    keep: StoreArray = as_it_is,
 ) -> Structures:
     """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
     returns the parts of space. Progress goes from `start` to `end`.

@@ -10,16 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused
 from ..base.mapped_arrays import MappedArrays, in_memory
-from ..base.work import Work, native_module
+from ..base.work import Work, native_module, refused_as
 from ..heights import from_neighbours
 from ..heights.extrapolation import hull_border, hull_corners, outside_hull, replace_extrapolated
 from ..heights.interpolation import Result, Task, run_method
 from ..heights.mis_ties import each_place_once, without_mis_ties
 from ..heights.plain import Plane, fitted_plane, mean_height
 from ..heights.regular_grid import RegularGrid, bilinear, find_grid, has_each_node_once, require_one_height
-from ..heights.run import elsewhere, few_points, runs_away
+from ..heights.run import elsewhere, few_points, refused_points, runs_away
 from ..project.project import Rock, Surface, surface_item
 from ..settings.methods import METHODS
 from .rock_input import named_surfaces
@@ -225,10 +224,9 @@ def local_heights(
     """The shared data of a surface, found from all its points, which may be in a file; the points that its
     parts are interpolated from, one at each position in plan; and warnings. extent: (2, 2), of all nodes.
     arrays: where arrays as long as the points are kept; None: in memory. Raises InputRefused."""
-    native = native_module()
     zeros, gather = (np.zeros, in_memory) if arrays is None else (arrays.zeros, arrays.gather)
     given, grid, mis_ties, are_apart = points, None, None, False
-    try:
+    with refused_as(refused_points) as native:
         if method == "grid":  # a raster rarely has several points at a node
             grid = find_grid(points)
             are_apart = has_each_node_once(points, grid, zeros)
@@ -254,8 +252,6 @@ def local_heights(
             found = replace(found, hull=hull_corners(points))
         if found.takes_points:  # of no nodes: it checks the settings
             found.heights(work, np.array(points[:1]), np.empty((0, 2)))
-    except native.InputError as error:
-        raise InputRefused(str(error), item="points", place=error.place) from error
     return found, points if found.takes_points else np.empty((0, 3)), warnings
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
-from ..base.work import Cancel, Progress, Work, native_module, run
+from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
 from ..project.region_rings import numbered_ring, region_rings
 from ..settings.mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
 from ..settings.meshers import DEFAULT_MESHER
@@ -135,11 +135,8 @@ def mesh_rings(work: Work, rings: list[np.ndarray], options: MeshOptions):
 
 def triangulate_rings(rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """The region of checked rings in as few triangles as there are, without further vertices."""
-    native = native_module()
-    try:
+    with refused_as(refused_region) as native:
         return native.triangulate_rings(rings)
-    except native.InputError as error:
-        raise refused_region(error) from error
 
 
 def triangulate_polygon(outline, holes=()) -> np.ndarray:
@@ -156,19 +153,13 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
     """
     rings = [numbered_ring(outline, "outline")]
     rings += [numbered_ring(hole, f"hole {number}") for number, hole in enumerate(holes, 1)]
-    native = native_module()
-    try:
+    with refused_as(refused_region) as native:
         return native.triangulate_polygon(rings)
-    except native.InputError as error:
-        raise refused_region(error) from error
 
 
 def _native_call(work: Work, function, rings: Sequence[np.ndarray], request: dict):
-    native = native_module()
-    try:
+    with refused_as(refused_region):
         return work.native(function, list(rings), request)
-    except native.InputError as error:
-        raise refused_region(error) from error
 
 
 def refused_region(error) -> InputRefused:

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, number_list
-from ..base.mapped_arrays import Keep, as_it_is
+from ..base.errors import InputRefused, naming, number_list
+from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
-from ..project.project import Project, Rock, rock_item
+from ..project.project import Project, Rock
 from ..readers import Picks, read_boreholes
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
@@ -115,7 +115,7 @@ def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWa
             document = rock.source.document
             path = ring_path(rock.region, getattr(error.__cause__, "items", ()))
             file, line = document.file, document.line((*rock.source.path, *path))
-        raise error.within(rock_item(rock), file=file, line=line) from error
+        raise error.within(rock.item, file=file, line=line) from error
     rock = replace(rock, region=region, holes=holes, shape_file=rock.region_file or rock.shape_file)
     return rock, [BuildWarning(text, "left_out", rock.name) for text in left_out]
 
@@ -128,18 +128,16 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
         key = "size"
         return replace(rock, constraints=lines, size=read_sizes(rock.size, units))
     except InputRefused as error:
-        file, line = (rock.source.document.file, rock.source.line(key)) if rock.source else (None, None)
-        raise error.within(rock_item(rock), file=file, line=line) from error
+        file, line = rock.place_of(key)
+        raise error.within(rock.item, file=file, line=line) from error
 
 
 def _read_picks(rock: Rock, units: str) -> Picks:
     """The picks of the boreholes of a rock mass."""
     if rock.boreholes is None:
         return Picks()
-    try:
+    with naming(rock.item):
         return read_boreholes(rock.boreholes, units)
-    except InputRefused as error:
-        raise error.within(rock_item(rock)) from error
 
 
 def mesh_rock(work: Work, entry: RockInput) -> None:
@@ -163,10 +161,12 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
             entry.region = Sheet(*triangulate_rings(rock.rings()))
     except InputRefused as error:
         kind = getattr(error.__cause__, "kind", "")
-        file, line = rock.edge_length_source() if kind in _EDGE_LENGTH_KINDS else rock.region_source()
+        file, line = (
+            rock.place_of("edge_length") if kind in _EDGE_LENGTH_KINDS else rock.shape_source("region")
+        )
         if kind.startswith("constraint") and rock.source is not None:
-            file, line = rock.source.document.file, rock.source.line("constraints")
-        raise error.within(rock_item(rock), file=file, line=line) from error
+            file, line = rock.place_of("constraints")
+        raise error.within(rock.item, file=file, line=line) from error
 
 
 def _density_points(rock: Rock) -> np.ndarray:
@@ -191,7 +191,7 @@ def interpolate_rock(
     start: float,
     end: float,
     stage: int | None = None,
-    keep: Keep = as_it_is,
+    keep: StoreArray = as_it_is,
     flat: Collection[int] = (),
 ) -> None:
     """Interpolates the surfaces of a rock mass; for a stage only those that it needs. Progress goes from

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, place_text
+from ..base.errors import InputRefused, naming, place_text
 from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..heights import Interpolation, chosen, heights
@@ -92,7 +92,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
     nodes, triangles = region = entry.planar_mesh()
     method, settings = surface.method_options()
     others: dict = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
-    try:
+    with naming(surface_item(rock, surface), surface.shape_source):
         if trend is not None:
             result = _on_trend(work, entry, number, trend, others)
         else:
@@ -109,9 +109,6 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
             warnings += _older_points_above(work, rock, number, shape)
             shape, raised = _above_older(work, entry, number, shape)
             warnings += raised
-    except InputRefused as error:
-        file, line = surface.shape_source()
-        raise error.within(surface_item(rock, surface), file=file, line=line) from error
     entry.surfaces[number] = shape
     entry.interpolations[number] = result
     entry.attributes[number] = attributes
@@ -156,11 +153,8 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     method, settings = surface.method_options()
     if method != "auto":
         return
-    try:
+    with naming(surface_item(rock, surface), surface.shape_source):
         method, options = chosen(work, surface.points, settings)
-    except InputRefused as error:
-        file, line = surface.shape_source()
-        raise error.within(surface_item(rock, surface), file=file, line=line) from error
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import InputRefused
-from ..base.mapped_arrays import Gather, MappedArrays, in_memory, in_pieces
+from ..base.errors import InputRefused, naming
+from ..base.mapped_arrays import JoinPieces, MappedArrays, in_memory, in_pieces
 from ..base.sheet import Sheet
 from ..base.text import Step, no_step
 from ..base.triangles import checked_triangulation
@@ -68,17 +68,15 @@ class SurfaceInput:
         file = surface.input_file or surface.shape_file
         if file is None and surface.points is None:
             file = self.boreholes
-        try:
+        with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.interpolated:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
                 return ReadSurface(replace(surface, points=points, shape_file=file), None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
-        except InputRefused as error:
-            raise error.within(surface_item(Rock(self.rock, []), surface)) from error
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
         return ReadSurface(surface, Sheet(vertices, triangles), faces, warnings)
 
-    def _points(self, file: Path | None, step: Step, gather: Gather) -> tuple[np.ndarray, list[str]]:
+    def _points(self, file: Path | None, step: Step, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
         surface = self.surface
         points: object = surface.points
         warnings: list[str] = []

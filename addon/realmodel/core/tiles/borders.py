@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..cells.model_data import SomeModel
 
@@ -283,9 +284,7 @@ def patches_on(model, side: Side, edges: BorderEdges, positions: np.ndarray) -> 
     height = np.where(share == 0, height[:, :1], np.where(share == 1, height[:, 1:], between))
     order = np.lexsort((*height.T, height.sum(axis=1), part, face))
     face, part, cell, height, divided = (each[order] for each in (face, part, cell, height, divided))
-    start = np.ones(len(face), bool)
-    start[1:] = (face[1:] != face[:-1]) | (part[1:] != part[:-1])
-    begin = np.flatnonzero(start)
+    begin = np.flatnonzero(begins_run(np.column_stack([face, part])))
     size = np.diff([*begin, len(face)])
     lowest, highest = begin[size > 1], (begin + size - 1)[size > 1]
     shape = np.column_stack([divided[lowest], height[lowest], height[highest]]).reshape(-1, 6)

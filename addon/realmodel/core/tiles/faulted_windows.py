@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..base.algebra import norm
-from ..base.mapped_arrays import Keep, as_it_is
+from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.triangles import extents
 from ..base.work import Work, native_module
@@ -47,7 +47,7 @@ class Window:
 class _Plan:
     """The triangles (T, 3) of a sheet or a region, and its vertices in plan (V, 2)."""
 
-    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, keep: Keep):
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, keep: StoreArray):
         self.triangles, self.vertices = triangles, keep(np.ascontiguousarray(vertices[:, :2]))
         self._keep = keep
         self._grid: TileGrid | None = None
@@ -91,7 +91,7 @@ class Windows:
         work: Work,
         inputs: list[RockInput],
         structures: Structures,
-        keep: Keep = as_it_is,
+        keep: StoreArray = as_it_is,
     ):
         self.inputs, self.snapped = inputs, None
         self.structures, self._keep = structures, keep
@@ -330,7 +330,7 @@ def _are_any_close(work: Work, plans: list[np.ndarray]) -> bool:
     return work.native(native_module().find_joins, rocks, borders=False) is not None
 
 
-def _snapped(work: Work, inputs: list[RockInput], keep: Keep) -> tuple[list[RockInput], str | None]:
+def _snapped(work: Work, inputs: list[RockInput], keep: StoreArray) -> tuple[list[RockInput], str | None]:
     """Rock masses with plan coordinates that differ by rounding alone made equal, the same in all windows;
     and the warning about that, or None."""
     distinct = [

@@ -16,6 +16,7 @@ from math import inf, nextafter
 
 import numpy as np
 
+from ..base.algebra import begins_run
 from .borders import Side, sides_of
 
 Box = tuple[float, float, float, float]
@@ -103,7 +104,7 @@ def _are_apart(box: Box, tiles: list[BorderVertices]) -> bool:
 def _distinct(rows: np.ndarray) -> int:
     """How many different rows (N, C) there are."""
     rows = rows[np.lexsort(rows.T)]
-    return len(rows[:1]) + int((rows[1:] != rows[:-1]).any(axis=1).sum())
+    return int(begins_run(rows).sum())
 
 
 def _rounded(box: Box, vertices: BorderVertices) -> np.ndarray:

@@ -17,7 +17,7 @@ from ..base.build_warning import BuildWarning
 from ..base.errors import BuildFailed, OutputFailed
 from ..base.mapped_arrays import in_pieces, read_mapped, write_mapped
 from ..base.sheet import Sheet
-from ..base.work import Work, native_module, run
+from ..base.work import Work, refused_as, run
 from ..cells.assembly import assemble
 from ..cells.blocks import blocks_of_arrays
 from ..cells.built_cells import BuiltCells
@@ -81,7 +81,9 @@ def without_shape(rock: Rock) -> Rock:
         )
         for surface in rock.surfaces
     ]
-    return Rock(rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.region_source()[0])
+    return Rock(
+        rock.name, surfaces, base_elevation=rock.base_elevation, shape_file=rock.shape_source("region")[0]
+    )
 
 
 def without_shapes(project: Project, inputs: list[RockInput]) -> Project:
@@ -359,13 +361,10 @@ def build_tile(work: Work, frame: Frame, box: Box, folder: Path) -> BuiltTile:
     numbers = [
         parts[r, k].numbers for r, rock in enumerate(frame.project.rocks) for k in range(len(rock.surfaces))
     ]
-    native = native_module()
     began = time.perf_counter()
-    with work.phase(0.0, 0.8, "intersecting and cutting"):
-        try:
-            arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
-        except native.InputError as error:
-            raise refused_stack(_NumberedError(error, numbers), inputs) from error
+    refused = refused_as(lambda error: refused_stack(_NumberedError(error, numbers), inputs))
+    with work.phase(0.0, 0.8, "intersecting and cutting"), refused as native:
+        arrays = work.native(native.build_tile, rocks, box, cells=frame.cell_kind)
     project = replace(frame.project, rocks=[entry.rock for entry in inputs])
     timings = {"intersect": time.perf_counter() - began}
     built = BuiltCells.of(arrays, frame.cell_kind)

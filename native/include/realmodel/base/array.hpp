@@ -16,9 +16,9 @@
 namespace realmodel {
 
 /// A vector of numbers, or of what is nothing but numbers, that differs from std::vector in two
-/// ways where it is large. Elements that are added without a value are not set: the threads that
-/// fill them are the first to touch their memory. And it grows by whole pages (page_store.hpp):
-/// what is there is not copied, and what is reserved takes no memory before it is made ready.
+/// ways. Elements that are added without a value are not set: the threads that fill them are the
+/// first to touch their memory. And where it is large it takes the memory of others that were
+/// dropped (page_store.hpp), and grows as realloc does it, which on Linux copies nothing.
 template <class Element>
 class Array {
     static_assert(std::is_trivially_copyable_v<Element> &&

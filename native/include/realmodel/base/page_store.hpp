@@ -4,56 +4,49 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The memory of arrays. That of large ones comes in blocks of pages: a build makes and drops
-/// arrays many times as large as what it holds at once, and a system hands out pages one by one,
-/// cleared, which takes an eighth of the build's time. So while a Keeper lives, the blocks of
-/// dropped arrays stay in the process: on Linux they are moved to where the next array needs them,
-/// on Windows it is put where they are. Elsewhere all memory comes from malloc.
+/// The memory of arrays, which comes from malloc. A build makes and drops large arrays many times
+/// as large as what it holds at once, and a system hands out pages one by one, cleared, which takes
+/// a tenth of the build's time. So while a Keeper lives, the memory of dropped arrays stays in the
+/// process, and a new array takes what is nearest to its size.
 namespace realmodel::page_store {
 
-inline constexpr std::size_t kBlock = std::size_t{2} << 20;  ///< bytes
-
-// AddressSanitizer watches what comes from malloc.
-#if !(defined(__linux__) || defined(_WIN64)) || defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kIsThere = false;
+/// What has at least so many bytes is kept. AddressSanitizer is to see all that is dropped.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr std::size_t kLargeArray = SIZE_MAX;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-inline constexpr bool kIsThere = false;
+inline constexpr std::size_t kLargeArray = SIZE_MAX;
 #else
-inline constexpr bool kIsThere = true;
+inline constexpr std::size_t kLargeArray = std::size_t{4} << 20;
 #endif
 #else
-inline constexpr bool kIsThere = true;
+inline constexpr std::size_t kLargeArray = std::size_t{4} << 20;
 #endif
-
-/// Arrays of at least so many bytes have blocks of their own; smaller ones come from malloc.
-inline constexpr std::size_t kLargeArray = kIsThere ? 2 * kBlock : SIZE_MAX;
 
 /// The memory of one array, in bytes.
 struct Memory {
     char* begin = nullptr;
-    std::size_t ready = 0;     ///< up to where there are pages: all of this moves with the array
+    std::size_t ready = 0;     ///< up to where it has been used, or soon will be
     std::size_t reserved = 0;  ///< up to where it can be made ready without moving
 };
 
-/// Reserves at least so many bytes. They take no memory before they are made ready.
-/// @throws std::bad_alloc; the memory is then as it was or, where the system has failed while it
-///         was moved, empty
+/// Reserves at least so many bytes.
+/// @throws std::bad_alloc; the memory is then as it was
 void reserve(Memory& memory, std::size_t bytes);
 
-/// Makes at least so many bytes ready to be written, from kept blocks first. What was ready keeps
-/// its contents. Where more than what is reserved is asked for, twice as much is reserved.
+/// Makes at least so many bytes ready to be written. What was ready keeps its contents. Where more
+/// than what is reserved is asked for, twice as much is reserved.
 /// @throws std::bad_alloc, as reserve()
 void make_ready(Memory& memory, std::size_t bytes);
 
-/// Drops the memory. Its blocks are kept while there is a Keeper.
+/// Drops the memory. That of a large array is kept while there is a Keeper.
 void drop(Memory& memory) noexcept;
 
 /// Bytes that are kept for later.
 std::size_t kept() noexcept;
 
-/// While one of these lives, on any thread, blocks that are dropped are kept. The last one gives
-/// them back to the system.
+/// While one of these lives, on any thread, memory that is dropped is kept, with what arrays have
+/// no more than they had at most at once. The last one gives it back to the system.
 class Keeper {
 public:
     Keeper();

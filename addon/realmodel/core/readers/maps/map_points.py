@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import HeightsMissing, InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import Step, no_step
 from ...settings.map_layer import MapLayer
 from ...settings.point_file import PointFile
@@ -17,7 +17,7 @@ from .shapes import Heights
 
 
 def read_map_points(
-    given: PointFile, step: Step = no_step, gather: Gather = in_memory
+    given: PointFile, step: Step = no_step, gather: JoinPieces = in_memory
 ) -> tuple[np.ndarray, list[str]]:
     """(P, 3) float64, in the file's unit: its points, and the corners of its lines and polygons; and
     warnings, sentences. gather: where the points are kept. Raises InputRefused naming the file and the

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.algebra import begins_run
 from ...base.errors import InputRefused
 from ...base.fans import fanned
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, MakeRows, Rows, in_memory, in_pieces
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, MakeRows, Rows, in_memory, in_pieces
 from ...settings.point_file import MeshFile
 
 _MOST_VERTICES = np.iinfo(np.int32).max
@@ -35,7 +36,7 @@ class TriangleMesh:
     warnings: tuple[str, ...] = ()
 
     def in_model(
-        self, given: MeshFile, model_unit: str, gather: Gather = in_memory
+        self, given: MeshFile, model_unit: str, gather: JoinPieces = in_memory
     ) -> tuple[np.ndarray, list[str]]:
         """The vertices in the model's unit, z upward, and warnings. given: the import options of the user;
         where they have no unit, the unit of the file is used. gather: where the vertices are kept."""
@@ -151,7 +152,7 @@ def mesh_of_corners(file: Path, corners, sizes: Sequence[int] = (3,)) -> Triangl
         places = np.asarray(corners, np.float64).reshape(-1, 3) + 0.0  # zero has one sign
     order = np.lexsort(places.T[::-1])
     ordered = places[order]
-    is_first = np.append(True, (ordered[1:] != ordered[:-1]).any(axis=1))[: len(places)]
+    is_first = begins_run(ordered)
     vertices, index = ordered[is_first], np.empty(len(places), np.int64)
     index[order] = np.cumsum(is_first) - 1
     if len(set(sizes)) == 1:

@@ -8,14 +8,12 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import BOM, Content, Step, no_step, text_content
 from ..tables.table_layout import is_number
-from .grid_text import GridText, grid_heights
-from .raster import Raster, without_values
+from .grid_text import GridText, grid_heights, header_lines
+from .raster import Raster, known_heights
 
 _KEYS = (
     "ncols",
@@ -39,7 +37,7 @@ def is_ascii_grid(head: bytes) -> bool:
 
 
 def read_ascii_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid; heights stand at the centers of its cells. nodata: further numbers that mean no height.
 
@@ -60,22 +58,19 @@ def read_ascii_grid(
     south = _lower_left(file, header, "y", dy)
     heights = grid_heights(GridText(file, raw, body, body_line, decimal), rows, columns, step)
     none = [header["nodata_value"]] if "nodata_value" in header else []
-    z = gather((without_values(piece, [*none, *nodata]) for piece in heights), np.empty(0))
+    z = known_heights(heights, [*none, *nodata], gather)
     return Raster(z.reshape(rows, columns), (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))
 
 
 def _header(file: Path, raw: Content, decimal: str) -> tuple[dict, dict, int, int]:
     """The keys' numbers and lines, the byte where the heights begin, and the line of that."""
     header, lines = {}, {}
-    at, number = len(BOM) if raw[: len(BOM)] == BOM else 0, 0
-    while at < len(raw):
-        number += 1
-        end = raw.find(b"\n", at)
-        end = len(raw) if end < 0 else end
-        entries = raw[at:end].decode("ascii", "replace").split()
+    at, number = 0, 0
+    for number, text, end in header_lines(raw):
+        entries = text.removeprefix(BOM.decode("latin-1")).split()
         if entries and not entries[0][0].isalpha():
             break
-        at = min(end + 1, len(raw))
+        at = end
         if not entries:
             continue
         key = entries[0].lower()

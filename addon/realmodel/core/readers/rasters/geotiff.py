@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory, in_pieces
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory, in_pieces
 from ...base.text import Step, no_step
 from ...base.vendored import vendored
-from ...base.work import native_module
+from ...base.work import native_module, refused_as
 from .raster import Raster, without_values
 
 _MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
@@ -48,7 +48,7 @@ def world_file(file: Path) -> Path | None:
 
 
 def read_geotiff(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
     uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file
@@ -191,14 +191,11 @@ def _cut_off(file: Path) -> InputRefused:
 
 def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:
     """At least the bytes that are there, at most `size`."""
-    native = native_module()
     if compression == _LZW:
         if data[:2] == b"\0\1":
             raise ValueError("LZW from before 1992 is not supported")
-        try:
+        with refused_as(lambda error: ValueError(str(error))) as native:
             return native.decode_lzw(data, size)
-        except native.InputError as error:
-            raise ValueError(str(error)) from error
     if compression in _DEFLATE:
         return zlib.decompressobj().decompress(data, size)
     if compression == _PACKBITS:

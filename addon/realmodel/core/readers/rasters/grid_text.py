@@ -71,6 +71,16 @@ def _to_blank(raw: Content, begin: int) -> bytes:
     return piece
 
 
+def header_lines(raw: Content) -> Iterator[tuple[int, str, int]]:
+    """The number of each line, its text without blanks at its ends, and the byte behind it."""
+    at, number = 0, 0
+    while at < len(raw):
+        end = raw.find(b"\n", at)
+        end, number = len(raw) if end < 0 else end, number + 1
+        text, at = raw[at:end].decode("latin-1").strip(), min(end + 1, len(raw))
+        yield number, text, at
+
+
 def header_numbers(file: Path, text: str, line: int, count: int, what: str) -> list[float]:
     """The first numbers of a line of a header. Raises InputRefused."""
     words = text.replace(",", " ").split()

@@ -14,10 +14,10 @@ import numpy as np
 
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
-from .grid_text import GridText, grid_heights, header_numbers, require_count
-from .raster import Raster, without_values
+from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count
+from .raster import Raster, known_heights
 
 _MAGIC = -996
 _BEGINNING = re.compile(rb"\s*-996(?:\s+[-+.\dEe]+){3}\s*\n")
@@ -33,7 +33,7 @@ def is_irap_grid(head: bytes) -> bool:
 
 
 def read_irap_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid. Raises InputRefused naming the line or the byte."""
     file = Path(file)
@@ -42,13 +42,7 @@ def read_irap_grid(
     heights, shape, (west, south), (dx, dy), angle = _binary(file) if is_binary else _text(file, step)
     if not (np.isfinite([west, south, dx, dy, angle]).all() and dx > 0 and dy > 0):
         raise InputRefused("the header has no place for the grid, or no steps above 0", file=file)
-
-    def known() -> Iterator[np.ndarray]:
-        for z in heights:
-            z[z >= _NO_HEIGHT] = np.nan
-            yield without_values(z, list(nodata))
-
-    z = gather(known(), np.empty(0))
+    z = known_heights(heights, nodata, gather, _NO_HEIGHT)
     across, up = cos(math.radians(angle)), sin(math.radians(angle))
     step(1.0)
     return Raster(z.reshape(shape), (west, south), (dx * across, dx * up), (-dy * up, dy * across))
@@ -56,17 +50,14 @@ def read_irap_grid(
 
 def _text(file: Path, step: Step):
     raw = text_content(file)
-    # the header is 19 numbers on lines of any length
-    at, line = 0, 0
-    numbers: list = []
-    while len(numbers) < 19:
-        end = raw.find(b"\n", at)
-        if end < 0:
-            raise InputRefused("the header is cut off: it has 19 numbers", file=file, line=line + 1)
-        line += 1
-        text = raw[at:end].decode("ascii", "replace")
+    numbers: list[float] = []  # the header is 19 of them, on lines of any length
+    line, at = 0, 0
+    for line, text, at in header_lines(raw):  # noqa: B007  they say where the heights begin
         numbers += header_numbers(file, text, line, len(text.split()), "numbers")
-        at = end + 1
+        if len(numbers) > 18:
+            break
+    else:
+        raise InputRefused("the header is cut off: it has 19 numbers", file=file, line=line + 1)
     rows, dx, dy, west, _, south = *numbers[1:4], *numbers[4:7]
     columns, angle = numbers[8], numbers[9]
     columns, rows = require_count(file, columns, "columns"), require_count(file, rows, "rows")

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Raster:
     down: tuple[float, float]
     warnings: list[str] = field(default_factory=list)
 
-    def points(self, file: Path, gather: Gather = in_memory) -> np.ndarray:
+    def points(self, file: Path, gather: JoinPieces = in_memory) -> np.ndarray:
         """(P, 3) float64, row after row, those without a height left out.
 
         Raises InputRefused where none is left.
@@ -51,6 +51,19 @@ class Raster:
                 for axis in (0, 1):
                     points[:, axis] = self.origin[axis] + columns * self.across[axis] + rows * self.down[axis]
                 yield points
+
+
+def known_heights(
+    pieces: Iterable[np.ndarray], none: Sequence[float], gather: JoinPieces, below: float = np.inf
+) -> np.ndarray:
+    """All heights, NaN where none is known. none: values that mean this, as do those from `below` on."""
+
+    def known() -> Iterator[np.ndarray]:
+        for z in pieces:
+            z[z >= below] = np.nan
+            yield without_values(z, none)
+
+    return gather(known(), np.empty(0))
 
 
 def without_values(

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.mapped_arrays import ROWS_AT_ONCE, Gather, in_memory
+from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory
 from ...base.text import FileBytes, Step, no_step, text_content
-from .grid_text import GridText, grid_heights, header_numbers, require_count, require_spacing
-from .raster import Raster, without_values
+from .grid_text import GridText, grid_heights, header_lines, header_numbers, require_count, require_spacing
+from .raster import Raster, known_heights
 
 _BLANK = 1.70141e38  # this, and more, is no height
 _HEAD_6 = struct.Struct("<4s2h6d")
@@ -26,7 +26,7 @@ def is_surfer_grid(head: bytes) -> bool:
 
 
 def read_surfer_grid(
-    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: Gather = in_memory
+    file: str | Path, nodata: Sequence[float] = (), step: Step = no_step, gather: JoinPieces = in_memory
 ) -> Raster:
     """A grid; its rows go from south to north. Raises InputRefused naming the line or the byte."""
     file = Path(file)
@@ -34,34 +34,21 @@ def read_surfer_grid(
         kind = opened.read(4)
     read = {b"DSAA": _text, b"DSBB": _binary_6, b"DSRB": _binary_7}[kind]
     heights, shape, none, (west, south), (dx, dy) = read(file, step)
-
-    def known() -> Iterator[np.ndarray]:
-        for z in heights:
-            z = without_values(z, none)
-            z[z >= _BLANK] = np.nan
-            yield without_values(z, list(nodata))
-
-    z = gather(known(), np.empty(0)).reshape(shape)
+    z = known_heights(heights, [*none, *nodata], gather, _BLANK)
     step(1.0)
-    return Raster(z, (west, south), (dx, 0.0), (0.0, dy))
+    return Raster(z.reshape(shape), (west, south), (dx, 0.0), (0.0, dy))
 
 
 def _text(file: Path, step: Step):
     raw = text_content(file)
-    lines: list[str] = []
-    at = raw.find(b"\n") + 1
-    for _ in range(4):
-        end = raw.find(b"\n", at)
-        if end < 0:
-            raise InputRefused("the header is cut off: it has five lines", file=file, line=len(lines) + 1)
-        lines.append(raw[at:end].decode("ascii", "replace"))
-        at = end + 1
-    counts = header_numbers(file, lines[0], 2, 2, "the numbers of columns and rows")
-    columns, rows = (
-        require_count(file, n, name, 2) for n, name in zip(counts, ("columns", "rows"), strict=True)
-    )
-    x = header_numbers(file, lines[1], 3, 2, "the lowest and highest x")
-    y = header_numbers(file, lines[2], 4, 2, "the lowest and highest y")
+    lines = [line for line, _ in zip(header_lines(raw), range(5), strict=False)]
+    if len(lines) < 5:
+        raise InputRefused("the header is cut off: it has five lines", file=file, line=len(lines))
+    _, (_, counts, _), (_, of_x, _), (_, of_y, _), (_, _, at) = lines
+    columns, rows = header_numbers(file, counts, 2, 2, "the numbers of columns and rows")
+    columns, rows = require_count(file, columns, "columns", 2), require_count(file, rows, "rows", 2)
+    x = header_numbers(file, of_x, 3, 2, "the lowest and highest x")
+    y = header_numbers(file, of_y, 4, 2, "the lowest and highest y")
     dx = require_spacing(file, x[0], x[1], columns, "x", 3)
     dy = require_spacing(file, y[0], y[1], rows, "y", 4)
     heights = grid_heights(GridText(file, raw, at, 6), rows, columns, step)

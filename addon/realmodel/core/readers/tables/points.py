@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused, number_list
-from ...base.mapped_arrays import Gather, in_memory
+from ...base.mapped_arrays import JoinPieces, in_memory
 from ...base.text import BOM, Content, Step, encoding_of, no_step, pieces_of, text_content
 from ...base.work import native_module, on_threads
 from ...settings.point_file import PointFile, list_of
@@ -65,7 +65,7 @@ def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
     return read_point_rows(PointFile(file), step).points
 
 
-def read_point_rows(given: PointFile, step: Step = no_step, gather: Gather = in_memory) -> PointRows:
+def read_point_rows(given: PointFile, step: Step = no_step, gather: JoinPieces = in_memory) -> PointRows:
     """The points of a table of text, read piece by piece.
 
     By default the separator (semicolon, tab, comma, bar or blanks) is detected from the first line of
@@ -149,7 +149,7 @@ def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
 
 
 def _read_rows(
-    table: Table, given: PointFile, columns: Sequence[int], step: Step, gather: Gather
+    table: Table, given: PointFile, columns: Sequence[int], step: Step, gather: JoinPieces
 ) -> PointRows:
     """The points of a table. columns: of x, y and z."""
     native = native_module()
@@ -174,7 +174,7 @@ def _read_rows(
 
 
 def _pieces(
-    table: Table, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: Gather
+    table: Table, reading: tuple[str, Sequence[int], list, tuple], step: Step, gather: JoinPieces
 ) -> PointRows:
     """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
     beginning of the file. reading: its decimal mark, columns, filters and missing values."""

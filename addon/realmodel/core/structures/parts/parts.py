@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...base.sheet import Sheet
-from ...base.work import Work, native_module
+from ...base.work import Work, refused_as
 from ...project.project import Project
 from ...project.structure_entries import Body, Fault
 from ...project.structure_history import body_times, displaced_surfaces
@@ -180,11 +180,8 @@ def structures_of(project: Project, faults: list[Fault], bodies: list[Body]) -> 
 
 def divide(work: Work, structures: Structures, box: np.ndarray) -> Structures:
     """The parts of a box, (2, 3). Raises InputRefused."""
-    native = native_module()
-    try:
+    with refused_as(lambda error: refused_structure(error, structures)) as native:
         sides, low, high = work.native(native.structure_parts, _box_complex(*box), structures.native())
-    except native.InputError as error:
-        raise refused_structure(error, structures) from error
     return replace(structures, sides=sides, low=low, high=high, box=box)
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from ...base.errors import InputRefused, number_list, place_text
-from ...project.structure_entries import body_item, fault_item
 
 _ADVICE = {
     "not_closed": "close its surface: each edge must belong to two triangles",
@@ -23,7 +22,7 @@ def ends_inside(fault, place: tuple[float, float, float] | None) -> InputRefused
     file, line = fault.shape_source()
     what = "it ends inside the rock that it displaces" + (f" near {place_text(place)}" if place else "")
     advice = _ADVICE["ends_inside"]
-    return InputRefused(what, file=file, line=line, item=fault_item(fault), advice=advice, place=place)
+    return InputRefused(what, file=file, line=line, item=fault.item, advice=advice, place=place)
 
 
 def refused_structure(error, structures) -> InputRefused:
@@ -47,5 +46,4 @@ def refused_structure(error, structures) -> InputRefused:
         return ends_inside(entry, place)
     elif items:
         what = f"{what} (triangle{'s' if len(items) > 1 else ''} {number_list(items)})"
-    item = fault_item(entry) if is_fault else body_item(entry)
-    return InputRefused(what + near, file=file, line=line, item=item, advice=advice, place=place)
+    return InputRefused(what + near, file=file, line=line, item=entry.item, advice=advice, place=place)

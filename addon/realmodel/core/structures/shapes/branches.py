@@ -9,7 +9,7 @@ from ...base.algebra import norm
 from ...base.errors import InputRefused, place_text
 from ...base.triangles import meet, open_edges
 from ...base.work import native_module, on_threads
-from ...project.structure_entries import Fault, fault_item
+from ...project.structure_entries import Fault
 
 _TOUCHES = 1e-6  # of the extent of both faults: a border so near another fault reaches it
 
@@ -37,7 +37,7 @@ def _require_meeting(branch: Fault, other: Fault, near: float) -> None:
         f"{place_text(place)}",
         file=source.document.file if source else branch.shape_file,
         line=source.line("ends_at") if source else None,
-        item=fault_item(branch),
+        item=branch.item,
         advice="extend it to that fault, or take it out of 'ends_at'",
         place=tuple(place.tolist()),
     )

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.build_warning import BuildWarning
-from ...base.errors import InputRefused, place_text
+from ...base.errors import InputRefused, naming, place_text
 from ...base.sheet import Sheet
 from ...base.triangles import NoTwoSidesError, checked_triangulation, open_edges, oriented, without_flat
 from ...base.work import Work
 from ...heights.interpolate import checked_points
 from ...project.project import Project
-from ...project.structure_entries import Body, Fault, body_item, fault_item
+from ...project.structure_entries import Body, Fault
 from ...project.structure_history import displaced_surfaces
 from ...readers import read_mesh
 from ...readers.fault_sticks import read_fault_points
@@ -48,21 +48,19 @@ def read_structures(
 
 def _read_fault(work: Work, fault: Fault, units: str, warnings: list[BuildWarning]) -> Fault:
     shape_file = fault.input_file or fault.shape_file
-    try:
+    with naming(fault.item, fault.shape_source):
         if fault.points is not None:
             points: object = fault.points
             texts: list[str] = []
             if fault.point_file is not None:
                 points, texts = read_fault_points(fault.point_file, fault.stick, units)
-            warnings += [BuildWarning(f"{fault_item(fault)}: {text}", "points") for text in texts]
+            warnings += [BuildWarning(f"{fault.item}: {text}", "points") for text in texts]
             vertices, triangles = _fitted(work, fault, points)
         else:
-            vertices, triangles = _mesh_of(fault, units, warnings, fault_item(fault))
+            vertices, triangles = _mesh_of(fault, units, warnings)
         triangles = _two_sided(vertices, triangles)
         if fault.points is None and fault.extend > 0:
             vertices, triangles = extended(vertices, triangles, fault.extend, not fault.dies_out)
-    except InputRefused as error:
-        raise _within(error, fault, fault_item(fault)) from error
     return replace(
         fault,
         vertices=vertices,
@@ -82,16 +80,13 @@ def _read_traced(
     inputs: list[RockInput] | None,
     warnings: list[BuildWarning],
 ) -> Fault:
-    item = fault_item(fault)
     fault = replace(fault, shape_file=fault.input_file or fault.shape_file)
-    try:
+    with naming(fault.item, fault.shape_source):
         traced, texts = read_trace(fault, project.units)
         if inputs is None:
             return traced
         (vertices, triangles), more = trace_surface(work, traced, _tops(project, inputs, fault))
-    except InputRefused as error:
-        raise _within(error, fault, item) from error
-    warnings += [BuildWarning(f"{item}: {text}", "trace") for text in (*texts, *more)]
+    warnings += [BuildWarning(f"{fault.item}: {text}", "trace") for text in (*texts, *more)]
     return replace(
         traced,
         vertices=vertices,
@@ -135,8 +130,8 @@ def _two_sided(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
     shape_file = body.input_file or body.shape_file
-    try:
-        vertices, triangles = _mesh_of(body, units, warnings, body_item(body))
+    with naming(body.item, body.shape_source):
+        vertices, triangles = _mesh_of(body, units, warnings)
         edges = open_edges(vertices, triangles)
         if len(edges):
             place = vertices[edges[0]].mean(axis=0)
@@ -147,12 +142,10 @@ def _read_body(body: Body, units: str, warnings: list[BuildWarning]) -> Body:
                 place=tuple(place.tolist()),
             )
         triangles = _two_sided(vertices, triangles)
-    except InputRefused as error:
-        raise _within(error, body, body_item(body)) from error
     return replace(body, vertices=vertices, triangles=triangles, mesh=None, shape_file=shape_file)
 
 
-def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning], item: str) -> Sheet:
+def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> Sheet:
     if entry.mesh_file is None:
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
@@ -163,13 +156,8 @@ def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning], item
     kept = without_flat(vertices, triangles)
     if len(kept) < len(triangles):
         left_out = len(triangles) - len(kept)
-        text = f"{item}: {left_out} triangle{'s' if left_out > 1 else ''} without area left out"
+        text = f"{entry.item}: {left_out} triangle{'s' if left_out > 1 else ''} without area left out"
         warnings.append(BuildWarning(text, "left_out"))
     if not len(kept):
         raise InputRefused("its triangles have no area")
     return Sheet(vertices, kept)
-
-
-def _within(error: InputRefused, entry: Fault | Body, item: str) -> InputRefused:
-    file, line = entry.shape_source()
-    return error.within(item, file=file, line=line)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.algebra import dot, norm
+from ...base.algebra import begins_run, dot, norm
 from ...base.elementary import cos, sin
 from ...base.errors import InputRefused, number_list, place_text
 from ...base.sheet import Sheet
@@ -36,7 +36,7 @@ def read_trace(fault: Fault, units: str) -> tuple[Fault, list[str]]:
     found = (
         FaultLines(_lines_of(fault.trace)) if text_or_file is None else read_fault_trace(text_or_file, units)
     )
-    line, warnings = _joined([_without_repeats(line) for line in found.lines])
+    line, warnings = _joined([line[begins_run(line[:, :2])] for line in found.lines])
     if (line[0, :2] == line[-1, :2]).all():
         raise InputRefused(
             f"its trace returns to where it begins, {place_text(line[0, :2])}",
@@ -134,12 +134,6 @@ def _lines_of(given) -> list[np.ndarray]:
     return found
 
 
-def _without_repeats(line: np.ndarray) -> np.ndarray:
-    new = np.ones(len(line), bool)
-    new[1:] = (line[1:, :2] != line[:-1, :2]).any(axis=1)
-    return line[new]
-
-
 def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
     """The pieces of a trace as one line: ends that are nearest to one another are joined, first those with
     the smallest gap. Refuses pieces that do not go on from one another."""
@@ -171,7 +165,8 @@ def _joined(lines: list[np.ndarray]) -> tuple[np.ndarray, list[str]]:
         _refuse_turning_back(order[-1], piece)
         bridged.append(float(norm(piece[0, :2] - order[-1][-1, :2])))
         order.append(piece)
-    line = _without_repeats(np.concatenate(order))
+    line = np.concatenate(order)
+    line = line[begins_run(line[:, :2])]
     open_gaps = [gap for gap in bridged if gap > 0]
     if not open_gaps:
         return line, []
@@ -269,8 +264,7 @@ def _divided(line: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _once_each(top: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points without those that are where the one before is."""
-    new = np.ones(len(top), bool)
-    new[1:] = (top[1:] != top[:-1]).any(axis=1)
+    new = begins_run(top)
     top, given = top[new], given[new]
     if (top[0] == top[-1]).all():
         raise InputRefused(

@@ -219,8 +219,7 @@ class InterpolatedSurface:
 
         values = near_rows(
             self.work,
-            nodes,
-            meshed,
+            Sheet(nodes, meshed),
             self._values_on_nodes(common),
             [faults[number] for number in met],
             sorted(of_members),
@@ -261,9 +260,8 @@ class InterpolatedSurface:
             nodes,
             meshed,
             {sides: np.ascontiguousarray(of[:, 0]) for sides, of in values.items()},
-            [shapes[fault] for fault in faults],
+            [(shapes[fault], 0.0 if fault in family.settled else ramp) for fault in faults],
             self._within(family),
-            [0.0 if fault in family.settled else ramp for fault in faults],
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ...base.sheet import Sheet
 from ...base.work import Work, native_module
 from ...surfaces.sides import FaultShape, fault_sides
 
@@ -32,27 +33,29 @@ def triangles_met(work: Work, fault: FaultShape, low, high, triangles) -> np.nda
 
 def near_rows(
     work: Work,
-    plan: np.ndarray,
-    triangles: np.ndarray,
+    mesh: Sheet,
     common: np.ndarray,
     faults: Sequence[FaultShape],
     rows: Sequence[tuple[int, ...]],
     values_of: Callable[[tuple[int, ...], np.ndarray], np.ndarray],
 ) -> dict[tuple[int, ...], np.ndarray]:
-    """Values (N, C) at nodes (N, 2), first of all heights, of each row of sides: its own where its
-    compartment may be at some height that a row has there, those in `common` elsewhere.
+    """Values (N, C) at the nodes of a planar mesh, first of all heights, of each row of sides.
+
+    They are the row's own where its compartment may be at some height that the row has there, and those in
+    `common` elsewhere.
 
     common: (N, C), what is seen without regard to the faults; NaN where it has no height. rows: the sides of
     each fault, 0 where it is not. values_of: (K, C) of one row at some nodes, (N,) bool, K of them; it is
     asked for no node twice.
     """
+    plan, triangles = mesh
     found = {sides: common.copy() for sides in rows}
     asked = {sides: np.zeros(len(plan), bool) for sides in rows}
     on = {(number, side): np.zeros(len(plan), bool) for number in range(len(faults)) for side in (-1, 1)}
     low, high = common[:, 0].copy(), common[:, 0].copy()
     wider = np.isfinite(low)
     while wider.any():
-        _add_sides(work, plan, triangles, wider, (low, high), faults, on)
+        _add_sides(work, mesh, wider, (low, high), faults, on)
         corner_on = {key: own[triangles].any(axis=1) for key, own in on.items()}
         wider = np.zeros(len(plan), bool)
         for sides in rows:
@@ -74,9 +77,10 @@ def near_rows(
     return found
 
 
-def _add_sides(work: Work, plan, triangles, some: np.ndarray, heights, faults, on: dict) -> None:
+def _add_sides(work: Work, mesh: Sheet, some: np.ndarray, heights, faults, on: dict) -> None:
     """Adds to `on`, by fault and side, those of some nodes at which a height is on that side, and those of
     triangles that the fault passes between the heights, beyond its ends."""
+    plan, triangles = mesh
     places = np.unique(
         np.concatenate([np.column_stack([np.flatnonzero(some), z[some]]) for z in heights]), axis=0
     )

@@ -19,7 +19,7 @@ from .lips import Lip, beyond_lips
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .points_at_faults import distances
 from .throws import Sheets
-from .tips import Trace, hit_shares, on_fault, shared, torn_beyond, trace_of, with_equal_ends
+from .tips import Trace, hit_shares, on_fault, shared, split_beyond, trace_of, with_equal_ends
 from .within import Within
 
 
@@ -179,7 +179,7 @@ class ReadyMesh:
         faults = self.entry.divided().faults
         for number in met:
             fault, within = family.dying[number], self._within(family)
-            place = torn_beyond(self.work, sheet, faults.shapes[fault], within)
+            place = split_beyond(self.work, sheet, faults.shapes[fault], within)
             if place is not None:
                 raise _two_heights_beyond(faults.names[fault], place)
 
@@ -196,10 +196,8 @@ class ReadyMesh:
         """Sheets with some heights, by sides, drawn together beyond the ends of some of the faults that die
         out."""
         shapes = self.entry.divided().faults.shapes
-        faults = [shapes[family.dying[number]] for number in some]
-        within = self._within(family)
-        ramps = [0.0] * len(faults)
-        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, ramps)
+        ramps = [(shapes[family.dying[number]], 0.0) for number in some]
+        equal = with_equal_ends(self.work, plan, triangles, heights, ramps, self._within(family))
         return shared({sides: Sheet(np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
 
     def _within(self, family: Family) -> Within:

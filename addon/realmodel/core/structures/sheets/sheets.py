@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.mapped_arrays import Keep, as_it_is
+from ...base.mapped_arrays import StoreArray, as_it_is
 from ...base.sheet import Sheet
 from ...base.work import Work
 from ...surfaces.doubtful_heights import Compartment, doubtful_heights
@@ -30,7 +30,7 @@ def make_sheets(
     start: float,
     end: float,
     stage: int | None = None,
-    keep: Keep = as_it_is,
+    keep: StoreArray = as_it_is,
     numbers: Collection[int] | None = None,
 ) -> None:
     """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`.
@@ -106,13 +106,13 @@ def _count(rock, stage: int | None) -> int:
     return len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
 
 
-def warn_of_doubts(work: Work, entry: RockInput, stage: int | None, keep: Keep) -> None:
+def warn_of_doubts(work: Work, entry: RockInput, stage: int | None, keep: StoreArray) -> None:
     """Adds the warnings about heights of a RockInput with sheets, compartment by compartment."""
     for number in sorted(interpolation_order(entry.rock, stage)):
         _warn_of_doubts(work, entry, number, keep)
 
 
-def _keep(entry: RockInput, number: int, keep: Keep) -> None:
+def _keep(entry: RockInput, number: int, keep: StoreArray) -> None:
     """Keeps the arrays of a surface elsewhere. Sheets and arrays that are the same object stay so."""
     made: dict[Sheet, Sheet] = {}
 
@@ -133,7 +133,7 @@ def _keep(entry: RockInput, number: int, keep: Keep) -> None:
         entry.attributes[number] = {name: keep(of) for name, of in entry.attributes[number].items()}
 
 
-def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: Keep) -> None:
+def _warn_of_doubts(work: Work, entry: RockInput, number: int, keep: StoreArray) -> None:
     """Adds the warnings of points_too_low and, but for tiles, doubtful_heights, compartment by
     compartment."""
     structure, surfaces = entry.divided(), entry.rock.surfaces

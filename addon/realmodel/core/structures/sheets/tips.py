@@ -8,7 +8,7 @@ sheets which differ beside the fault; beyond its ends they are made equal, so th
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -193,13 +193,13 @@ def with_equal_ends(
     plan: np.ndarray,
     triangles: np.ndarray,
     heights: dict[tuple[int, ...], np.ndarray],
-    faults: list[FaultShape],
+    ramps: Sequence[tuple[FaultShape, float]],
     within: Within,
-    ramps: list[float],
 ) -> dict[tuple[int, ...], np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
     triangles through which a fault that dies out would go on beyond its ends. Within a distance from these,
-    its ramp, they are drawn together."""
+    its ramp, they are drawn together. ramps: each fault with it."""
+    faults = [fault for fault, _ in ramps]
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
         return dict.fromkeys(heights, first)
@@ -236,13 +236,13 @@ def with_equal_ends(
     lowest, highest = (each.reduce(list(heights.values()), axis=0) for each in (np.fmin, np.fmax))
     some = np.isfinite(lowest)
     box = box_of(*(np.column_stack([plan, z])[some] for z in (lowest, highest)))
-    continuations = [_continued(fault, box) for fault in faults]
-    drawn = _Drawn(plan, ramps, ends, near, of_branches)
+    met = _Meeting(work, plan, triangles, faults, [_continued(fault, box) for fault in faults], within)
+    drawn = _Drawn(plan, [ramp for _, ramp in ramps], ends, near, of_branches)
     looked_at: dict[int, np.ndarray] = {}
     while True:
         found = blended(heights, near, on_side, drawn.weights)
         places = _places_of(plan, [np.where(known, z, 0.0) for z in found.values()])
-        for number, fault in enumerate(faults):
+        for number in range(len(faults)):
             rows = [
                 places.number[row][doubtful[number][near[sides][doubtful[number]].any(axis=1)]]
                 for row, sides in enumerate(found)
@@ -252,24 +252,31 @@ def with_equal_ends(
             before = looked_at.get(number)
             if before is None or not np.array_equal(before, corners):
                 looked_at[number] = corners
-                _draw_where_passed(
-                    work, places, some, number, fault, continuations[number], within, inside, drawn
-                )
-        if drawn.is_settled() and not _draw_between(
-            work, plan, triangles, found, faults, continuations, within, near, drawn
-        ):
+                _draw_where_passed(met, places, some, number, inside, drawn)
+        if drawn.is_settled() and not _draw_between(met, found, near, drawn):
             return found
 
 
-def _draw_where_passed(
-    work: Work, places, some, number, fault, beyond, within: Within, inside, drawn
-) -> None:
-    """Lets sheets be equal at the nodes of triangles that a fault passes beyond its ends, in the triangles
-    `beyond`, of edges that lie in these, and where it touches them.
+class _Meeting(NamedTuple):
+    """Sheets on one planar mesh, and the faults that they meet, with the triangles (K, 3, 3) of each beyond
+    its ends."""
+
+    work: Work
+    plan: np.ndarray
+    triangles: np.ndarray
+    faults: Sequence[FaultShape]
+    beyond: Sequence[np.ndarray]
+    within: Within
+
+
+def _draw_where_passed(met_by: _Meeting, places, some, number: int, inside, drawn) -> None:
+    """Lets sheets be equal at the nodes of triangles that a fault passes beyond its ends, of edges that lie
+    in its triangles there, and where it touches them.
 
     places: of all sheets; some: (T, 3) int32 triangles of these. inside: (N,) bool, the nodes at which all
     sheets are in the compartment."""
     node = places.node
+    work, within, fault, beyond = met_by.work, met_by.within, met_by.faults[number], met_by.beyond[number]
     met = triangles_met(work, fault, places.points, places.points, some)
     passes = met == _PASSES
     divided = np.flatnonzero(passes & ~inside[node[some]].all(axis=1))
@@ -356,26 +363,25 @@ class _Drawn:
         return settled
 
 
-def _draw_between(
-    work: Work, plan, triangles, found: dict, faults, continuations, within: Within, near, drawn
-) -> bool:
+def _draw_between(met_by: _Meeting, found: dict, near, drawn) -> bool:
     """Lets sheets be equal where a fault would go on between those of its two sides beyond its ends, though
     neither meets it: rock would be above it alone, or below. Whether there is such a place. near, drawn: as
     with_equal_ends has them, changed."""
+    work, plan, triangles, faults, *_ = met_by
     every = np.array(list(found.values()))
     low, high = (np.column_stack([plan, each.reduce(every, axis=0)]) for each in (np.fmin, np.fmax))
     differ = triangles[(low[:, 2] < high[:, 2])[triangles].any(axis=1)]
     low, high = np.nan_to_num(low), np.nan_to_num(high)
     between = {}
-    for number, (fault, others) in enumerate(zip(faults, continuations, strict=True)):
+    for number, fault in enumerate(faults):
         if not fault.dies_out:
             continue
         some = differ[triangles_met(work, fault, low, high, differ) == _PASSES]
         if len(some):
-            between[number] = _between(work, plan, some, found, number, fault, others, within)
+            between[number] = _between(met_by._replace(triangles=some), found, number)
     places = np.concatenate([np.empty((0, 3)), *(each.places for each in between.values())])
     sides = [fault_sides(work, places, fault) for fault in faults]
-    is_torn, first = False, 0
+    is_wider, first = False, 0
     for number, own in between.items():
         part = slice(first, first + len(own.places))
         first = part.stop
@@ -384,12 +390,12 @@ def _draw_between(
             for n, side in enumerate(sides):
                 if n != number and (its := one[n] or other[n]):
                     is_there &= side[part] == its
-            torn = given[np.isin(rows, own.owner[is_there])]
-            for its in (one, other) if len(torn) else ():
-                is_torn = is_torn or not near[its][torn].all()
-                near[its][torn] = True
-            drawn.require_equal(number, torn)
-    return not drawn.is_settled() or is_torn
+            passed = given[np.isin(rows, own.owner[is_there])]
+            for its in (one, other) if len(passed) else ():
+                is_wider = is_wider or not near[its][passed].all()
+                near[its][passed] = True
+            drawn.require_equal(number, passed)
+    return not drawn.is_settled() or is_wider
 
 
 class _Between(NamedTuple):
@@ -402,12 +408,11 @@ class _Between(NamedTuple):
     owner: np.ndarray
 
 
-def _between(
-    work: Work, plan, triangles, found: dict, number: int, fault, beyond, within: Within
-) -> _Between:
-    """Those of one fault over some triangles. Of all pairs of sheets many have the same two triangles there,
+def _between(met_by: _Meeting, found: dict, number: int) -> _Between:
+    """Those of one fault. Of all pairs of sheets many have the same two triangles there,
     and what lies between these is the same."""
-    side, heights = _corners_with_sides(work, plan, triangles, found, fault)
+    work, plan, triangles, faults, beyond, within = met_by
+    side, heights = _corners_with_sides(work, plan, triangles, found, faults[number])
     over, given_rows = [], [np.empty((0, 7))]
     for one, other in _pairs(found, number):
         both = np.column_stack([side[one], side[other]])
@@ -420,7 +425,7 @@ def _between(
     ends = np.cumsum([0, *(len(given) for _, given in over)]).tolist()
     corners = plan[triangles[rows[:, 0].astype(np.int64)]]
     lower, upper = (np.dstack([corners, z]) for z in (rows[:, 1:4], rows[:, 4:]))
-    owner, places = places_between(lower, upper, beyond, within)
+    owner, places = places_between(lower, upper, beyond[number], within)
     parts = zip(over, itertools.pairwise(ends), strict=True)
     pairs = [(*pair, numbers.ravel()[start:end]) for pair, (start, end) in parts]
     return _Between(pairs, places, owner)
@@ -469,7 +474,7 @@ def shared(sheets: dict[tuple[int, ...], Sheet]) -> dict[tuple[int, ...], Sheet]
     return {sides: known.setdefault(sheet.vertices.tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
-def torn_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> np.ndarray | None:
+def split_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> np.ndarray | None:
     """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
     on beyond its ends; None where there is none."""
     vertices, triangles = sheet
@@ -482,10 +487,10 @@ def torn_beyond(work: Work, sheet: Sheet, fault: FaultShape, within: Within) -> 
     low, high = np.full((len(lines), 2), np.inf), np.full((len(lines), 2), -np.inf)
     np.minimum.at(low, line.ravel(), ends[:, :, 2])
     np.maximum.at(high, line.ravel(), ends[:, :, 2])
-    torn = (low < high).any(axis=1)
-    if not torn.any():
+    is_split = (low < high).any(axis=1)
+    if not is_split.any():
         return None
-    low, high = (np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]]) for z in (low, high))
+    low, high = (np.dstack([lines[is_split].reshape(-1, 2, 2), z[is_split]]) for z in (low, high))
     begin, end = (np.concatenate([low[:, end], high[:, end]]) for end in range(2))
     box = box_of(low, high)
     walls = np.concatenate([within.walls(box), _continued(fault, box)])

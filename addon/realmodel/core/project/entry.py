@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a project file has a table of, its place there, and checks that all of them share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..base.errors import InputRefused
+from ..base.toml_table import Source
+from ..settings.method_options import OptionRefused, checked, is_name
+from ..settings.setting import Settings
+
+Refuse = Callable[..., InputRefused]
+
+
+class Entry:
+    """A rock mass, a surface, a fault or a body."""
+
+    kind = ""  # the word for it in messages
+    name: str
+    shape_file: Path | None  # that its arrays were read from
+    source: Source | None
+
+    @property
+    def item(self) -> str:
+        """Its name in messages."""
+        return f"{self.kind} '{self.name}'"
+
+    def place_of(self, key: str | None = None) -> tuple[Path | None, int | None]:
+        """The project file, and the line of a key of it there; None where it is in no file."""
+        return (None, None) if self.source is None else (self.source.document.file, self.source.line(key))
+
+    def shape_source(self, key: str | None = None) -> tuple[Path | None, int | None]:
+        """The source of its shape, for messages: its file, or its line in the project file."""
+        return self.place_of(key) if self.shape_file is None else (self.shape_file, None)
+
+    def refused(
+        self, what: str, key: str | None = None, advice: str | None = None, item: str | None = None
+    ) -> InputRefused:
+        """The refusal of it, or of an item in it, at a key of it; the caller raises it."""
+        file, line = self.place_of(key)
+        return InputRefused(what, file=file, line=line, item=item or self.item, advice=advice)
+
+
+@contextmanager
+def refused_by(refuse: Refuse, key: str | None = None, before: str = ""):
+    """Within it a wrong setting is refused where it is written: at its own key, or at another."""
+    try:
+        yield
+    except OptionRefused as error:
+        raise refuse(before + error.what, key or error.option, error.advice) from error
+
+
+def named_once(entries: Sequence, kind: str) -> Iterator:
+    """The entries, each with a name of its own."""
+    seen: set[str] = set()
+    for entry in entries:
+        if not is_name(entry.name):
+            raise entry.refused("it has no name", "name", item=f"a {kind}")
+        if entry.name in seen:
+            raise entry.refused(f"another {kind} has this name", "name", f"give each {kind} a unique name")
+        seen.add(entry.name)
+        yield entry
+
+
+def check_values(entry, settings: Settings, keys: Sequence[str], refuse: Refuse) -> None:
+    """Refuses what the declarations of settings do not allow."""
+    for key in keys:
+        with refused_by(refuse, key):
+            checked(key, settings[key], getattr(entry, key))
+
+
+def is_file(path: Path) -> bool:
+    """Whether a path leads to a file; no for one that cannot be a path at all."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def check_file(file: str | Path | None, key: str, refuse: Refuse) -> None:
+    if file is not None and not is_file(Path(file)):
+        raise refuse(f"file not found: {file}", key, "check the path")
+
+
+def shapes_given(entry, keys: Sequence[str], refuse: Refuse) -> list[str]:
+    """The key that gives an entry its shape; none where it has no shape, refused where it has two."""
+    arrays = entry.vertices is not None or entry.triangles is not None
+    shapes = [key for key in keys if getattr(entry, key) is not None] + (["vertices"] if arrays else [])
+    if len(shapes) > 1:
+        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "use only one of them")
+    if arrays and (entry.vertices is None or entry.triangles is None):
+        raise refuse("it needs vertices and triangles together")
+    return shapes
+
+
+def check_property(library, number: int, refuse: Refuse) -> None:
+    if number and library is not None and number not in library:
+        known = ", ".join(str(entry.id) for entry in library.properties)
+        raise refuse(f"the library has no property {number}", "property", f"it has {known}")
