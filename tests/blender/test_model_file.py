@@ -90,7 +90,7 @@ class Opened(PanelCase):
     def test_a_model_without_its_project_is_shown_with_a_warning(self):
         ops.open_project(filepath=str(OLD))
         self.assertEqual([row.name for row in self.model.results][:2], ["layer 0", "layer 1"])
-        self.assertIn("RealModel 0.1 and lacks the project", self.model.warnings)
+        self.assertIn("lacks the project: regions, rules", self.model.warnings)
         self.refused(ops.report, "build it from its project and save", filepath=str(self.folder / "r.json"))
         self.assertEqual(ops.section(location=(5, 5, 1), normal=(1, 0, 0)), {"FINISHED"})
 

@@ -4,12 +4,15 @@
 import io
 import json
 import pickle
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import BuildFailed, Fault, InputRefused
+from realmodel.core import BuildFailed, BuildWarning, Fault, InputRefused, Surface
 from realmodel.core.base.mapped_arrays import write_mapped
+from realmodel.core.base.sheet import Sheet
+from realmodel.core.base.stored_objects import NamedArrays, StoredClasses, fits
 from realmodel.core.surfaces.sides import FaultShape
 from realmodel.distributed.stored_objects import read_object, write_object
 
@@ -77,3 +80,70 @@ def test_only_classes_of_windows_are_made(kind, tmp_path):
         write_mapped({"objects": np.frombuffer(text, np.uint8)}, out)
     with pytest.raises(BuildFailed, match="cannot be read"):
         read_object(file)
+
+
+SURFACE = StoredClasses((Surface, Sheet, BuildWarning))
+
+
+def written(value):
+    arrays = NamedArrays({})
+    return SURFACE.write(value, arrays), arrays
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b'["name", "S"]', b'["name", 3]'),
+        (b'["rule", "erosional"]', b'["rule", null]'),
+        (b'["property", 0]', b'["property", 0.5]'),
+        (b'["property", 0]', b'["property", true]'),
+        (b'["property", 0]', b'["proper", 0]'),
+        (b'["name", "S"], ', b""),
+    ],
+)
+def test_fields_have_the_types_of_their_class(old, new):
+    text, arrays = written(Surface("S"))
+    assert SURFACE.read(text, arrays) == Surface("S") and old in text
+    with pytest.raises(ValueError, match=r"Surface|damaged"):
+        SURFACE.read(text.replace(old, new), arrays)
+
+
+@pytest.mark.parametrize(
+    ("value", "hint", "does"),
+    [
+        (3, float, True),
+        (True, int, False),
+        ((1, 2), tuple[int, ...], True),
+        ((1, "2"), tuple[int, ...], False),
+        ((1, "2"), tuple[int, str], True),
+        ((1,), tuple[int, str], False),
+        ([[1], ["x"]], list[list[int]], False),
+        ({1: {"a": np.zeros(2)}}, dict[int, dict[str, np.ndarray]], True),
+        ({1: {"a": 2}}, dict[int, dict[str, np.ndarray]], False),
+        (np.zeros(2), Sequence[str], True),
+        (None, str | None, True),
+        (2, str | None, False),
+    ],
+)
+def test_what_fits_a_type(value, hint, does):
+    assert fits(value, hint) is does
+
+
+def test_a_field_that_a_file_lacks_gets_its_default_and_some_are_not_stored():
+    text, arrays = written(BuildWarning("text", "kind"))
+    assert SURFACE.read(text.replace(b', ["kind", "kind"]', b""), arrays) == BuildWarning("text")
+    found = SURFACE.read(*written(Surface("S", source=object())))
+    assert found.source is None
+
+
+def test_equal_arrays_are_stored_once_and_known_ones_only_named():
+    known = {"elsewhere": np.arange(6.0).reshape(2, 3)}
+    arrays = NamedArrays(known, "a_")
+    sheet = Sheet(known["elsewhere"].copy(), np.zeros((1, 3), np.int32))
+    other = Sheet(np.array([[0.0, np.nan, -0.0]]), np.zeros((1, 3), np.int32), np.array(["x", "yz"]))
+    text = SURFACE.write([sheet, other, np.empty((0, 2))], arrays)
+    assert [arrays[name].shape for name in arrays] == [(1, 3), (1, 3), (2,), (0, 2)]
+    first, second, _ = SURFACE.read(text, {**known, **arrays})
+    assert first.vertices is known["elsewhere"] and first.triangles is second.triangles
+    again = NamedArrays(known, "a_")
+    assert SURFACE.write([first, second, np.empty((0, 2))], again) == text

@@ -325,15 +325,15 @@ def program(monkeypatch):
 
 
 def spoil_builds(monkeypatch):
-    from realmodel.batch import run
+    from realmodel.batch import sources
 
-    whole = run.build
+    whole = sources.build
 
     def spoilt(*arguments, **options):
         model = whole(*arguments, **options)
         return damaged(model, **unused_vertex(model))
 
-    monkeypatch.setattr(run, "build", spoilt)
+    monkeypatch.setattr(sources, "build", spoilt)
 
 
 def test_check_model_prints_the_proof(program, layers, tmp_path, capsys):

@@ -41,7 +41,7 @@ class NamedArrays(dict[str, np.ndarray]):
 
 
 def _bytes(array: np.ndarray) -> memoryview:
-    return memoryview(np.ascontiguousarray(array)).cast("B")
+    return memoryview(np.ascontiguousarray(array).reshape(-1).view(np.uint8))
 
 
 class StoredClasses:

@@ -33,8 +33,8 @@ class ModelData:
     `surface_names` go with the global indices of the surfaces. `project` holds the arrays that the model was
     built from, so that nothing is read again. `rock_inputs` are what the stack builder took, by rock mass.
     `timings` are seconds by phase. `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
-    `lacks_project`: the file of RealModel 0.1 that it was read from, which says nothing of the project but
-    names, properties and shapes.
+    `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which says nothing of the
+    project but names, properties and shapes.
     """
 
     complex: CellComplex = field(repr=False)
@@ -69,7 +69,7 @@ class ModelData:
         """Raises InputRefused where the project that `what` needs is not known."""
         if self.lacks_project is not None:
             raise InputRefused(
-                f"a model of RealModel 0.1 without its project, which {what} needs",
+                f"a model of RealModel 0.1, or a tile, without its project, which {what} needs",
                 file=self.lacks_project,
                 advice="build it from its project and save it again",
             )

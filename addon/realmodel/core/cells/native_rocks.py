@@ -9,7 +9,6 @@ from ..surfaces.planar_mesh import triangulate_rings
 def native_rocks(model, stage: int | None = None) -> list[tuple]:
     """For each rock mass (surfaces, region, base elevation, rules), the surfaces up to `stage` only where it
     is given; regions as triangulations. Models that were put together from arrays know their project only."""
-    model.require_project("the closed form")
     rocks, first = [], 0
     for number, rock in enumerate(model.project.rocks):
         count = len(rock.surfaces)

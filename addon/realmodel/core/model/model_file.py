@@ -49,8 +49,8 @@ _ARRAYS: dict[str, tuple[str, str, int]] = {
     "rock_names": ("", "U", 0),
 }
 _LACKS_PROJECT = (
-    "the file is of RealModel 0.1 and lacks the project: regions, rules, base elevations, and how surfaces "
-    "were made; build it from its project and save it again"
+    "the file is of RealModel 0.1, or a tile, and lacks the project: regions, rules, base elevations, and "
+    "how surfaces were made; build it from its project and save it again"
 )
 _AGAIN = "save the model again, or build it from its project"
 

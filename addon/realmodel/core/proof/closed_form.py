@@ -95,7 +95,6 @@ class ClosedForm:
 
 def closed_forms(model) -> list[ClosedForm]:
     """The closed form of each rock mass of a model; blocks have the model's numbers."""
-    model.require_project("the closed form")
     structures = model.structures
     number = {block.surface: n for n, block in enumerate(model.blocks)}
     count = sum(len(entry.surfaces) for entry in model.rock_inputs)

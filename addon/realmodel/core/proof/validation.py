@@ -191,6 +191,8 @@ def validate(
         if isinstance(value, bool) or not hasattr(value, "__index__") or not least <= int(value) < 2**63:
             raise UsageError(f"{name} must be a whole number from {least}, not {value!r}")
     threads = check_threads(threads)
+    if places and not model.is_cut:
+        model.require_project("the closed form")
 
     def task(work: Work) -> list[ValidationTest]:
         wrong = _wrong_arrays(model)
