@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import realmodel
 from blender_state import empty_file, open_edges, pixels
-from realmodel.bl import compartments, scene
+from realmodel.bl import compartments, model_tree
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "two_layers" / "project.toml"
@@ -52,7 +52,7 @@ class BuildModel(unittest.TestCase):
         self.assertEqual(pixels(picture).shape, (1000, 1600, 3))
         empty_file()
         bpy.ops.wm.open_mainfile(filepath=str(blend))
-        blocks = scene.model_objects(bpy.context.scene, "block")
+        blocks = model_tree.model_objects(bpy.context.scene, "block")
         self.assertEqual([block.name for block in blocks][-1], "Sand")
         self.assertEqual([open_edges(block.data) for block in blocks], [0, 0])
 
@@ -81,9 +81,9 @@ class BuildModel(unittest.TestCase):
         self.addCleanup(realmodel.unregister)
         bpy.ops.wm.open_mainfile(filepath=str(blend))
         current = bpy.context.scene
-        kinds = {item["realmodel_surface"]: item["realmodel"] for item in scene.model_objects(current)}
+        kinds = {item["realmodel_surface"]: item["realmodel"] for item in model_tree.model_objects(current)}
         self.assertEqual({kinds["F"], kinds["low"]}, {"fault", "interface"})
-        self.assertEqual(len(scene.model_objects(current, "body")), 1)
+        self.assertEqual(len(model_tree.model_objects(current, "body")), 1)
         self.assertEqual(len(compartments.names(current)), 2)
         volumes = {row.name: float(row.volume_exact) for row in current.realmodel.results}
         self.assertAlmostEqual(volumes["ore"], 8 / 6, places=9)

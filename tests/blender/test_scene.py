@@ -11,7 +11,7 @@ import realmodel
 from blender_state import coordinates, corners, drawn_areas, empty_file, inventory, open_edges, volume
 from made_projects import LIBRARY, main_rock, one_rock, other_rock, two_rocks
 from panel_case import PanelCase
-from realmodel.bl import batch, built_scene, meshes, scene
+from realmodel.bl import batch, built_scene, meshes, model_tree
 from realmodel.core import Library, Project, Property, build
 
 
@@ -182,7 +182,7 @@ class Rebuild(PanelCase):
         built_scene.write_model(self.scene, smaller)
         self.assertEqual(self.model.collection.name, "Hill")
         self.assertNotIn("outlier", bpy.data.collections)
-        names = {o.name for o in scene.model_objects(self.scene)}
+        names = {o.name for o in model_tree.model_objects(self.scene)}
         existing = {b.name for b in smaller.blocks if b.cells}
         self.assertEqual(names, {"S0", "S1", "S2", "S3", "S4"} | existing)
         self.assertIn("hammer", self.scene.objects)
@@ -195,7 +195,7 @@ class Rebuild(PanelCase):
         built_scene.write_model(self.scene, model)
         volumes = {(b.rock, b.name): b.volume for b in model.blocks}
         rocks = [rock.name for rock in model.project.rocks]
-        for item in scene.model_objects(self.scene, "block"):
+        for item in model_tree.model_objects(self.scene, "block"):
             expected = volumes[rocks.index(item["realmodel_rock"]), item["realmodel_block"]]
             self.assertAlmostEqual(volume(item.data) / expected, 1.0, delta=1e-5, msg=item.name)
             self.assertEqual(open_edges(item.data), 0, item.name)
@@ -241,15 +241,15 @@ class Rebuild(PanelCase):
     def test_two_scenes_each_with_its_model(self):
         second = bpy.data.scenes.new("second")
         built_scene.write_model(self.scene, build(one_rock()))
-        first_objects = {o.name for o in scene.model_objects(self.scene)}
+        first_objects = {o.name for o in model_tree.model_objects(self.scene)}
         outlier = build(Project("Hill", [other_rock()], LIBRARY))
         built_scene.write_model(second, outlier)
-        self.assertEqual({o.name for o in scene.model_objects(self.scene)}, first_objects)
-        surfaces = [o["realmodel_surface"] for o in scene.model_objects(second, "interface")]
+        self.assertEqual({o.name for o in model_tree.model_objects(self.scene)}, first_objects)
+        surfaces = [o["realmodel_surface"] for o in model_tree.model_objects(second, "interface")]
         self.assertEqual(surfaces, ["S0", "S1", "S2"])
         built_scene.remove_model(second)
-        self.assertEqual({o.name for o in scene.model_objects(self.scene)}, first_objects)
-        self.assertEqual(scene.model_objects(second), [])
+        self.assertEqual({o.name for o in model_tree.model_objects(self.scene)}, first_objects)
+        self.assertEqual(model_tree.model_objects(second), [])
 
     def test_remove_model_leaves_only_other_objects(self):
         self.model.exists = False  # and makes the settings
@@ -261,9 +261,9 @@ class Rebuild(PanelCase):
     def test_a_stage_is_a_scene_too(self):
         model = build(one_rock()).stage(1)
         built_scene.write_model(self.scene, model)
-        self.assertEqual(len(scene.model_objects(self.scene, "interface")), 2)
+        self.assertEqual(len(model_tree.model_objects(self.scene, "interface")), 2)
         existing = sum(bool(b.cells) for b in model.blocks)
-        self.assertEqual(len(scene.model_objects(self.scene, "block")), existing)
+        self.assertEqual(len(model_tree.model_objects(self.scene, "block")), existing)
 
     def test_triangles_without_corners_of_their_own_are_left_out(self):
         mesh = meshes.triangle_mesh("m", np.eye(3, dtype=np.float32), [[0, 1, 2], [0, 1, 1]])

@@ -13,12 +13,12 @@ from realmodel.bl import (
     compartments,
     data_objects,
     meshes,
+    model_tree,
     project_settings,
     settings,
     surface_statistics,
     viewports,
 )
-from realmodel.bl import scene as model_tree
 from realmodel.bl.display import bodies, colors, coordinates, modes, sections, viewpoints
 from realmodel.core import load_project
 

@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import origin, scene
+from realmodel.bl import model_tree, origin
 from realmodel.core import load_project
 from realmodel.distributed import build, tile_folder
 from realmodel.distributed.workers import Workers
@@ -36,7 +36,7 @@ class TilesCase(PanelCase):
         self.path = str(self.folder / "tiles" / "tiles.toml")
 
     def objects(self):
-        return [item for item in self.scene.objects if item.get(scene.TAG) == "tile"]
+        return [item for item in self.scene.objects if item.get(model_tree.TAG) == "tile"]
 
     def volume(self, item):
         item.data.calc_loop_triangles()
@@ -53,8 +53,8 @@ class Tiles(TilesCase):
         for block in self.tiled.blocks:
             item = found[block.name]
             self.assertAlmostEqual(self.volume(item) / block.volume, 1.0, delta=0.25)
-            self.assertEqual(item[scene.BLOCK], block.name)
-            self.assertEqual(item[scene.PROPERTY], block.property)
+            self.assertEqual(item[model_tree.BLOCK], block.name)
+            self.assertEqual(item[model_tree.PROPERTY], block.property)
             self.assertEqual(item.data.materials[0].name, self.tiled.project.library.get(block.property).name)
         self.assertIn(origin.KEY, self.scene)
         self.assertEqual([c.name for c in self.scene.collection.children], [f"{self.tiled.name} tiles"])
@@ -62,7 +62,7 @@ class Tiles(TilesCase):
     def test_chosen_tiles_are_as_they_are(self):
         ops.tiles_read(filepath=self.path, what="TILES", column=1)
         tile = next(t for t in self.tiled.tiles if (t.column, t.row) == (1, 0))
-        found = {item[scene.BLOCK]: item for item in self.objects()}
+        found = {item[model_tree.BLOCK]: item for item in self.objects()}
         for block, volume in zip(self.tiled.blocks, tile.volumes, strict=True):
             self.assertAlmostEqual(self.volume(found[block.name]) / volume, 1.0, places=3)
         top = self.scene.collection.children[0]
@@ -101,7 +101,7 @@ class TilesWithFaults(TilesCase):
     def test_chosen_tiles_are_as_they_are(self):
         ops.tiles_read(filepath=self.path, what="TILES", columns=9, rows=9)
         for block in self.tiled.blocks:
-            parts = [item for item in self.objects() if item[scene.BLOCK] == block.name]
+            parts = [item for item in self.objects() if item[model_tree.BLOCK] == block.name]
             self.assertGreater(len(parts), 1)
             volume = sum(self.volume(item) for item in parts)
             self.assertAlmostEqual(volume / block.volume, 1.0, places=3)

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch, scene, surface_statistics
+from realmodel.bl import batch, model_tree, surface_statistics
 from realmodel.core import build
 from realmodel.core.results import layer_values
 
@@ -20,7 +20,7 @@ class Uncertainty(PanelCase):
     def test_interpolated_interfaces_have_variance_and_distance(self):
         model = build(interpolated())
         batch.write_scene(model)
-        interfaces = scene.model_objects(bpy.context.scene, "interface")
+        interfaces = model_tree.model_objects(bpy.context.scene, "interface")
         self.assertEqual(len(interfaces), 3)
         for number, item in enumerate(interfaces):
             attributes = model.surface_attributes(number)
@@ -35,7 +35,7 @@ class Uncertainty(PanelCase):
 
     def test_ready_meshes_have_none(self):
         batch.write_scene(build(two_rocks()))
-        for item in scene.model_objects(bpy.context.scene, "interface"):
+        for item in model_tree.model_objects(bpy.context.scene, "interface"):
             self.assertFalse({"variance", "distance"} & set(item.data.attributes.keys()))
 
 

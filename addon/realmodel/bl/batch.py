@@ -20,11 +20,11 @@ def write_scene(model, project=None):
     is taken out first; in an opened file other objects are left alone. The 3D viewports are turned to
     show the model.
     """
-    current = bpy.context.scene
-    built_scene.write_model(current, model, project)
+    scene = bpy.context.scene
+    built_scene.write_model(scene, model, project)
     if not bpy.data.filepath:
-        _remove_startup_objects(current, current.realmodel.collection)
-    viewports.frame(current, viewports.all_spaces())
+        _remove_startup_objects(scene, scene.realmodel.collection)
+    viewports.frame(scene, viewports.all_spaces())
 
 
 def save_blend(path):
@@ -76,13 +76,13 @@ def _failed(path, error):
     return OutputFailed(f"{path}: {reason}")
 
 
-def _remove_startup_objects(current, project):
+def _remove_startup_objects(scene, project):
     """Remove every object and collection of the scene that does not belong to the model."""
     keep = {item.name for item in project.all_objects}
     for item in list(bpy.data.objects):
         if item.name not in keep:
             bpy.data.objects.remove(item)
-    for collection in list(current.collection.children):
+    for collection in list(scene.collection.children):
         if collection != project:
             bpy.data.collections.remove(collection)
     for store in (bpy.data.meshes, bpy.data.lights, bpy.data.cameras, bpy.data.materials):

@@ -14,7 +14,7 @@ import numpy as np
 from ..core import BuildFailed, InputRefused
 from ..core.display.mesh_parts import MeshParts, Operand, mesh_of_parts
 from ..core.results.booleans import SURFACES, intersect_within
-from . import mesh_data, meshes, scene, shapes, versions
+from . import mesh_data, meshes, model_tree, shapes, versions
 from .thread_job import ThreadJob
 
 DIVIDE = "DIVIDE"
@@ -58,9 +58,9 @@ class BooleanJob(ThreadJob):
     operation: one of OPERATIONS. keep: the objects stay as they are, and the result is a new one.
     """
 
-    def __init__(self, current, first, second, operation, depsgraph, keep=False):
+    def __init__(self, scene, first, second, operation, depsgraph, keep=False):
         """Reads both objects. Raises InputRefused."""
-        self._scene, self._names = current.name, (first.name, second.name)
+        self._scene, self._names = scene.name, (first.name, second.name)
         self._operation, self._keep = operation, keep
         if operation != DIVIDE and not keep:
             _require_own(first)
@@ -158,15 +158,15 @@ class BooleanJob(ThreadJob):
     # -- in the main thread
 
     def _put(self, made):
-        current = bpy.data.scenes.get(self._scene)
-        items = [None if current is None else current.objects.get(name) for name in self._names]
+        scene = bpy.data.scenes.get(self._scene)
+        items = [None if scene is None else scene.objects.get(name) for name in self._names]
         for name, item in zip(self._names, items, strict=True):
             if item is None or item.type != "MESH":
                 raise BuildFailed(f"object '{name}' is gone; nothing was changed")
             if item.mode != "OBJECT":
                 raise BuildFailed(f"object '{name}' is being edited; nothing was changed")
         if self._operation == DIVIDE:
-            return self._put_divided(current, made, *items)
+            return self._put_divided(scene, made, *items)
         return self._put_solid(made, *items)
 
     def _put_solid(self, parts, first, second):
@@ -189,8 +189,8 @@ class BooleanJob(ThreadJob):
         _select([target])
         return target, left_out
 
-    def _put_divided(self, current, made, first, second):
-        where = first.users_collection[0] if first.users_collection else current.collection
+    def _put_divided(self, scene, made, first, second):
+        where = first.users_collection[0] if first.users_collection else scene.collection
         top = bpy.data.collections.new(f"{first.name} divided by {second.name}")
         where.children.link(top)
         kinds = {}
@@ -209,7 +209,7 @@ class BooleanJob(ThreadJob):
                 mesh.name = entry.name
                 left_out += [name for name in lost if name not in left_out]
             item = bpy.data.objects.new(entry.name, mesh)
-            item[scene.TAG] = kind
+            item[model_tree.TAG] = kind
             _stand_at(item, first)
             kinds[kind].objects.link(item)
             if kind != "loop":
@@ -333,7 +333,7 @@ def _stand_at(item, other):
 
 def _require_own(item):
     """Refuses an object of a model, whose mesh the next build would replace. Raises InputRefused."""
-    if item.get(scene.TAG) in scene.OBJECT_KINDS:
+    if item.get(model_tree.TAG) in model_tree.OBJECT_KINDS:
         raise InputRefused(
             "it is an object of the model, which a build makes anew",
             item=item.name,

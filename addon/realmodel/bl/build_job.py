@@ -20,14 +20,14 @@ class BuildJob(ThreadJob):
     raises what went wrong and leaves the scene as it was.
     """
 
-    def __init__(self, current, depsgraph, cells=None, whole=True):
+    def __init__(self, scene, depsgraph, cells=None, whole=True):
         """Composes the project. Raises InputRefused."""
-        self.scene_name = current.name
-        self.cells = cells or current.realmodel.cells.lower()
-        self.composed = project_settings.compose(current, depsgraph, whole)
-        settings.follow_youngest(current)
-        group = current.realmodel
-        is_stage = len(group.results) and group.stage < settings.last_stage(current)
+        self.scene_name = scene.name
+        self.cells = cells or scene.realmodel.cells.lower()
+        self.composed = project_settings.compose(scene, depsgraph, whole)
+        settings.follow_youngest(scene)
+        group = scene.realmodel
+        is_stage = len(group.results) and group.stage < settings.last_stage(scene)
         self._stage = group.stage if is_stage else None  # the stage that is shown afterwards
         self._slices = None
 
@@ -53,11 +53,11 @@ class BuildJob(ThreadJob):
 
     def hand_over(self, seconds):
         """As of ThreadJob: makes some of the meshes that the scene will need."""
-        current = bpy.data.scenes.get(self.scene_name)
-        if current is None or not self._job.succeeded:
+        scene = bpy.data.scenes.get(self.scene_name)
+        if scene is None or not self._job.succeeded:
             return True  # finish raises the error
         if self._slices is None:
-            shapes = built_scene.shapes_to_come(current, self._job.result(), self.composed)
+            shapes = built_scene.shapes_to_come(scene, self._job.result(), self.composed)
             self._slices = meshes.slices(shapes)
         try:
             return self._slices.make(seconds)
@@ -79,23 +79,23 @@ class BuildJob(ThreadJob):
             self.leave()
 
     def _put(self, prepared, in_place=False):
-        current = bpy.data.scenes.get(self.scene_name)
-        if current is None:
+        scene = bpy.data.scenes.get(self.scene_name)
+        if scene is None:
             raise BuildFailed(
                 f"scene '{self.scene_name}' is gone; build again in the scene that has the model"
             )
-        built_scene.put(current, prepared, self.composed, in_place)
+        built_scene.put(scene, prepared, self.composed, in_place)
         return prepared.model
 
 
-def refused_surface(current, error):
+def refused_surface(scene, error):
     """The row of the surface, fault or body that a refusal speaks of, or None."""
     if not isinstance(error, InputRefused) or not error.item:
         return None
-    for rock, row in settings.surface_rows(current):
+    for rock, row in settings.surface_rows(scene):
         if surface_item(rock, row) == error.item:
             return row
-    for (kind, _), row in settings.structure_rows(current):
+    for (kind, _), row in settings.structure_rows(scene):
         if f"{kind} '{row.name}'" == error.item:
             return row
     return None

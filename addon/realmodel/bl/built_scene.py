@@ -30,10 +30,10 @@ from . import (
     looks,
     materials,
     meshes,
+    model_tree,
     notices,
     project_settings,
     results,
-    scene,
     settings,
     shapes,
     structure_settings,
@@ -132,9 +132,9 @@ def _other_origin(model, composed, away):
     return origin
 
 
-def shapes_to_come(current, prepared, composed):
+def shapes_to_come(scene, prepared, composed):
     """(name, PolygonMesh) of each mesh that `put` will make, as the scene stands."""
-    for place, row in settings.interface_rows(current):
+    for place, row in settings.interface_rows(scene):
         shape, digest = prepared.interfaces.get(place, (None, ""))
         if shape is not None and (_interface(row) is None or digest != row.interface_digest):
             yield row.name, shape
@@ -143,18 +143,18 @@ def shapes_to_come(current, prepared, composed):
             yield block.name, shape
 
 
-def check_rows(current, project):
+def check_rows(scene, project):
     """Raises BuildFailed where the lists of a scene are no longer those that a project was made from."""
-    now = [(row.name, [s.name for s in row.surfaces]) for row in current.realmodel.rocks]
+    now = [(row.name, [s.name for s in row.surfaces]) for row in scene.realmodel.rocks]
     then = [(rock.name, [s.name for s in rock.surfaces]) for rock in project.rocks]
-    if (now, structure_settings.names_in(current)) != (then, structure_settings.names_of(project)):
+    if (now, structure_settings.names_in(scene)) != (then, structure_settings.names_of(project)):
         raise BuildFailed("the lists were changed while it was being built; build again")
 
 
-def check_modes(current, prepared=None):
+def check_modes(scene, prepared=None):
     """Raises BuildFailed where an object whose mesh is to be replaced is being edited: Blender would keep its
     mesh as it is. prepared: as for `put`, to look at the interfaces too."""
-    for row in current.realmodel.results:
+    for row in scene.realmodel.results:
         item = row.object
         if item is not None and item.mode != "OBJECT":
             raise BuildFailed(
@@ -162,7 +162,7 @@ def check_modes(current, prepared=None):
                 "leave the mode (Tab), then build again"
             )
     for place, (_, digest) in prepared.interfaces.items() if prepared is not None else ():
-        row = settings.row_at(current, place)
+        row = settings.row_at(scene, place)
         item = _interface(row)
         if item is not None and item.mode != "OBJECT" and digest != row.interface_digest:
             raise BuildFailed(
@@ -175,93 +175,93 @@ def _mode_name(item):
     return item.bl_rna.properties["mode"].enum_items[item.mode].name.lower()
 
 
-def write_model(current, model, project=None):
+def write_model(scene, model, project=None):
     """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. The
     user's objects stay; materials of earlier properties are reused. project: the project that the model was
     built from, if the settings are to name its files beside the stored data."""
     model = model_with_library(model)
-    _remove_model(current)
-    project_settings.fill(current, project or model.project)
-    composed = project_settings.compose(current, viewports.updated_layer(current).depsgraph)
-    put(current, prepare(model, composed, threads=model.threads), composed)
+    _remove_model(scene)
+    project_settings.fill(scene, project or model.project)
+    composed = project_settings.compose(scene, viewports.updated_layer(scene).depsgraph)
+    put(scene, prepare(model, composed, threads=model.threads), composed)
 
 
-def put(current, prepared, composed, in_place=False):
+def put(scene, prepared, composed, in_place=False):
     """Puts a prepared model into a scene, and shows it.
 
-    current: the bpy.types.Scene. in_place: replace the contents of the blocks' meshes instead of the meshes,
+    scene: the bpy.types.Scene. in_place: replace the contents of the blocks' meshes instead of the meshes,
     so that references to them (as of Blender's undo) stay valid; only for updates that cannot fail. If
     anything fails, the scene stays as it was.
     """
     model = prepared.model
-    check_rows(current, model.project)
-    check_modes(current, prepared)
+    check_rows(scene, model.project)
+    check_modes(scene, prepared)
     created = []  # datablocks
     try:
-        palette, updates = _palette(current, model, created)
-        interfaces = _new_interfaces(current, prepared, composed, created)
-        blocks = _new_blocks(current, prepared, created, in_place)
+        palette, updates = _palette(scene, model, created)
+        interfaces = _new_interfaces(scene, prepared, composed, created)
+        blocks = _new_blocks(scene, prepared, created, in_place)
     except BaseException:
         bpy.data.batch_remove(created)
         raise
-    group = current.realmodel
-    settings.follow_youngest(current)
+    group = scene.realmodel
+    settings.follow_youngest(scene)
     with settings.filling():
-        _settle_edited(current, composed)
-        tree = _tree(current, model.project)
-        _place_interfaces(current, tree, interfaces)
-        _place_blocks(current, prepared, tree, blocks, palette)
-        scene.remove_unused_materials(besides=palette.values())  # their names are free then
+        _settle_edited(scene, composed)
+        tree = _tree(scene, model.project)
+        _place_interfaces(scene, tree, interfaces)
+        _place_blocks(scene, prepared, tree, blocks, palette)
+        model_tree.remove_unused_materials(besides=palette.values())  # their names are free then
         for name, color, material in updates:
-            scene.give_name(bpy.data.materials, material, name)
+            model_tree.give_name(bpy.data.materials, material, name)
             materials.set_color(material, color)
-        scene.remove_unused_materials()
-        _keep(current, prepared)
-        moved = project_settings.model_origin(current) - prepared.origin
-        current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
+        model_tree.remove_unused_materials()
+        _keep(scene, prepared)
+        moved = project_settings.model_origin(scene) - prepared.origin
+        scene[ORIGIN_KEY] = [float(value) for value in prepared.origin]
         if moved.any():
-            move_helpers(current, moved)
+            move_helpers(scene, moved)
         group.exists = True
         group.version = settings.VERSION
         before = group.built_stamp if in_place else None
         group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
         group.is_outdated = False
-    display.built(current, prepared.bounds, prepared.stage)
-    looks.follow(current)
-    weathering.follow(current)
+    display.built(scene, prepared.bounds, prepared.stage)
+    looks.follow(scene)
+    weathering.follow(scene)
 
 
-def move_helpers(current, moved):
+def move_helpers(scene, moved):
     """Moves the objects beside a model with it: its section plane and sections, the objects of its data."""
-    items = [item for item in current.objects if item.get(scene.TAG) == "section"]
-    if (plane := current.realmodel.view.plane) is not None and plane.get(scene.TAG) == "view":
+    items = [item for item in scene.objects if item.get(model_tree.TAG) == "section"]
+    if (plane := scene.realmodel.view.plane) is not None and plane.get(model_tree.TAG) == "view":
         items.append(plane)
     for item in items:
         item.location = np.array(item.location) + moved
-    data_objects.place(current)
+    data_objects.place(scene)
 
 
-def _keep(current, prepared):
+def _keep(scene, prepared):
     """Stores the data that were read from files in the rows, and the statistics of each surface."""
     for place, (text, stamp) in prepared.stored.items():
-        row = settings.row_at(current, place)
+        row = settings.row_at(scene, place)
         if place[1] is None:
             row.region_stored, row.region_stamp = text, stamp
         else:
             project_settings.keep_shape(row, text, stamp)
-    current.realmodel.view.compartments = prepared.compartments
-    rows = [row for _, row in settings.interface_rows(current)]
+    scene.realmodel.view.compartments = prepared.compartments
+    rows = [row for _, row in settings.interface_rows(scene)]
     for row, figures in zip(rows, prepared.figures, strict=True):
         row.figures = figures
 
 
-def _palette(current, model, created):
+def _palette(scene, model, created):
     """The material of each property that a block has, and the materials to be renamed or recolored."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
         there = len(bpy.data.materials)
-        palette[property_id] = library_rows.material_of(current, property_id)
+        palette[property_id] = library_rows.material_of(scene, property_id)
         if len(bpy.data.materials) > there:
             created.append(palette[property_id])
         name, color = materials.name_and_color(model.project.library, property_id)
@@ -274,11 +274,11 @@ def _interface(row):
     return row.object if row.source == "MESH_OBJECT" else row.interface
 
 
-def _new_interfaces(current, prepared, composed, created):
+def _new_interfaces(scene, prepared, composed, created):
     """For each place the object that will be the interface, with a new mesh if it needs one: (object, mesh or
     None, digest)."""
     found = {}
-    for place, row in settings.interface_rows(current):
+    for place, row in settings.interface_rows(scene):
         own = _interface(row)
         if composed.from_object(place):
             found[place] = (own, None, "")
@@ -297,19 +297,19 @@ def _new_interfaces(current, prepared, composed, created):
     return found
 
 
-def _settle_edited(current, composed):
+def _settle_edited(scene, composed):
     """Accepts interfaces that were edited by hand as they are now."""
     for place in composed.edited:
-        row = settings.row_at(current, place)
+        row = settings.row_at(scene, place)
         row.object = row.interface
         row.source = "MESH_OBJECT"
         row.interface_digest = ""
         structure_settings.forget_extension(row)
 
 
-def _new_blocks(current, prepared, created, in_place):
+def _new_blocks(scene, prepared, created, in_place):
     """For each block of the model (object, new mesh or None to be updated in place), None for absent ones."""
-    known = {(row.rock, row.name): row.object for row in current.realmodel.results}
+    known = {(row.rock, row.name): row.object for row in scene.realmodel.results}
     model, found = prepared.model, []
     for block, shape in zip(model.blocks, prepared.blocks, strict=True):
         if shape is None:
@@ -330,69 +330,69 @@ def _new_blocks(current, prepared, created, in_place):
     return found
 
 
-def _tree(current, project):
+def _tree(scene, project):
     """The model's collections, linked where they were taken out, new where there are none: for each rock mass
     (interfaces, blocks), and that of the faults and bodies under None."""
-    group = current.realmodel
-    top = _collection(current, current.collection, group, "collection", project.name, {scene.TAG: "project"})
+    group = scene.realmodel
+    top = _collection(scene, scene.collection, group, "collection", project.name, {model_tree.TAG: "project"})
     rocks = {}
     for number, row in enumerate(group.rocks):
-        tags = {scene.TAG: "rock", scene.ROCK: row.name}
-        parent = _collection(current, top, row, "collection", row.name, tags)
+        tags = {model_tree.TAG: "rock", model_tree.ROCK: row.name}
+        parent = _collection(scene, top, row, "collection", row.name, tags)
         pair = []
         for kind in ("interfaces", "blocks"):
-            own = tags | {scene.TAG: kind}
-            pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", own))
+            own = tags | {model_tree.TAG: kind}
+            pair.append(_collection(scene, parent, row, kind, f"{row.name} {kind}", own))
         rocks[number] = tuple(pair)
     if len(group.faults) or len(group.bodies):
         rocks[None] = _collection(
-            current, top, group, "structures", "faults and bodies", {scene.TAG: "structures"}
+            scene, top, group, "structures", "faults and bodies", {model_tree.TAG: "structures"}
         )
     return rocks
 
 
-def _collection(current, parent, row, pointer, name, tags):
+def _collection(scene, parent, row, pointer, name, tags):
     collection = getattr(row, pointer)
     if collection is None or collection.library is not None:
         collection = bpy.data.collections.new(name)
-        collection.hide_render = tags[scene.TAG] in ("interfaces", "structures")
+        collection.hide_render = tags[model_tree.TAG] in ("interfaces", "structures")
         setattr(row, pointer, collection)
     for key, value in tags.items():
         collection[key] = value
-    if not scene.is_name_of(collection.name, name):
-        scene.give_name(bpy.data.collections, collection, name)
-    if collection not in list(current.collection.children_recursive):
+    if not model_tree.is_name_of(collection.name, name):
+        model_tree.give_name(bpy.data.collections, collection, name)
+    if collection not in list(scene.collection.children_recursive):
         parent.children.link(collection)
     return collection
 
 
-def _place_interfaces(current, tree, interfaces):
+def _place_interfaces(scene, tree, interfaces):
     for place, (item, mesh, digest) in interfaces.items():
-        row, kind = settings.row_at(current, place), place[0]
+        row, kind = settings.row_at(scene, place), place[0]
         if mesh is not None and item.data != mesh:
             _change_mesh(item, mesh)
         of_surface = not isinstance(kind, str)
-        wanted = {scene.TAG: "interface" if of_surface else kind, scene.SURFACE: row.name}
+        wanted = {model_tree.TAG: "interface" if of_surface else kind, model_tree.SURFACE: row.name}
         if of_surface:
-            wanted[scene.ROCK] = current.realmodel.rocks[kind].name
+            wanted[model_tree.ROCK] = scene.realmodel.rocks[kind].name
         if kind != "fault":
-            wanted[scene.PROPERTY] = row.property_id
-        adopted = item.get(scene.TAG) == wanted[scene.TAG]
+            wanted[model_tree.PROPERTY] = row.property_id
+        adopted = item.get(model_tree.TAG) == wanted[model_tree.TAG]
         if item.library is None:
             for key, value in wanted.items():
                 item[key] = value
-        _link(current, tree[kind][0] if of_surface else tree[None], item, move=not adopted)
-        if item.library is None and not scene.is_name_of(item.name, row.name):
-            scene.give_name(bpy.data.objects, item, row.name)
+        _link(scene, tree[kind][0] if of_surface else tree[None], item, move=not adopted)
+        if item.library is None and not model_tree.is_name_of(item.name, row.name):
+            model_tree.give_name(bpy.data.objects, item, row.name)
         row.interface = item
         row.interface_digest = digest
         if row.source in ("MESH_FILE", "POINTS_FILE", "TRACE_FILE"):
             row.object = item
 
 
-def _place_blocks(current, prepared, tree, blocks, palette):
+def _place_blocks(scene, prepared, tree, blocks, palette):
     model = prepared.model
-    before = [row.object for row in current.realmodel.results]
+    before = [row.object for row in scene.realmodel.results]
     kept = []
     for block, made, shape in zip(model.blocks, blocks, prepared.blocks, strict=True):
         if made is None:
@@ -406,15 +406,15 @@ def _place_blocks(current, prepared, tree, blocks, palette):
             _change_mesh(item, mesh)
         materials.give(item, palette[int(block.property)])
         rock_name = model.project.rocks[block.rock].name
-        item[scene.TAG] = "block"
-        item[scene.ROCK] = rock_name
-        item[scene.SURFACE] = str(model.surface_names[block.surface])
-        item[scene.BLOCK] = block.name
-        item[scene.PROPERTY] = int(block.property)
-        _link(current, tree[block.rock][1], item)
+        item[model_tree.TAG] = "block"
+        item[model_tree.ROCK] = rock_name
+        item[model_tree.SURFACE] = str(model.surface_names[block.surface])
+        item[model_tree.BLOCK] = block.name
+        item[model_tree.PROPERTY] = int(block.property)
+        _link(scene, tree[block.rock][1], item)
         kept.append(item)
-    scene.remove_objects([item for item in before if item is not None and item not in kept])
-    fill_results(current, model, kept)
+    model_tree.remove_objects([item for item in before if item is not None and item not in kept])
+    fill_results(scene, model, kept)
 
 
 def _change_mesh(item, mesh):
@@ -428,25 +428,25 @@ def _change_mesh(item, mesh):
     if not old.users:
         name = old.name
         bpy.data.meshes.remove(old)
-        scene.give_name(bpy.data.meshes, mesh, name)
+        model_tree.give_name(bpy.data.meshes, mesh, name)
 
 
-def _link(current, collection, item, move=False):
+def _link(scene, collection, item, move=False):
     """Links an object to its collection if it is in no collection of the scene; an object that becomes part
     of the model now is moved there."""
     if move:
         for other in list(item.users_collection):
             if other != collection and (
-                other == current.collection or other in list(current.collection.children_recursive)
+                other == scene.collection or other in list(scene.collection.children_recursive)
             ):
                 other.objects.unlink(item)
-    if current not in item.users_scene and item.name not in collection.objects:
+    if scene not in item.users_scene and item.name not in collection.objects:
         collection.objects.link(item)
 
 
-def fill_results(current, model, objects):
+def fill_results(scene, model, objects):
     """The rows of the results for a model's blocks."""
-    group = current.realmodel
+    group = scene.realmodel
     chosen = group.active_result
     group.results.clear()
     total = model.volume
@@ -464,88 +464,88 @@ def fill_results(current, model, objects):
     group.active_result = min(chosen, max(len(group.results) - 1, 0))
 
 
-def clear(current):
+def clear(scene):
     """Removes the blocks from a scene; the interfaces and all settings stay."""
-    _clear(current)
-    scene.remove_unused_materials()
+    _clear(scene)
+    model_tree.remove_unused_materials()
 
 
-def _clear(current):
-    objects = [row.object for row in current.realmodel.results if row.object is not None]
+def _clear(scene):
+    objects = [row.object for row in scene.realmodel.results if row.object is not None]
     with settings.filling():
-        current.realmodel.results.clear()
-        current.realmodel.built_stamp = ""
-        current.realmodel.warnings = ""
-        current.realmodel.is_outdated = False
-        current.realmodel.view.compartments = ""
-    scene.remove_objects(objects)
-    display.cleared(current)
+        scene.realmodel.results.clear()
+        scene.realmodel.built_stamp = ""
+        scene.realmodel.warnings = ""
+        scene.realmodel.is_outdated = False
+        scene.realmodel.view.compartments = ""
+    model_tree.remove_objects(objects)
+    display.cleared(scene)
 
 
-def remove_model(current):
+def remove_model(scene):
     """Removes the whole model from a scene: blocks, the interfaces that were made for it, collections,
     settings. The user's objects stay, outside of the model's collections."""
-    _remove_model(current)
-    scene.remove_unused_materials()
+    _remove_model(scene)
+    model_tree.remove_unused_materials()
 
 
-def _remove_model(current):
-    _clear(current)
-    group = current.realmodel
-    for _, row in settings.interface_rows(current):
+def _remove_model(scene):
+    _clear(scene)
+    group = scene.realmodel
+    for _, row in settings.interface_rows(scene):
         item = row.interface
         if item is None:
             continue
         if row.interface_digest:
             row.interface = row.object = None
-            scene.remove_objects([item])
+            model_tree.remove_objects([item])
         else:
-            _release(current, item)
+            _release(scene, item)
     collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
     last = [group.structures, group.collection]
     for key in ("rocks", "faults", "bodies", "results", "library"):
         getattr(group, key).clear()
     group.structures = group.collection = None
     for collection in [c for three in collections for c in three] + last:
-        scene.release_collection(collection)
-    if ORIGIN_KEY in current:
-        del current[ORIGIN_KEY]
-    exaggeration.apply(current, [], 0.0)
+        model_tree.release_collection(collection)
+    if ORIGIN_KEY in scene:
+        del scene[ORIGIN_KEY]
+    exaggeration.apply(scene, [], 0.0)
 
 
-def _release(current, item):
+def _release(scene, item):
     """An object of the user's that is no interface any more."""
     display.let_go(item)
     exaggeration.release(item)
-    for key in (scene.TAG, scene.ROCK, scene.SURFACE, scene.PROPERTY):
+    for key in (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.PROPERTY):
         if key in item:
             del item[key]
     for collection in list(item.users_collection):
-        if collection.get(scene.TAG) in ("interfaces", "structures"):
+        if collection.get(model_tree.TAG) in ("interfaces", "structures"):
             collection.objects.unlink(item)
-    if current not in item.users_scene:
-        current.collection.objects.link(item)
-    visible.show(current, item, True)
+    if scene not in item.users_scene:
+        scene.collection.objects.link(item)
+    visible.show(scene, item, True)
 
 
-def remove_rock(current, row):
+def remove_rock(scene, row):
     """Removes the blocks, interfaces and collections of a rock mass that is removed from the list."""
     name = row.name
     with settings.filling():
         for surface in row.surfaces:
-            release_surface(current, surface)
-        group = current.realmodel
+            release_surface(scene, surface)
+        group = scene.realmodel
         gone = [n for n, block in enumerate(group.results) if block.rock == name]
         objects = [group.results[n].object for n in gone]
         for n in reversed(gone):
             group.results.remove(n)
-        scene.remove_objects([item for item in objects if item is not None])
-        scene.remove_unused_materials()
+        model_tree.remove_objects([item for item in objects if item is not None])
+        model_tree.remove_unused_materials()
         for collection in (row.interfaces, row.blocks, row.collection):
-            scene.release_collection(collection)
+            model_tree.release_collection(collection)
 
 
-def release_surface(current, row):
+def release_surface(scene, row):
     """Removes the interface of a surface, fault or body that is removed from the list; an object of the user
     stays."""
     item = row.interface
@@ -554,6 +554,6 @@ def release_surface(current, row):
         return
     if row.interface_digest and item.library is None:
         row.object = row.object if row.object != item else None
-        scene.remove_objects([item])
+        model_tree.remove_objects([item])
     else:
-        _release(current, item)
+        _release(scene, item)

@@ -23,19 +23,19 @@ class EnsembleJob(ThreadJob):
     scene and returns it, or raises what went wrong and leaves the scene as it was.
     """
 
-    def __init__(self, current, realizations, seed, line=None, depsgraph=None):
+    def __init__(self, scene, realizations, seed, line=None, depsgraph=None):
         """Raises InputRefused."""
-        self._scene, self._count, self._seed = current.name, realizations, seed
+        self._scene, self._count, self._seed = scene.name, realizations, seed
         self._done = 0
-        self._request = shown_models.StageRequest(current, settings.last_stage(current))
+        self._request = shown_models.StageRequest(scene, settings.last_stage(scene))
         self._plane = self._line = None
-        origin = project_settings.model_origin(current)
+        origin = project_settings.model_origin(scene)
         if line is not None:
             self._line = shapes.polyline(line, depsgraph) + origin[:2]
-        elif cuts.plane_of(current) is not None:
-            self._plane = cuts.plane_in_model(current)
+        elif cuts.plane_of(scene) is not None:
+            self._plane = cuts.plane_in_model(scene)
         else:
-            low, high = explosion.bounds(current)
+            low, high = explosion.bounds(scene)
             self._plane = (np.asarray(low) + high) / 2 + origin, (0.0, -1.0, 0.0)
 
     def run(self):
@@ -67,11 +67,11 @@ class EnsembleJob(ThreadJob):
         return found, samples, np.stack(blocks)
 
     def _put(self, made):
-        current = bpy.data.scenes.get(self._scene)
-        if current is None:
+        scene = bpy.data.scenes.get(self._scene)
+        if scene is None:
             raise BuildFailed(f"scene '{self._scene}' is gone; nothing was changed")
-        if current.realmodel.built_stamp != self._request.stamp or not len(current.realmodel.results):
+        if scene.realmodel.built_stamp != self._request.stamp or not len(scene.realmodel.results):
             raise BuildFailed("another model was built meanwhile; nothing was changed: start again")
         self._request.keep()
-        ensembles.put(current, *made, self._seed)
+        ensembles.put(scene, *made, self._seed)
         return made[0]

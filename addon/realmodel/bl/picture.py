@@ -45,7 +45,7 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(current, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_ELEVATION)):
+def set_up(scene, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_ELEVATION)):
     """Adds a camera, light, sky and ground to a scene, or updates those that it added before. Cameras and
     lights of the user stay.
 
@@ -55,8 +55,8 @@ def set_up(current, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_EL
     None: a lamp beside the camera, a uniform sky and no ground, so that faces toward the camera have their
     own color.
     """
-    _remove_turntable(current)
-    camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
+    _remove_turntable(scene)
+    camera = _own(scene, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
     camera.parent = None
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
@@ -67,8 +67,8 @@ def set_up(current, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_EL
     else:
         away = _look_as(camera, space, reach)
     camera.data.clip_start, camera.data.clip_end = away / 1e3, 10.0 * (away + reach)
-    current.camera = camera
-    lamp = _own(current, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
+    scene.camera = camera
+    lamp = _own(scene, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
     lamp.data.energy, lamp.data.angle = (2.0, 0.0) if sun is None else (SUN_STRENGTH, SUN_ANGLE)
     if sun is None:
         lamp.data.color = (1.0, 1.0, 1.0)
@@ -76,18 +76,18 @@ def set_up(current, points, size, space=None, left=0.0, sun=(SUN_AZIMUTH, SUN_EL
     else:
         lamp.data.color = LOW_SUN + (1.0 - LOW_SUN) * min(1.0, max(0.0, sun[1]) / SUN_ELEVATION)
         lamp.rotation_euler = towards(*sun).to_track_quat("Z", "Y").to_euler()
-        _put_ground(current, points, 10.0 * (away + reach))
-    _set_sky(current, *((1.0, 1.0, 1.0), 0.4) if sun is None else (SKY_COLOR, SKY_STRENGTH))
+        _put_ground(scene, points, 10.0 * (away + reach))
+    _set_sky(scene, *((1.0, 1.0, 1.0), 0.4) if sun is None else (SKY_COLOR, SKY_STRENGTH))
     return camera
 
 
-def turntable_of(current):
+def turntable_of(scene):
     """The empty that is the parent of the camera of a scene's turntable, or None."""
-    return next((item for item in current.objects if item.get(KEY) == TURNTABLE), None)
+    return next((item for item in scene.objects if item.get(KEY) == TURNTABLE), None)
 
 
-def _remove_turntable(current):
-    pivot = turntable_of(current)
+def _remove_turntable(scene):
+    pivot = turntable_of(scene)
     if pivot is None:
         return
     action = pivot.animation_data.action if pivot.animation_data else None
@@ -96,14 +96,14 @@ def _remove_turntable(current):
         bpy.data.actions.remove(action)
 
 
-def _own(current, kind, data):
+def _own(scene, kind, data):
     """The object of a kind that belongs to the picture of a scene; made if it does not exist."""
-    item = next((item for item in current.objects if item.get(KEY) == kind), None)
+    item = next((item for item in scene.objects if item.get(KEY) == kind), None)
     if item is None:
         made = data()
         item = bpy.data.objects.new(made.name, made)
         item[KEY] = kind
-        current.collection.objects.link(item)
+        scene.collection.objects.link(item)
     return item
 
 
@@ -123,8 +123,8 @@ def _look_as(camera, space, reach):
     return away
 
 
-def _set_sky(current, color, strength):
-    world = current.world
+def _set_sky(scene, color, strength):
+    world = scene.world
     if world is None or KEY not in world:
         if world is not None:
             world.use_fake_user = True  # the user's own stays in the file
@@ -133,19 +133,19 @@ def _set_sky(current, color, strength):
         world.use_nodes = True
         # Only bounced rays sample the sky: then each sample includes the sun, and open ground has no noise.
         versions.leave_sky_to_bounces(world)
-        current.world = world
+        scene.world = world
     sky = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
     sky.inputs["Color"].default_value = (*color, 1.0)
     sky.inputs["Strength"].default_value = strength
 
 
-def _put_ground(current, points, reach):
+def _put_ground(scene, points, reach):
     """A light plane that takes the shadow, in renders only; its rim is beyond the frame."""
     extent = np.ptp(points, axis=0).max()
     x, y = points[:, :2].mean(axis=0)
     z = points[:, 2].min() - 0.002 * extent
     corners = np.array([[x + a * reach, y + b * reach, z] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-    ground = _own(current, "ground", lambda: _ground_mesh(corners))
+    ground = _own(scene, "ground", lambda: _ground_mesh(corners))
     ground.data.vertices.foreach_set("co", corners.astype(np.float32).ravel())
     ground.data.update()
     ground.hide_viewport = ground.hide_select = True
@@ -162,15 +162,15 @@ def _ground_mesh(corners):
 
 
 @contextlib.contextmanager
-def throw_away(current):
+def throw_away(scene):
     """A scene for one picture: it and all datablocks that are made meanwhile are removed at the end."""
     stores = (bpy.data.objects, bpy.data.meshes, bpy.data.cameras, bpy.data.lights, bpy.data.worlds)
     stores += (bpy.data.materials, bpy.data.images, bpy.data.collections)
     before = [set(store) for store in stores]
     try:
-        yield current
+        yield scene
     finally:
-        bpy.data.scenes.remove(current)
+        bpy.data.scenes.remove(scene)
         for store, known in zip(stores, before, strict=True):
             for datablock in [datablock for datablock in store if datablock not in known]:
                 if isinstance(datablock, bpy.types.Image):
@@ -178,7 +178,7 @@ def throw_away(current):
                 store.remove(datablock)
 
 
-def render_picture(current, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
+def render_picture(scene, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
     """Renders a scene's model, cut open, to a PNG file; the scene stays as it is.
 
     path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
@@ -186,26 +186,26 @@ def render_picture(current, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
     were exaggerated. Raises RuntimeError where there is nothing to see or Blender cannot render or write,
     RealModelError.
     """
-    rows = {(row.rock, row.name): row.object for row in current.realmodel.results if row.object is not None}
+    rows = {(row.rock, row.name): row.object for row in scene.realmodel.results if row.object is not None}
     if not rows:
         raise RuntimeError("there is no block to render: the model is empty")
-    origin = project_settings.model_origin(current)
-    half = _opened(shown_models.at_stage(current, settings.last_stage(current)))
+    origin = project_settings.model_origin(scene)
+    half = _opened(shown_models.at_stage(scene, settings.last_stage(scene)))
     shapes = block_shapes.by_name(half, polygon_mesh.of_blocks(half, origin))
     coordinates = np.concatenate([shape.coordinates for shape in shapes.values()])
     factor = exaggeration_of(np.ptp(coordinates, axis=0))
-    if current.realmodel.view.exaggeration != 1.0:
-        factor = exaggeration.factor(current)
+    if scene.realmodel.view.exaggeration != 1.0:
+        factor = exaggeration.factor(scene)
     with throw_away(bpy.data.scenes.new("RealModel picture")) as stage:
         for key, shape in shapes.items():
             made = bpy.data.objects.new(key[1], meshes.new_mesh(key[1], shape))
             made.data.materials.append(rows[key].data.materials[0])
             made.scale.z = factor
             stage.collection.objects.link(made)
-        set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(current, size))
+        set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(scene, size))
         set_renderer(stage, path, size, samples, time_limit)
         stretched = np.diag([1.0, 1.0, factor, 1.0])
-        rendered.put(stage, lambda _, view: drawing_for(current, view, stretched=stretched))
+        rendered.put(stage, lambda _, view: drawing_for(scene, view, stretched=stretched))
         bpy.ops.render.render(write_still=True, scene=stage.name)
     return factor
 

@@ -33,33 +33,33 @@ _working = {}  # the job, its request, and its key, while there is one
 _pictures = None  # previews of charts, by their key
 
 
-def _key(current, rock, surface):
-    return current.realmodel.built_stamp, rock.name, surface.name
+def _key(scene, rock, surface):
+    return scene.realmodel.built_stamp, rock.name, surface.name
 
 
-def found(current):
+def found(scene):
     """The SurfaceQuality of the active surface, or None."""
-    rock, surface = settings.active_rock(current), settings.active_surface(current)
-    return None if surface is None else _found.get(_key(current, rock, surface))
+    rock, surface = settings.active_rock(scene), settings.active_surface(scene)
+    return None if surface is None else _found.get(_key(scene, rock, surface))
 
 
-def volume_deviation(current, row):
+def volume_deviation(scene, row):
     """An upper bound of the standard deviation of a block's volume (a row of the results), model units cubed;
     None where it was not requested, or is not known."""
-    known = _deviations.get(current.realmodel.built_stamp, {}).get((row.rock, row.name))
+    known = _deviations.get(scene.realmodel.built_stamp, {}).get((row.rock, row.name))
     return known if known is not None and np.isfinite(known) else None
 
 
-def check(current):
+def check(scene):
     """Computes the quality of the active surface, in this thread. Raises RealModelError."""
-    key, request, task = _asked(current)
+    key, request, task = _asked(scene)
     _keep(key, request, Job(task).result())
 
 
-def start(current):
+def start(scene):
     """Starts to compute it in another thread. Raises InputRefused."""
     stop()
-    key, request, task = _asked(current)
+    key, request, task = _asked(scene)
     _working.update(key=key, request=request, job=Job(task))
     bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
 
@@ -78,9 +78,9 @@ def stop():
         bpy.app.timers.unregister(_look)
 
 
-def _asked(current):
-    rock, surface = settings.active_rock(current), settings.active_surface(current)
-    request = shown_models.StageRequest(current, settings.last_stage(current))
+def _asked(scene):
+    rock, surface = settings.active_rock(scene), settings.active_surface(scene)
+    request = shown_models.StageRequest(scene, settings.last_stage(scene))
 
     def task(_work):
         text_width("0", 1.0)  # loads the letters of charts now, not while a panel is drawn
@@ -93,7 +93,7 @@ def _asked(current):
         return found, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
 
     wanted = rock.name, surface.name
-    return _key(current, rock, surface), request, task
+    return _key(scene, rock, surface), request, task
 
 
 def _keep(key, request, made):
@@ -147,16 +147,16 @@ def lines(quality, chart, unit):
     return plots.mesh_quality_lines(quality.angles)
 
 
-def icon(current, chart, pixels):
+def icon(scene, chart, pixels):
     """The icon of a chart of the active surface as a picture of this size in pixels, or None."""
     global _pictures
-    quality = found(current)
-    key = f"{_key(current, settings.active_rock(current), settings.active_surface(current))} {chart} {pixels}"
+    quality = found(scene)
+    key = f"{_key(scene, settings.active_rock(scene), settings.active_surface(scene))} {chart} {pixels}"
     if _pictures is None:
         _pictures = bpy.utils.previews.new()
     if key not in _pictures:
         page = min(_PAGE, pixels / _PIXELS)
-        drawn = drawing(quality, chart, current.realmodel.units, (page, page), words=False)
+        drawn = drawing(quality, chart, scene.realmodel.units, (page, page), words=False)
         if drawn is None:
             return None
         if len(_pictures) >= _MOST:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..core import InputRefused
 from ..core.base.atomic import Outputs, writable_target
-from . import library_rows, looks, scene, settings, versions
+from . import library_rows, looks, model_tree, settings, versions
 from .display import bodies
 
 FORMATS = (
@@ -25,7 +25,7 @@ FORMATS = (
     ("USDA", "USD as Text (.usda)", "The same, as text"),
     ("OBJ", "Wavefront OBJ (.obj)", "For everything else; knows no custom properties"),
 )
-_KEPT = (scene.TAG, scene.ROCK, scene.SURFACE, scene.BLOCK, scene.PROPERTY)
+_KEPT = (model_tree.TAG, model_tree.ROCK, model_tree.SURFACE, model_tree.BLOCK, model_tree.PROPERTY)
 _SAMPLES = 2  # of a pixel
 _STEEPEST = 1.15  # radians between the faces of a part of a picture
 _GAP = 1 / 256  # between parts of a picture, of its width; half of it is filled from either side
@@ -33,14 +33,14 @@ _GAP = 1 / 256  # between parts of a picture, of its width; half of it is filled
 
 def displayed(context):
     """The objects of the model of the scene that are displayed and that other programs can show."""
-    project = scene.model_collection(context.scene)
+    project = model_tree.model_collection(context.scene)
     items = () if project is None else project.all_objects
     return [item for item in items if item.type == "MESH" and item.visible_get() and _shows_rock(item)]
 
 
 def _shows_rock(item):
     is_part = item.get(bodies.KIND, bodies.PLANE) != bodies.PLANE
-    return (is_part or item.get(scene.TAG) in scene.OBJECT_KINDS) and len(item.data.polygons) > 0
+    return (is_part or item.get(model_tree.TAG) in model_tree.OBJECT_KINDS) and len(item.data.polygons) > 0
 
 
 def write(context, items, path, size):
@@ -132,22 +132,22 @@ def _take_name(datablock, names):
     return name
 
 
-def _copy(current, item, mesh, names):
+def _copy(scene, item, mesh, names):
     """An object that shows the mesh as an object does, with its name and its custom properties."""
     mesh.name = _take_name(item.data, names)
     copy = bpy.data.objects.new(_take_name(item, names), mesh)
     copy.matrix_world = item.matrix_world
     for key in item.keys():  # noqa: SIM118 - objects of Blender are not iterable
-        if key in _KEPT or not key.startswith(scene.TAG):
+        if key in _KEPT or not key.startswith(model_tree.TAG):
             copy[key] = item[key]
-    row = library_rows.find(current, item.get(scene.PROPERTY))
+    row = library_rows.find(scene, item.get(model_tree.PROPERTY))
     if row is not None:
-        copy[f"{scene.TAG}_name"] = row.name
+        copy[f"{model_tree.TAG}_name"] = row.name
         for key in ("rock", "age", "structure", "description"):
             if getattr(row, key):
-                copy[f"{scene.TAG}_property_{key}"] = getattr(row, key)
+                copy[f"{model_tree.TAG}_property_{key}"] = getattr(row, key)
         if settings.number(row, "density"):
-            copy[f"{scene.TAG}_property_density"] = settings.number(row, "density")
+            copy[f"{model_tree.TAG}_property_density"] = settings.number(row, "density")
     return copy
 
 
@@ -235,20 +235,20 @@ def _unwrap(context, users):
 
 
 @contextlib.contextmanager
-def _renderer(current):
+def _renderer(scene):
     """Cycles with few samples."""
-    engine, had_settings = current.render.engine, "cycles" in current.keys()  # noqa: SIM118
-    current.render.engine = "CYCLES"
-    cycles = current.cycles
+    engine, had_settings = scene.render.engine, "cycles" in scene.keys()  # noqa: SIM118
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
     before = cycles.samples, cycles.use_denoising
     cycles.samples, cycles.use_denoising = _SAMPLES, False  # a build without a denoiser would bake nothing
     try:
         yield
     finally:
         cycles.samples, cycles.use_denoising = before
-        current.render.engine = engine
+        scene.render.engine = engine
         if not had_settings:
-            current.pop("cycles", None)
+            scene.pop("cycles", None)
 
 
 def _select(layer, items, active=None):

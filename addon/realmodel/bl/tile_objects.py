@@ -15,19 +15,19 @@ import numpy as np
 from ..core import InputRefused
 from ..core.base.units import length_text
 from ..core.display import coarse_meshes, polygon_mesh
-from . import materials, meshes, scene
+from . import materials, meshes, model_tree
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, far_from
 
 TILES, TILE = "tiles", "tile"
 
 
-def add_whole(current, tiled, size, step):
+def add_whole(scene, tiled, size, step):
     """Adds one coarse object for each block of a model in tiles; one tile is in memory at a time. size: of
     the squares that have one vertex each, model units. step: called with the share that is done. Returns the
     objects."""
     parts = [[] for _ in tiled.blocks]
-    origin = _origin(current, tiled)
+    origin = _origin(scene, tiled)
     for number, tile in enumerate(tiled.tiles):
         step(number / len(tiled.tiles))
         for found, shape in zip(parts, polygon_mesh.of_blocks(tile.model(), origin), strict=True):
@@ -35,25 +35,25 @@ def add_whole(current, tiled, size, step):
             if coarse is not None:
                 found.append(coarse)
     shapes = [coarse_meshes.joined(found) if found else None for found in parts]
-    return _put(current, tiled, origin, [("", shapes)])
+    return _put(scene, tiled, origin, [("", shapes)])
 
 
-def add_tiles(current, tiled, tiles, step):
+def add_tiles(scene, tiled, tiles, step):
     """The blocks of some tiles as they are, a collection for each tile. Otherwise as add_whole."""
-    origin = _origin(current, tiled)
+    origin = _origin(scene, tiled)
     found = []
     for number, tile in enumerate(tiles):
         step(number / len(tiles))
         found.append((tile.name, polygon_mesh.of_blocks(tile.model(), origin)))
-    return _put(current, tiled, origin, found)
+    return _put(scene, tiled, origin, found)
 
 
-def _origin(current, tiled):
+def _origin(scene, tiled):
     """The origin of the scene, or one for the model where the scene has none. Raises InputRefused."""
     corners = np.concatenate([tile.extent for tile in tiled.tiles if tile.vertices] or [np.zeros((2, 3))])
-    if ORIGIN_KEY not in current:
+    if ORIGIN_KEY not in scene:
         return choose_origin(corners)
-    origin = np.array(current[ORIGIN_KEY], np.float64)
+    origin = np.array(scene[ORIGIN_KEY], np.float64)
     away = far_from(origin, corners)
     if away is not None:
         raise InputRefused(
@@ -64,13 +64,13 @@ def _origin(current, tiled):
     return origin
 
 
-def _put(current, tiled, origin, found):
+def _put(scene, tiled, origin, found):
     """Adds the objects. found: (name of a tile or "", a PolygonMesh or None for each block)."""
     created, palette = [], {}
     try:
         top = bpy.data.collections.new(f"{tiled.name} tiles")
         created.append(top)
-        top[scene.TAG] = TILES
+        top[model_tree.TAG] = TILES
         objects = []
         for tile, shapes in found:
             collection = top
@@ -87,18 +87,18 @@ def _put(current, tiled, origin, found):
                 mesh.materials.append(_material(palette, tiled.project.library, block.property, created))
                 item = bpy.data.objects.new(name, mesh)
                 created.append(item)
-                item[scene.TAG] = TILE
-                item[scene.ROCK] = tiled.project.rocks[block.rock].name
-                item[scene.BLOCK] = block.name
-                item[scene.PROPERTY] = block.property
+                item[model_tree.TAG] = TILE
+                item[model_tree.ROCK] = tiled.project.rocks[block.rock].name
+                item[model_tree.BLOCK] = block.name
+                item[model_tree.PROPERTY] = block.property
                 collection.objects.link(item)
                 objects.append(item)
     except BaseException:
         bpy.data.batch_remove(created)
         raise
-    current.collection.children.link(top)
-    if ORIGIN_KEY not in current:
-        current[ORIGIN_KEY] = [float(value) for value in origin]
+    scene.collection.children.link(top)
+    if ORIGIN_KEY not in scene:
+        scene[ORIGIN_KEY] = [float(value) for value in origin]
     return objects
 
 

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import scene
+from . import model_tree
 
 # Where the usual view of a model is from. Azimuths are clockwise from north (+y).
 CAMERA_AZIMUTH = math.radians(152.0)
@@ -77,10 +77,12 @@ def still_open(remembered):
     return [space for space in all_spaces() if space.as_pointer() in remembered]
 
 
-def frame(current, shown):
+def frame(scene, shown):
     """Frames the model of a scene in viewports, and extends their clipping; faults and bodies may reach far
     beyond the blocks."""
-    frame_items(scene.model_objects(current, "interface") + scene.model_objects(current, "block"), shown)
+    frame_items(
+        model_tree.model_objects(scene, "interface") + model_tree.model_objects(scene, "block"), shown
+    )
 
 
 def corners(items):

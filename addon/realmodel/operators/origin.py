@@ -20,22 +20,22 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
     needs = (any_surface, not_building)
 
     def act(self, context):
-        current = context.scene
+        scene = context.scene
         context.view_layer.update()
-        mine = list(dict.fromkeys(project_settings.user_objects(current)))
-        made = [row.object for row in current.realmodel.results if row.object is not None]
-        rows = [row for _, row in settings.interface_rows(current)]
+        mine = list(dict.fromkeys(project_settings.user_objects(scene)))
+        made = [row.object for row in scene.realmodel.results if row.object is not None]
+        rows = [row for _, row in settings.interface_rows(scene)]
         interfaces = [row for row in rows if row.interface is not None and row.interface not in mine]
         made += [row.interface for row in interfaces]
-        items = [*mine, *made, *data_objects.objects(current)]
+        items = [*mine, *made, *data_objects.objects(scene)]
         corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
-        old = project_settings.model_origin(current)
+        old = project_settings.model_origin(scene)
         if not corners:
             raise InputRefused("there is nothing to move yet", advice="import surfaces first")
         moved = old - (new := choose_origin(np.array(corners, float) + old))
         if not moved.any():
             raise InputRefused("the model stands near the zero of the scene")
-        current[KEY] = [float(value) for value in new]
+        scene[KEY] = [float(value) for value in new]
         for item in {_top(item) for item in mine}:
             item.matrix_basis = Matrix.Translation(moved) @ item.matrix_basis
         unchanged = [row for row in interfaces if _digest(context, row) == row.interface_digest]
@@ -45,11 +45,11 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
         with settings.filling():
             for row in unchanged:
                 row.interface_digest = _digest(context, row)
-        built_scene.move_helpers(current, moved)
+        built_scene.move_helpers(scene, moved)
         context.view_layer.update()
         viewports.frame_items(items, viewports.spaces(context))
         self.report({"INFO"}, "Moved by " + ", ".join(f"{value:,.0f}" for value in moved))
-        if len(current.realmodel.results):
+        if len(scene.realmodel.results):
             invoke(bpy.ops.realmodel.build, self)
 
 

@@ -15,10 +15,10 @@ from ..bl import (
     data_objects,
     library_rows,
     live,
+    model_tree,
     project_settings,
     region_size,
     samples,
-    scene,
     settings,
     shapes,
     viewports,
@@ -35,20 +35,20 @@ from .reporting import Reporting, any_surface, chosen_path, file_filter, not_bui
 _MODEL_ENDING = ".npz"
 
 
-def _begin(current, name):
+def _begin(scene, name):
     """An empty model in a scene, in place of the one that is there with its sections."""
-    built_scene.remove_model(current)
-    if cuts.plane_of(current) is not None:
-        cuts.remove_plane(current)
-    scene.remove_objects([item for item in current.objects if item.get(scene.TAG) == "section"])
-    group = current.realmodel
+    built_scene.remove_model(scene)
+    if cuts.plane_of(scene) is not None:
+        cuts.remove_plane(scene)
+    model_tree.remove_objects([item for item in scene.objects if item.get(model_tree.TAG) == "section"])
+    group = scene.realmodel
     with settings.filling():
         settings.begin(group)
         group.name, group.project_file, group.library_path = name, "", ""
         group.active_rock = group.stage = group.active_property = group.active_result = 0
         group.explode = 0.0
         group.show_data = False
-    data_objects.update(current)
+    data_objects.update(scene)
 
 
 def invoke(call, operator, **arguments):
@@ -156,13 +156,13 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
             super().draw(context)
 
 
-def _open(current, path):
+def _open(scene, path):
     project = with_arrays(load_project(path))
-    _begin(current, project.name)
-    project_settings.fill(current, project)
-    data_objects.update(current)
+    _begin(scene, project.name)
+    project_settings.fill(scene, project)
+    data_objects.update(scene)
     region_size.ask()
-    live.touch(current)
+    live.touch(scene)
 
 
 def _open_model(context, path):
@@ -242,26 +242,26 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
             shapes.require_open(item)
         depsgraph = context.evaluated_depsgraph_get()
         ordered = project_settings.oldest_first(chosen, depsgraph)
-        current = context.scene
-        origin = project_settings.model_origin(current)  # the objects stand where it says
-        had_one = ORIGIN_KEY in current
+        scene = context.scene
+        origin = project_settings.model_origin(scene)  # the objects stand where it says
+        had_one = ORIGIN_KEY in scene
         heights = np.concatenate([shapes.points(item, depsgraph)[:, 2] for item in chosen]) + origin[2]
-        _begin(current, "Model")
+        _begin(scene, "Model")
         if had_one:
-            current[ORIGIN_KEY] = [float(value) for value in origin]
+            scene[ORIGIN_KEY] = [float(value) for value in origin]
         with settings.filling():
-            rock = current.realmodel.rocks.add()
+            rock = scene.realmodel.rocks.add()
             rock.name = "rock mass"
             for item in ordered:
                 row = rock.surfaces.add()
                 row.name = settings.free_name(rock.surfaces, item.name, own=row)
-                row.property_id = library_rows.for_surface(current, row.name)
+                row.property_id = library_rows.for_surface(scene, row.name)
                 row.source = "MESH_OBJECT"
                 row.object = item
             rock.active_surface = len(ordered) - 1
             settings.set_number(rock, "base_elevation", _base_below(heights))
             rock.use_base = self.add_base
-        live.touch(current)
+        live.touch(scene)
         self.report({"INFO"}, f"{len(ordered)} surfaces, oldest first: {', '.join(i.name for i in ordered)}")
 
     def comes(self, _context):

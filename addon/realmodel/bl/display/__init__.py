@@ -26,7 +26,7 @@ import bpy
 
 from ...core import RealModelError
 from .. import exaggeration, settings
-from ..scene import TAG
+from ..model_tree import TAG
 from . import (
     bodies,
     boreholes,

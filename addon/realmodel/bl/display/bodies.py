@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import exaggeration, meshes, scene
+from .. import exaggeration, meshes, model_tree
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: its purpose
@@ -15,32 +15,32 @@ CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
 SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
 
 
-def of_kind(current, kind):
+def of_kind(scene, kind):
     """{block object: body} of the bodies of a kind."""
-    return {item.parent: item for item in listed(current, kind) if item.parent is not None}
+    return {item.parent: item for item in listed(scene, kind) if item.parent is not None}
 
 
-def listed(current, kind):
+def listed(scene, kind):
     """All bodies of a kind, also those whose block was removed."""
-    collection = current.realmodel.view.collection
+    collection = scene.realmodel.view.collection
     return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
 
 
-def put(current, kind, shapes, material=None):
+def put(scene, kind, shapes, material=None):
     """Makes the bodies of a kind, in place of the present ones.
 
     shapes: for each block that has one (block object, PolygonMesh). material: if it is not the block's.
     """
-    known = of_kind(current, kind)
+    known = of_kind(scene, kind)
     wanted = {block for block, _ in shapes}
-    remove(current, kind, [item for item in listed(current, kind) if item.parent not in wanted])
+    remove(scene, kind, [item for item in listed(scene, kind) if item.parent not in wanted])
     for block, shape in shapes:
         item = known.get(block)
         if item is not None and item.data.users == 1:
             replacing.give_shape(item, shape)
         else:
-            item = add(current, kind, f"{block.name} {kind}", shape)
-            item[scene.BLOCK] = block.get(scene.BLOCK, "")
+            item = add(scene, kind, f"{block.name} {kind}", shape)
+            item[model_tree.BLOCK] = block.get(model_tree.BLOCK, "")
             item.hide_viewport = kind == MARKS  # viewports draw marks themselves
             item.parent = block
         if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
@@ -51,12 +51,12 @@ def put(current, kind, shapes, material=None):
             item.data.materials.append(material)
 
 
-def add(current, kind, name, shape):
+def add(scene, kind, name, shape):
     """A new body of a kind; shape: PolygonMesh. Returns its object."""
     item = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
-    item[KIND], item[scene.TAG] = kind, "view"
+    item[KIND], item[model_tree.TAG] = kind, "view"
     item.hide_select = True
-    view_collection(current).objects.link(item)
+    view_collection(scene).objects.link(item)
     return item
 
 
@@ -69,35 +69,35 @@ def _take_material(item, block):
         slots[0] = material
 
 
-def follow_materials(current):
+def follow_materials(scene):
     """The bodies take the materials that their blocks have now."""
     for kind in (CUT, CELLS, SURVIVING):
-        for block, item in of_kind(current, kind).items():
+        for block, item in of_kind(scene, kind).items():
             _take_material(item, block)
 
 
-def remove(current, kind, items=None):
+def remove(scene, kind, items=None):
     """Removes the bodies of a kind, or of them only some, with their meshes."""
-    for item in listed(current, kind) if items is None else items:
+    for item in listed(scene, kind) if items is None else items:
         replacing.remove(item)
-    remove_collection_if_empty(current)
+    remove_collection_if_empty(scene)
 
 
-def remove_collection_if_empty(current):
-    collection = current.realmodel.view.collection
+def remove_collection_if_empty(scene):
+    collection = scene.realmodel.view.collection
     if collection is not None and collection.library is None and not len(collection.objects):
         bpy.data.collections.remove(collection)
 
 
-def view_collection(current):
+def view_collection(scene):
     """The collection of objects for display only; made and linked if it does not exist."""
-    view, group = current.realmodel.view, current.realmodel
+    view, group = scene.realmodel.view, scene.realmodel
     collection = view.collection
     if collection is None or collection.library is not None:
         collection = bpy.data.collections.new(f"{group.name} view")
-        collection[scene.TAG] = "view"
+        collection[model_tree.TAG] = "view"
         view.collection = collection
-    if collection not in list(current.collection.children_recursive):
-        parent = group.collection if group.collection is not None else current.collection
+    if collection not in list(scene.collection.children_recursive):
+        parent = group.collection if group.collection is not None else scene.collection
         parent.children.link(collection)
     return collection

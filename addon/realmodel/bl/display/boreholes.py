@@ -13,11 +13,11 @@ _RADIUS = 0.005  # of the model's size
 _SIDES = 8
 
 
-def show(current):
+def show(scene):
     """Shows the boreholes of a scene's model, in place of those that are shown."""
-    bodies.remove(current, bodies.BOREHOLES)
+    bodies.remove(scene, bodies.BOREHOLES)
     places, properties = [], []
-    for rock in current.realmodel.rocks:
+    for rock in scene.realmodel.rocks:
         ids = [surface.property_id for surface in rock.surfaces]
         below = {surface.name: number for surface, number in zip(rock.surfaces, ids, strict=True)}
         above = {surface.name: number for surface, number in zip(rock.surfaces, ids[1:], strict=False)}
@@ -30,14 +30,14 @@ def show(current):
                     properties.append(layer)
     if not places:
         return
-    low, high = explosion.bounds(current)
-    places = np.array(places) - project_settings.model_origin(current)
+    low, high = explosion.bounds(scene)
+    places = np.array(places) - project_settings.model_origin(scene)
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _RADIUS * float(np.linalg.norm(high - low)), _SIDES)
-    mesh = bodies.add(current, bodies.BOREHOLES, "Boreholes", shape).data
+    mesh = bodies.add(scene, bodies.BOREHOLES, "Boreholes", shape).data
     slots = sorted(set(properties), key=lambda number: -1 if number is None else number)
     for number in slots:
-        mesh.materials.append(colors.of_property(current, number or 0))
+        mesh.materials.append(colors.of_property(scene, number or 0))
     given = np.array([slots.index(number) for number in properties], np.int32)
     mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
     mesh.update()

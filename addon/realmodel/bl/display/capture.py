@@ -100,13 +100,13 @@ def _save(pixels, path, size):
 
 def _render(context, path, size):
     """Renders the view of the first viewport of the screens, in a copy of the scene."""
-    current = context.scene
-    points = viewpoints.model_points(current)
-    if not modes.shows_something(current):
+    scene = context.scene
+    points = viewpoints.model_points(scene)
+    if not modes.shows_something(scene):
         raise InputRefused("there is nothing to be seen", advice="build a model")
     spaces = viewports.spaces(context)
     try:
-        with picture.throw_away(current.copy()) as stage:
+        with picture.throw_away(scene.copy()) as stage:
             for item in [item for item in stage.collection.objects if picture.KEY in item]:
                 stage.collection.objects.unlink(item)
             stage.world = None

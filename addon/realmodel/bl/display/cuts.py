@@ -20,8 +20,8 @@ from .. import (
     compartments,
     exaggeration,
     meshes,
+    model_tree,
     project_settings,
-    scene,
     settings,
     viewports,
 )
@@ -33,34 +33,34 @@ REST_SECONDS = 0.08  # pause after a movement of the plane, before it cuts
 _halves = caches.new(most=1)  # by model and plane: the half as a Model
 
 
-def is_on(current):
+def is_on(scene):
     """Whether the cut of a scene is switched on."""
-    view = current.realmodel.view
-    return view.use_section and plane_of(current) is not None and len(current.realmodel.results) > 0
+    view = scene.realmodel.view
+    return view.use_section and plane_of(scene) is not None and len(scene.realmodel.results) > 0
 
 
-def is_shown(current):
+def is_shown(scene):
     """Whether the cut was made and is displayed."""
-    return is_on(current) and bool(current.realmodel.view.cut)
+    return is_on(scene) and bool(scene.realmodel.view.cut)
 
 
-def plane_of(current):
+def plane_of(scene):
     """The plane object, where it is still in the scene, or None."""
-    item = current.realmodel.view.plane
-    return item if item is not None and current in item.users_scene else None
+    item = scene.realmodel.view.plane
+    return item if item is not None and scene in item.users_scene else None
 
 
-def plane_in_model(current, matrix=None):
+def plane_in_model(scene, matrix=None):
     """(point, normal) of the plane in model coordinates, (3,) float64 each. matrix: where it is in the world,
     if not where Blender last had it."""
-    matrix = np.array(plane_of(current).matrix_world if matrix is None else matrix, np.float64)
-    stretched = exaggeration.matrix(current)
+    matrix = np.array(plane_of(scene).matrix_world if matrix is None else matrix, np.float64)
+    stretched = exaggeration.matrix(scene)
     normal = stretched[:3, :3].T @ np.cross(matrix[:3, 0], matrix[:3, 1])  # also of a plane that is sheared
     length = np.linalg.norm(normal)
     if not length > 0.0:
         raise InputRefused("the section plane has no extent", advice="set its scale to 1")
     point = np.linalg.solve(stretched, matrix[:, 3])[:3]
-    return point + project_settings.model_origin(current), normal / length
+    return point + project_settings.model_origin(scene), normal / length
 
 
 def place_text(axis):
@@ -68,8 +68,8 @@ def place_text(axis):
     bits, which are too coarse for map coordinates."""
 
     def get(view):
-        current = view.id_data
-        return "" if plane_of(current) is None else f"{plane_in_model(current)[0][axis]:.3f}"
+        scene = view.id_data
+        return "" if plane_of(scene) is None else f"{plane_in_model(scene)[0][axis]:.3f}"
 
     return get
 
@@ -78,37 +78,37 @@ def move_to(axis):
     """The setter of that field: moves the plane. What is no number changes nothing."""
 
     def set_text(view, text):
-        current = view.id_data
-        plane = plane_of(current)
+        scene = view.id_data
+        plane = plane_of(scene)
         try:
             value = float(text.replace(",", ""))
         except ValueError:
             return
         if plane is None or not np.isfinite(value):
             return
-        point, _ = plane_in_model(current)
+        point, _ = plane_in_model(scene)
         point[axis] = value
         matrix = plane.matrix_world.copy()
-        offset = np.append(point - project_settings.model_origin(current), 1.0)
-        matrix.translation = (exaggeration.matrix(current) @ offset)[:3]
+        offset = np.append(point - project_settings.model_origin(scene), 1.0)
+        matrix.translation = (exaggeration.matrix(scene) @ offset)[:3]
         plane.matrix_world = matrix
 
     return set_text
 
 
-def add_plane(current):
+def add_plane(scene):
     """A plane through the middle of the model, upright, looking south; returns its object."""
-    low, high = explosion.bounds(current)
+    low, high = explosion.bounds(scene)
     middle, size = (low + high) / 2, 0.6 * float(np.linalg.norm(high - low))
     mesh = meshes.new_mesh("Section plane", _square(size))
     item = bpy.data.objects.new("Section plane", mesh)
-    item[scene.TAG] = "view"
+    item[model_tree.TAG] = "view"
     item[bodies.KIND] = bodies.PLANE
     item.display_type = "WIRE"
     item.hide_render = True
     item.location = middle
     item.rotation_euler = (np.pi / 2, 0.0, 0.0)  # its Z axis to the south, where the standard front is
-    bodies.view_collection(current).objects.link(item)
+    bodies.view_collection(scene).objects.link(item)
     return item
 
 
@@ -117,9 +117,9 @@ def _square(size):
     return PolygonMesh(corners, np.array([0, 4], np.int32), np.arange(4, dtype=np.int32))
 
 
-def remove_plane(current):
+def remove_plane(scene):
     """Removes the plane if it was made for the cut; an object of the user stays."""
-    view, item = current.realmodel.view, current.realmodel.view.plane
+    view, item = scene.realmodel.view, scene.realmodel.view.plane
     with settings.filling():
         view.plane, view.use_section = None, False
     if item.get(bodies.KIND) == bodies.PLANE:
@@ -127,13 +127,13 @@ def remove_plane(current):
         bpy.data.objects.remove(item)
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
-    bodies.remove_collection_if_empty(current)
+    bodies.remove_collection_if_empty(scene)
 
 
-def _state(current, stage, matrix=None):
+def _state(scene, stage, matrix=None):
     """The state that a cut is made from, as text: [point, normal, stage, stamp of the model]."""
-    point, normal = plane_in_model(current, matrix)
-    return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
+    point, normal = plane_in_model(scene, matrix)
+    return json.dumps([point.tolist(), normal.tolist(), stage, scene.realmodel.built_stamp])
 
 
 def known_half(state, cells=None):
@@ -143,68 +143,68 @@ def known_half(state, cells=None):
     return model if cells is None or (model is not None and model.cell_kind == cells) else None
 
 
-def cut_now(current, stage=None, matrix=None):
+def cut_now(scene, stage=None, matrix=None):
     """Makes the cut in this thread. Raises RealModelError; then the earlier one stays."""
     if matrix is None:
-        viewports.updated_layer(current)  # the plane's matrix may be of before it was moved
-    state = _state(current, current.realmodel.stage if stage is None else stage, matrix)
-    job = _begun(current, state)
-    _take(current, job.result())
+        viewports.updated_layer(scene)  # the plane's matrix may be of before it was moved
+    state = _state(scene, scene.realmodel.stage if stage is None else stage, matrix)
+    job = _begun(scene, state)
+    _take(scene, job.result())
 
 
-def follow(current, depsgraph):
+def follow(scene, depsgraph):
     """The frame was changed: updates the cut if the plane has moved."""
-    if not is_on(current):
+    if not is_on(scene):
         return False
-    plane = plane_of(current)
+    plane = plane_of(scene)
     matrix = plane.matrix_world if depsgraph is None else plane.evaluated_get(depsgraph).matrix_world
-    cut = json.loads(current.realmodel.view.cut or "[[], []]")
-    if [found.tolist() for found in plane_in_model(current, matrix)] == cut[:2]:
+    cut = json.loads(scene.realmodel.view.cut or "[[], []]")
+    if [found.tolist() for found in plane_in_model(scene, matrix)] == cut[:2]:
         return False
     if replacing.nobody_waits():
-        cut_now(current, cut[2] if len(cut) > 2 else None, matrix)
+        cut_now(scene, cut[2] if len(cut) > 2 else None, matrix)
         return True
-    touch(current)
+    touch(scene)
     return False
 
 
-def refresh(current, stage=None):
+def refresh(scene, stage=None):
     """Updates the cut: at once in background mode, otherwise after a short pause."""
     if replacing.nobody_waits():
-        cut_now(current, stage)
+        cut_now(scene, stage)
     else:
-        touch(current)
+        touch(scene)
 
 
-def _wanted_cells(current):
-    return "columns" if current.realmodel.display == "POLYHEDRA" else None
+def _wanted_cells(scene):
+    return "columns" if scene.realmodel.display == "POLYHEDRA" else None
 
 
-def _put(current, shapes, state):
-    rows = {(row.rock, row.name): row.object for row in current.realmodel.results}
+def _put(scene, shapes, state):
+    rows = {(row.rock, row.name): row.object for row in scene.realmodel.results}
     wanted = [(rows[key], shape) for key, shape in shapes.items() if rows.get(key) is not None]
-    bodies.put(current, bodies.CUT, wanted)
-    current.realmodel.view.cut = state
+    bodies.put(scene, bodies.CUT, wanted)
+    scene.realmodel.view.cut = state
 
 
-def take_off(current):
+def take_off(scene):
     """Removes the cut: the blocks are shown whole again."""
-    bodies.remove(current, bodies.CUT)
-    _halves.pop(current.realmodel.view.cut, None)
-    current.realmodel.view.cut = ""
+    bodies.remove(scene, bodies.CUT)
+    _halves.pop(scene.realmodel.view.cut, None)
+    scene.realmodel.view.cut = ""
 
 
-def touch(current):
+def touch(scene):
     """The plane was moved, or the model is another: the cut is made after a short pause."""
-    _work.touch(current.name)
+    _work.touch(scene.name)
 
 
-def _begun(current, state):
+def _begun(scene, state):
     """A job that makes a cut; its result is what `_take` takes. Raises InputRefused."""
     point, normal, stage, _ = json.loads(state)
-    request = shown_models.StageRequest(current, stage, _wanted_cells(current))
-    names = compartments.names(current) or None
-    half, origin = known_half(state, _wanted_cells(current)), project_settings.model_origin(current)
+    request = shown_models.StageRequest(scene, stage, _wanted_cells(scene))
+    names = compartments.names(scene) or None
+    half, origin = known_half(state, _wanted_cells(scene)), project_settings.model_origin(scene)
 
     def task(_):
         model = half
@@ -217,51 +217,51 @@ def _begun(current, state):
     return work.start(task, threads())
 
 
-def _take(current, made):
+def _take(scene, made):
     """Shows the halves that a job has made, and caches them."""
     state, model, shapes, request = made
     request.keep()
     _halves[state] = model
-    _put(current, shapes, state)
+    _put(scene, shapes, state)
 
 
 def _begin(name, _changed_at):
-    current = bpy.data.scenes.get(name)
-    if current is None or not is_on(current):
+    scene = bpy.data.scenes.get(name)
+    if scene is None or not is_on(scene):
         return None
     try:
-        viewports.updated_layer(current)
-        state = _state(current, current.realmodel.stage)
-        if state != current.realmodel.view.cut:
-            return _begun(current, state)
+        viewports.updated_layer(scene)
+        state = _state(scene, scene.realmodel.stage)
+        if state != scene.realmodel.view.cut:
+            return _begun(scene, state)
     except RealModelError as error:
-        _tell(current, error)
+        _tell(scene, error)
     return None
 
 
 def _finish(name, job, _changed_at):
-    current = bpy.data.scenes.get(name)
-    if current is None or not is_on(current):
+    scene = bpy.data.scenes.get(name)
+    if scene is None or not is_on(scene):
         return
     try:
-        _take(current, job.result())
+        _take(scene, job.result())
     except Cancelled:
         return
     except RealModelError as error:
-        _tell(current, error)
+        _tell(scene, error)
         return
-    _tell(current, None)
-    _show(current)
+    _tell(scene, None)
+    _show(scene)
 
 
-def _tell(current, error):
-    current.realmodel.view.message = "" if error is None else str(error)
+def _tell(scene, error):
+    scene.realmodel.view.message = "" if error is None else str(error)
     viewports.redraw()
 
 
-def is_working(current):
+def is_working(scene):
     """Whether a cut is under way."""
-    return _work.is_working(current.name)
+    return _work.is_working(scene.name)
 
 
 def show_with(show):

@@ -11,7 +11,7 @@ from ...core.display.polygon_mesh import PolygonMesh
 from ...core.drawing.overlay import ColorKey
 from ...core.ensembles import PERCENTILES, Probabilities
 from ...core.results import layer_values
-from .. import library_rows, meshes, project_settings, scene, stored_arrays
+from .. import library_rows, meshes, model_tree, project_settings, stored_arrays
 from ..origin import offsets_from
 from . import bodies, colors, sections
 
@@ -26,23 +26,23 @@ _STEPS = 15  # of the color scales: each is a material, which all ways of shadin
 _OUTSIDE = ("Outside", "#ffffff")
 
 
-def put(current, found, samples, blocks, seed):
+def put(scene, found, samples, blocks, seed):
     """Shows an ensemble in place of an earlier one. found: core.Ensemble. samples: SectionSamples. blocks:
     (R, N) int16, the block of each cell in each realization, -1 for none."""
-    remove(current)
-    rows = list(_rows(current, found))
+    remove(scene)
+    rows = list(_rows(scene, found))
     kept = np.flatnonzero((blocks >= 0).any(axis=0))
-    places = offsets_from(project_settings.model_origin(current), samples.corners[kept].reshape(-1, 3))
+    places = offsets_from(project_settings.model_origin(scene), samples.corners[kept].reshape(-1, 3))
     ends = np.arange(0, 4 * len(kept) + 1, 4, dtype=np.int32)
     shape = PolygonMesh(places, ends, np.arange(4 * len(kept), dtype=np.int32))
     item = bpy.data.objects.new("Ensemble", meshes.new_mesh("Ensemble", shape))
     item[BLOCKS] = stored_arrays.pack(blocks=blocks[:, kept])
-    sections.stand(current, item, samples.section.plane)
-    group = current.realmodel.ensemble
+    sections.stand(scene, item, samples.section.plane)
+    group = scene.realmodel.ensemble
     group.object = item
     group.table = json.dumps(
         {
-            "stamp": current.realmodel.built_stamp,
+            "stamp": scene.realmodel.built_stamp,
             "count": len(blocks),
             "seed": seed,
             "most_entropy": float(_entropy(blocks, len(rows)).max(initial=0.0)),
@@ -52,10 +52,10 @@ def put(current, found, samples, blocks, seed):
     if group.block not in [row["name"] for row in rows]:
         group.block = max(rows, key=lambda row: row["deviation"] / (row["mean"] or 1.0))["name"]
     group.realization = min(group.realization, len(blocks))
-    recolor(current)
+    recolor(scene)
 
 
-def _rows(current, found):
+def _rows(scene, found):
     percentiles = found.percentiles()
     for number, block in enumerate(found.model.blocks):
         drawn = found.volumes[:, number]
@@ -70,48 +70,48 @@ def _rows(current, found):
         }
 
 
-def table(current):
+def table(scene):
     """{"count", "seed", "stamp" of the model, "most_entropy" of a cell, "blocks": of each its name, rock,
     property, interpolated volume, mean, deviation and percentiles}; None where there is no ensemble."""
-    text = current.realmodel.ensemble.table
+    text = scene.realmodel.ensemble.table
     return json.loads(text) if text else None
 
 
-def is_outdated(current):
+def is_outdated(scene):
     """Whether another model was built since."""
-    found = table(current)
-    return found is not None and found["stamp"] != current.realmodel.built_stamp
+    found = table(scene)
+    return found is not None and found["stamp"] != scene.realmodel.built_stamp
 
 
-def item_of(current):
+def item_of(scene):
     """The object of the section, or None."""
-    item = current.realmodel.ensemble.object
-    there = item is not None and BLOCKS in item and item.type == "MESH" and current in item.users_scene
+    item = scene.realmodel.ensemble.object
+    there = item is not None and BLOCKS in item and item.type == "MESH" and scene in item.users_scene
     return item if there else None
 
 
-def remove(current):
+def remove(scene):
     """Removes the ensemble from a scene."""
-    group, item = current.realmodel.ensemble, item_of(current)
+    group, item = scene.realmodel.ensemble, item_of(scene)
     group.object, group.table = None, ""
     if item is not None:
-        scene.remove_objects([item])
-        bodies.remove_collection_if_empty(current)
+        model_tree.remove_objects([item])
+        bodies.remove_collection_if_empty(scene)
         colors.remove_unused()
 
 
-def recolor(current):
+def recolor(scene):
     """Sets the colors of the section. Raises InputRefused where the .blend is damaged."""
-    item = item_of(current)
+    item = item_of(scene)
     if item is None or item.mode != "OBJECT" or item.data.library is not None:
         return
     blocks = stored_arrays.unpack(item[BLOCKS])["blocks"]
     if blocks.shape[1] != len(item.data.polygons):
         return  # its mesh was edited
-    if current.realmodel.ensemble.color_by == REALIZATION:
-        materials, slots = _of_realization(current, blocks)
+    if scene.realmodel.ensemble.color_by == REALIZATION:
+        materials, slots = _of_realization(scene, blocks)
     else:
-        materials, slots = _of_scale(current, blocks)
+        materials, slots = _of_scale(scene, blocks)
     mesh = item.data
     mesh.materials.clear()
     for material in materials:
@@ -121,27 +121,27 @@ def recolor(current):
     colors.remove_unused()
 
 
-def _of_realization(current, blocks):
-    rows = table(current)["blocks"]
-    number = min(current.realmodel.ensemble.realization, len(blocks)) - 1
+def _of_realization(scene, blocks):
+    rows = table(scene)["blocks"]
+    number = min(scene.realmodel.ensemble.realization, len(blocks)) - 1
     ids = sorted({row["property"] for row in rows})
     slots = np.append([ids.index(row["property"]) for row in rows], len(ids))[blocks[number]]
-    materials = [library_rows.material_of(current, property_id) for property_id in ids]
+    materials = [library_rows.material_of(scene, property_id) for property_id in ids]
     return [*materials, colors.plain_material(*_OUTSIDE)], slots
 
 
-def _of_scale(current, blocks):
-    values = _values(current, blocks)
+def _of_scale(scene, blocks):
+    values = _values(scene, blocks)
     codes = [library_rows.hex_color(color) for color in _colors(_STEPS)[:, :3].tolist()]
     materials = [colors.plain_material(f"Scale {code}", code) for code in codes]
-    return materials, np.rint(values / _most(current) * (_STEPS - 1))
+    return materials, np.rint(values / _most(scene) * (_STEPS - 1))
 
 
-def _values(current, blocks):
+def _values(scene, blocks):
     """The value of each cell that its color shows."""
-    names = [row["name"] for row in table(current)["blocks"]]
-    if current.realmodel.ensemble.color_by == PROBABILITY:
-        wanted = current.realmodel.ensemble.block
+    names = [row["name"] for row in table(scene)["blocks"]]
+    if scene.realmodel.ensemble.color_by == PROBABILITY:
+        wanted = scene.realmodel.ensemble.block
         return (blocks == (names.index(wanted) if wanted in names else len(names))).mean(axis=0)
     return _entropy(blocks, len(names))
 
@@ -151,19 +151,19 @@ def _entropy(blocks, count):
     return Probabilities([], shares).entropy()
 
 
-def _most(current):
+def _most(scene):
     """The value at the upper end of the scale; at the lower one it is 0."""
-    is_entropy = current.realmodel.ensemble.color_by == ENTROPY
-    return max(1.0, table(current)["most_entropy"]) if is_entropy else 1.0
+    is_entropy = scene.realmodel.ensemble.color_by == ENTROPY
+    return max(1.0, table(scene)["most_entropy"]) if is_entropy else 1.0
 
 
-def key(current):
+def key(scene):
     """The core's ColorKey of the section, or None."""
-    group, item = current.realmodel.ensemble, item_of(current)
+    group, item = scene.realmodel.ensemble, item_of(scene)
     if item is None or group.color_by == REALIZATION or item.hide_viewport:
         return None
     title = f"Probability of {group.block}" if group.color_by == PROBABILITY else "Entropy (bits)"
-    return ColorKey(title, limits=(0.0, _most(current)), colors=_colors(_STEPS))
+    return ColorKey(title, limits=(0.0, _most(scene)), colors=_colors(_STEPS))
 
 
 def _colors(count):

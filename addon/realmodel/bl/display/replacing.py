@@ -7,7 +7,7 @@ exchanged instead of refilled, and unused ones are removed when the render has e
 
 import bpy
 
-from .. import caches, meshes, meshes_ahead, scene
+from .. import caches, meshes, meshes_ahead, model_tree
 
 _rendering = False
 _left_meshes = caches.new(list)  # names
@@ -57,7 +57,7 @@ def give_shape(item, shape):
     if not _rendering:
         name = old.name
         tidy()
-        scene.give_name(bpy.data.meshes, mesh, name)
+        model_tree.give_name(bpy.data.meshes, mesh, name)
 
 
 def remove(item):
@@ -70,10 +70,10 @@ def remove(item):
 
 
 def _remove(item):
-    is_block = item.get(scene.TAG) == "block"
-    scene.remove_objects([item])
+    is_block = item.get(model_tree.TAG) == "block"
+    model_tree.remove_objects([item])
     if is_block:
-        scene.remove_unused_materials()
+        model_tree.remove_unused_materials()
 
 
 def tidy():

@@ -20,11 +20,11 @@ _STRETCH = "realmodel_stretch"  # on the object: the vertical exaggeration that 
 _ASKED = 2000  # points at most whose distance to the nearest other is looked at
 
 
-def show(current):
+def show(scene):
     """Shows the residuals of a scene's model, in place of those that are shown. Raises RealModelError."""
-    hide(current)
-    found = residuals(shown_models.whole(current, None))
-    current.realmodel.view.residuals = json.dumps(
+    hide(scene)
+    found = residuals(shown_models.whole(scene, None))
+    scene.realmodel.view.residuals = json.dumps(
         [
             (
                 each.rock,
@@ -40,13 +40,13 @@ def show(current):
     )
     if not any(len(each.values) for each in found):
         return
-    points = np.concatenate([each.points for each in found]) - project_settings.model_origin(current)
+    points = np.concatenate([each.points for each in found]) - project_settings.model_origin(scene)
     values = np.concatenate([each.values for each in found])
     order = np.sort(np.argsort(-np.abs(values), kind="stable")[:_MOST])
-    shape = _shape(current, points[order])
-    item = bodies.add(current, bodies.RESIDUALS, "Residuals", shape)
-    mesh, item[_STRETCH] = item.data, exaggeration.factor(current)
-    low, high = limits(current)
+    shape = _shape(scene, points[order])
+    item = bodies.add(scene, bodies.RESIDUALS, "Residuals", shape)
+    mesh, item[_STRETCH] = item.data, exaggeration.factor(scene)
+    low, high = limits(scene)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
         code = library_rows.hex_color(color)
@@ -54,10 +54,10 @@ def show(current):
     mesh.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
 
 
-def _shape(current, points):
+def _shape(scene, points):
     """Bodies around points (N, 3), as long as wide with the vertical exaggeration of the scene, and so small
     that most do not overlap there."""
-    stretch, (low, high) = exaggeration.factor(current), explosion.bounds(current)
+    stretch, (low, high) = exaggeration.factor(scene), explosion.bounds(scene)
     shown = points * (1.0, 1.0, stretch)
     tree = KDTree(len(shown))
     for number, place in enumerate(shown.tolist()):
@@ -70,43 +70,43 @@ def _shape(current, points):
     return marks.points(points, np.clip(0.5 * apart, least, most), stretch)
 
 
-def follow_exaggeration(current):
+def follow_exaggeration(scene):
     """Shapes the bodies for the vertical exaggeration of the scene."""
-    stretch = exaggeration.factor(current)
-    for item in bodies.listed(current, bodies.RESIDUALS):
+    stretch = exaggeration.factor(scene)
+    for item in bodies.listed(scene, bodies.RESIDUALS):
         if item.get(_STRETCH) == stretch:
             continue
         item[_STRETCH] = stretch
         places = marks.places_of(meshes.mesh_coordinates(item.data).astype(np.float64))
-        coordinates = _shape(current, places).coordinates
+        coordinates = _shape(scene, places).coordinates
         item.data.vertices.foreach_set("co", coordinates.ravel())
         item.data.update()
 
 
-def hide(current):
+def hide(scene):
     """Removes the residuals from a scene."""
-    bodies.remove(current, bodies.RESIDUALS)
-    current.realmodel.view.residuals = ""
+    bodies.remove(scene, bodies.RESIDUALS)
+    scene.realmodel.view.residuals = ""
 
 
-def rows(current):
+def rows(scene):
     """(rock mass, surface, points, mean, root mean square, largest, points beyond it) of each surface whose
     residuals are shown."""
-    text = current.realmodel.view.residuals
+    text = scene.realmodel.view.residuals
     return [tuple(row) for row in json.loads(text)] if text else []
 
 
-def limits(current):
-    most = max((abs(row[5]) for row in rows(current)), default=0.0)
+def limits(scene):
+    most = max((abs(row[5]) for row in rows(scene)), default=0.0)
     return -most, most
 
 
-def key(current):
+def key(scene):
     """The core's ColorKey of the residuals, or None where there are none."""
-    low, high = limits(current)
+    low, high = limits(scene)
     if not high > low:
         return None
-    return ColorKey(f"Residual ({current.realmodel.units})", limits=(low, high), colors=_colors(_STEPS))
+    return ColorKey(f"Residual ({scene.realmodel.units})", limits=(low, high), colors=_colors(_STEPS))
 
 
 def _colors(count):
