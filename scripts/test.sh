@@ -8,7 +8,7 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff types shellcheck native core blender gui (a window under Xvfb) bpy package
+#                   format ruff types shellcheck site native core blender gui (a window under Xvfb) bpy package
 #                   asan builds; and three that are not run unless asked for: tidy tsan odr (check_odr.sh). Asked for
 #                   alone, builds compares clang++'s optimised code too
 #
@@ -17,15 +17,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff types shellcheck native core blender gui bpy package asan builds)
+all_steps=(format ruff types shellcheck site native core blender gui bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff types shellcheck native core blender gui bpy package) ;;
+        --quick) steps=(format ruff types shellcheck site native core blender gui bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | types | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
+                format | ruff | types | shellcheck | site | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
@@ -134,6 +134,8 @@ check_ruff() { "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .; }
 
 check_types() { "$venv/bin/mypy"; } # of core and distributed: pyproject.toml
 
+check_site() { scripts/site.sh "$python"; } # no document that is lost, no link that leads nowhere
+
 check_shell() { shellcheck scripts/*.sh .ci/run; }
 
 test_native() { # PRESET: it is configured
@@ -175,6 +177,7 @@ step install install || finish
 wants format && step format check_format
 wants ruff && step ruff check_ruff
 wants types && step types check_types
+wants site && step site check_site
 wants shellcheck && step shellcheck check_shell
 if wants native core blender gui bpy; then
     step build scripts/build.sh "$python" || finish

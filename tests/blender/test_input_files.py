@@ -11,7 +11,7 @@ import numpy as np
 from panel_case import PanelCase, ops
 from realmodel.bl.display import shown_models
 from realmodel.core import BuildFailed, build, load_project
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 
 PROJECT = """format = 1
 name = "x"

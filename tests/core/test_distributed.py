@@ -46,9 +46,11 @@ def assert_same(found, expected):
             assert np.array_equal(one, other)
 
 
-def test_the_same_as_in_one_process(client, alone, tmp_path):
+def test_the_same_as_in_one_process(client, alone, tmp_path, capsys):
+    pytest.importorskip("tqdm", reason="tqdm is not installed")
     folder = tmp_path / "e"
-    found = run(folder, client, 20, places=alone.places)
+    found = run(folder, client, 20, places=alone.places, progress=True)
+    assert "20 of 20 realizations: 100%" in capsys.readouterr().err
     assert_same(found, alone)
     assert sorted(path.name for path in folder.iterdir()) == ["ensemble.json", "ensemble.npz", "volumes.csv"]
     report = json.loads((folder / "ensemble.json").read_text())

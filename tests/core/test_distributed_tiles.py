@@ -109,6 +109,17 @@ def test_a_stopped_run_goes_on_in_another_cluster(client, tmp_path):
     assert_whole(tiled)
 
 
+def test_a_bar_and_tables(client, tmp_path, capsys):
+    pytest.importorskip("tqdm", reason="tqdm is not installed")
+    tiled = run(tmp_path / "t", client, progress=True, cells="blocks")
+    assert ": 100%" in capsys.readouterr().err
+    whole = build(load_project(PROJECT), cells="blocks")
+    names = ["name", "rock", "surface", "property", "property_name", "components"]
+    assert tiled.block_table()[names].equals(whole.block_table()[names])
+    columns = ["block", "name", "property"]
+    assert tiled.borehole_table(40, 25)[columns].equals(whole.borehole_table(40, 25)[columns])
+
+
 def test_what_a_worker_finds_wrong_comes_back(client, tmp_path):
     from realmodel.core import InputRefused, Project
     from realmodel.distributed import build as build_tiles

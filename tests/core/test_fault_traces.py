@@ -21,7 +21,7 @@ from realmodel.core import (
     build_surfaces,
     load_project,
 )
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.base.work import run
 from realmodel.core.project.project_writer import save_project
 from realmodel.core.readers import read_point_file

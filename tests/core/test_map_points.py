@@ -18,7 +18,7 @@ from realmodel.core import (
     build,
     load_project,
 )
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_point_file
 
 try:

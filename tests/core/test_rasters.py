@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from damages import damaged_bytes
 from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.rasters.geotiff import read_geotiff
 from stacks import places

@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT
 from outlines import PROJECT_OF_REGION
 from realmodel.core import BuildFailed, InputRefused, MapLayer, build, load_project
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.maps.map_input import map_companions
 

@@ -18,7 +18,7 @@ from realmodel.core import (
     load_project,
     mesh_region,
 )
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.project.plan_input import read_rings
 from realmodel.core.project.region_rings import region_rings
 from realmodel.core.readers import read_region, read_shapes

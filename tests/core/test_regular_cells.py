@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import grid_surface
 from realmodel.core import Body, Cancelled, PointFile, Project, Rock, Surface, UsageError, build, load_project
-from realmodel.core.base.vendored import vendored
+from realmodel.core.base.packages import vendored
 from realmodel.core.exporters import save_model
 from realmodel.core.readers import read_point_file
 from realmodel.core.results.regular_cells import plan_grids, regular_cells

@@ -65,7 +65,7 @@ def test_the_command_says_its_own_name(installed):
 def test_it_is_a_package_without_blender(installed):
     program = (
         "import sys, pathlib, realmodel.core, realmodel.distributed\n"
-        "from realmodel.core.base.vendored import vendored\n"
+        "from realmodel.core.base.packages import vendored\n"
         "assert 'bpy' not in sys.modules\n"
         "assert 'site-packages' in realmodel.__file__\n"
         "for name in ('shapefile', 'tifffile'):\n"

@@ -12,6 +12,8 @@ from .base.errors import (
     UsageError,
 )
 from .cells.blocks import Block, BlockBoundary
+from .exporters.meshes import save_mesh
+from .exporters.report import Report
 from .heights import Interpolation
 from .heights.cross_validation import CrossValidation, cross_validate
 from .heights.interpolate import interpolate
@@ -26,13 +28,16 @@ from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
 from .project.structure_entries import Body, Fault
 from .proof.validation import ValidationReport
-from .results.booleans import Intersection, intersect
+from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
+from .results.contours import Contour
 from .results.erosion import Erosion
+from .results.geological_map import MapArea
+from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
 from .settings.map_layer import MapLayer
 from .settings.point_file import MeshFile, PointFile
 from .settings.variogram import Structure, Variogram
-from .simulation import SimulationMesh
+from .simulation import CleanedCells, SimulationMesh
 from .surfaces.planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
 from .tiles import Tile, TiledModel, open_tiles
 
@@ -44,6 +49,8 @@ __all__ = [
     "BuildFailed",
     "BuildWarning",
     "Cancelled",
+    "CleanedCells",
+    "Contour",
     "CrossValidation",
     "Cut",
     "Erosion",
@@ -53,7 +60,10 @@ __all__ = [
     "InputRefused",
     "Interpolation",
     "Intersection",
+    "Interval",
     "Library",
+    "Loop",
+    "MapArea",
     "MapLayer",
     "MeshEstimate",
     "MeshFile",
@@ -64,10 +74,13 @@ __all__ = [
     "Project",
     "Property",
     "RealModelError",
+    "Report",
     "Rock",
     "Section",
     "SimulationMesh",
     "Structure",
+    "SubBlock",
+    "SubSurface",
     "Surface",
     "SurfaceSet",
     "Tile",
@@ -86,5 +99,6 @@ __all__ = [
     "load_project",
     "mesh_region",
     "open_tiles",
+    "save_mesh",
     "triangulate_polygon",
 ]

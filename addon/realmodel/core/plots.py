@@ -83,8 +83,9 @@ def _length(value: float, unit: str) -> str:
 
 
 def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
-    """The estimated over the measured elevations of points; where the method has a variance, in two colors,
-    for errors within two standard deviations and beyond."""
+    """The estimated over the measured elevations of the points of a result of cross_validate; where the
+    method has a variance, in two colors, for errors within two standard deviations and beyond. unit, page,
+    words: as of `variogram`."""
     known = np.isfinite(result.errors)
     places = np.column_stack([result.points[known, 2], result.z[known]])
     low, high = (float(places.min()), float(places.max())) if len(places) else (0.0, 1.0)

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..core import OutputFailed, UsageError, build
 from ..core.base.atomic import Outputs
+from ..core.base.work import progress_bar
 from ..core.ensembles import Ensemble, Realizer
 from ..core.ensembles.ensemble import Places, Sums, added, batches, check_request, places_of, sums_of
 from ..core.ensembles.files import write_ensemble
@@ -49,6 +50,10 @@ def ensemble(
     Raises as core.ensembles.ensemble; UsageError where Dask is missing or the folder holds another ensemble;
     OutputFailed.
     """
+    if progress is True:
+        options = {"correlation": correlation, "places": places, "also": also, "cancel": cancel}
+        with progress_bar() as bar:
+            return ensemble(project, realizations, folder, seed, client, progress=bar, **options)
     check_request(realizations, seed, correlation)
     require_this_version(client)
     progress = progress or (lambda _share, _text: None)

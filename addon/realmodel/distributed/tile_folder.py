@@ -14,7 +14,7 @@ from ..core import BuildFailed, BuildWarning
 from ..core.base.atomic import Outputs
 from ..core.base.errors import place_text
 from ..core.base.mapped_arrays import read_mapped, write_mapped
-from ..core.base.work import run
+from ..core.base.work import progress_bar, run
 from ..core.project.build_options import check_cells
 from ..core.project.project import Project
 from ..core.surfaces.local_heights import PartHeights
@@ -84,6 +84,11 @@ def build(
     Each tile is validated, and its borders compared with its neighbors', before the result is there. Raises
     as core.build; UsageError where Dask is missing, or the folder holds another model; OutputFailed.
     """
+    if progress is True:
+        with progress_bar() as bar:
+            return build(
+                project, folder, tile_size, client, workers=workers, cells=cells, progress=bar, cancel=cancel
+            )
     check_cells(cells)
     size = checked_size(tile_size)
     folder = Path(folder)

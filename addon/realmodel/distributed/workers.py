@@ -15,8 +15,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ..core import Cancelled, UsageError
+from ..core.base.packages import extra, missing
 from ..core.base.work import native_module
 
+_NEEDED = "a run on workers", "dask"  # of what distributed is missing for, and the extra that has it
 _POLL_SECONDS = 0.2
 _FETCH_SECONDS = 120.0  # for a result, before it counts as lost: its task is done again
 _WITHOUT_RESULT = 600.0  # seconds, after which there must be workers
@@ -187,7 +189,7 @@ def workers_of(client, count: int | None = None) -> Iterator[Workers]:
         yield Workers(starting)
         return
     if importlib.util.find_spec("distributed") is None:
-        raise _without_dask()
+        raise missing("distributed", *_NEEDED)
     with contextlib.ExitStack() as ends, concurrent.futures.ThreadPoolExecutor(1) as apart:
 
         def start():
@@ -267,12 +269,4 @@ def _gone() -> UsageError:
 
 
 def _distributed():
-    try:
-        import distributed
-    except ImportError as error:
-        raise _without_dask() from error
-    return distributed
-
-
-def _without_dask() -> UsageError:
-    return UsageError('this needs Dask, which is not installed: pip install "dask[distributed]"')
+    return extra("distributed", *_NEEDED)

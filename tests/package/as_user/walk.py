@@ -72,7 +72,7 @@ def check_vendored(package):
     """The packages of others are those that travel in the add-on."""
     folder = Path(package.__file__).parent / "vendor"
     for name in ("tifffile", "shapefile"):
-        module = installed.part("core.base.vendored").vendored(name, name, "this test")
+        module = installed.part("core.base.packages").vendored(name, name, "this test")
         check(Path(module.__file__).is_relative_to(folder), f"{name} is {module.__file__}")
 
 

@@ -8,7 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BuildWarning:
-    """Something that was left out, changed, or is probably a mistake. items: numbers of triangles, from 0."""
+    """Something that was left out, changed, or is probably a mistake.
+
+    text: what, in words. kind: a word for programs, "" where there is none. rock, surface: names of the rock
+    mass and the surface that it is about, None for none. items: numbers of triangles, from 0.
+    """
 
     text: str
     kind: str = ""

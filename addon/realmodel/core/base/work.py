@@ -11,18 +11,20 @@ import os
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, cast
 
 from . import missing_native
 from .errors import BuildFailed, Cancelled
+from .packages import extra
 
 if TYPE_CHECKING:
     from ..._native import Native
 
-Progress = Callable[[float, str], None]
+Progress = Callable[[float, str], None] | Literal[True]  # True: a bar
 Cancel = Callable[[], bool]
 Item = TypeVar("Item")
 Arguments = ParamSpec("Arguments")
@@ -257,6 +259,26 @@ def start(task: Callable[[Work], Result], threads: int = 0) -> Job:
     return Job(task, threads)
 
 
+@contextmanager
+def progress_bar() -> Iterator[Callable[[float, str], None]]:
+    """progress(fraction, text) as a bar of tqdm: a widget in a notebook that has ipywidgets, else text.
+
+    Raises UsageError where tqdm is missing.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # without ipywidgets it warns, and shows text
+        tqdm = extra("tqdm.auto", "progress=True").tqdm
+    form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}"
+    with tqdm(total=1.0, bar_format=form) as bar:
+
+        def progress(fraction: float, text: str) -> None:
+            bar.set_description_str(text, refresh=False)
+            bar.update(fraction - bar.n)
+
+        yield progress
+        bar.update(1.0 - bar.n)  # it is done, whatever was reported last
+
+
 def run(
     task: Callable[[Work], Result],
     progress: Progress | None = None,
@@ -266,12 +288,15 @@ def run(
     """Runs task(work) in a thread of its own and returns what it returns. threads: of native calls.
 
     progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
-    KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
-    before the work was done.
+    KeyboardInterrupt included, stops the work and passes on. progress=True shows a bar of tqdm. Raises
+    Cancelled where cancel() returned True before the work was done, UsageError where tqdm is missing.
 
     Within a job, and without these two, the task is done at once as a part of that job, with its threads
     unless `threads` says how many.
     """
+    if progress is True:
+        with progress_bar() as bar:
+            return run(task, bar, cancel, threads)
     work = getattr(_current, "work", None)
     if work is not None and progress is None and cancel is None:
         before, work.threads = work.threads, threads or work.threads

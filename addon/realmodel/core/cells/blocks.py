@@ -5,15 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ..notebook import ShortRepr, polygon_mesh
+
+if TYPE_CHECKING:
+    import pyvista
 
 
 @dataclass(frozen=True)
 class Block:
-    """One layer's block. `rock` is the index of its rock mass, `surface` the global index of the surface
-    that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0: none).
-    volume is in model units cubed; cells counts its cells, components its connected parts."""
+    """One layer's block, with its `name`. `rock` is the index of its rock mass, `surface` the global index of
+    the surface that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0:
+    none). volume is in model units cubed; cells counts its cells, components its connected parts."""
 
     name: str
     rock: int
@@ -30,8 +36,8 @@ def blocks_of_arrays(arrays: Mapping[str, np.ndarray]) -> list[Block]:
     return [Block(*row) for row in zip(*(arrays[f"block_{key}"].tolist() for key in keys), strict=True)]
 
 
-@dataclass(frozen=True)
-class BlockBoundary:
+@dataclass(frozen=True, repr=False)
+class BlockBoundary(ShortRepr):
     """The closed boundary of a block: faces counter-clockwise seen from outside the block.
 
     vertices (V, 3) float64, face_offsets (F+1,) int64, face_vertices int32 into `vertices`,
@@ -43,3 +49,11 @@ class BlockBoundary:
     face_vertices: np.ndarray
     face_surface: np.ndarray
     faces: np.ndarray
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The boundary as a closed mesh of PyVista, with the cell data `surface` (face_surface).
+
+        Raises UsageError where PyVista is missing.
+        """
+        data = {"surface": self.face_surface}
+        return polygon_mesh(self.vertices, self.face_offsets, self.face_vertices, data)

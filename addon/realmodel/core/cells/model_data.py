@@ -29,10 +29,13 @@ class ModelData:
     """The data of a Model, and what follows from them at once.
 
     The arrays of `complex`, the cells, and of `surfaces`, the input surfaces, are attributes here, too, under
-    the names of docs/dev/geometry.md.
-    `surface_names` go with the global indices of the surfaces. `project` holds the arrays that the model was
-    built from, so that nothing is read again. `rock_inputs` are what the stack builder took, by rock mass.
-    `timings` are seconds by phase. `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
+    the names of docs/dev/geometry.md. `surface_names` go with the global indices of the surfaces. `project`
+    holds the arrays that the model was built from, so that nothing is read again. `rock_inputs` are what the
+    stack builder took, by rock mass. `timings` are seconds by phase. `is_cut`: it is a half of another model
+    (docs/dev/geometry.md, "Cutting"). `warnings`: what was left out or changed, or is probably a mistake.
+    `threads`: how many it was built with. `surface_kind` (S,) int32: 0 an interface, 1 a fault, 2 a body.
+    `cell_compartment` (C,) int32: of each cell, an index of `compartment_names`; `compartment_sides`: on
+    which side of each fault the compartments are. `structures`: faults and bodies as they were built.
     `lacks_project`: the file of RealModel 0.1, or of a tile, that it was read from, which says nothing of the
     project but names, properties and shapes.
     """
@@ -80,26 +83,33 @@ class ModelData:
 
     @property
     def vertices(self) -> np.ndarray:
+        """(V, 3) float64, model units."""
         return self.complex.vertices
 
     @property
     def face_offsets(self) -> np.ndarray:
+        """(F + 1,) int64: face k has the corners face_vertices[face_offsets[k] : face_offsets[k + 1]]."""
         return self.complex.face_offsets
 
     @property
     def face_vertices(self) -> np.ndarray:
+        """int32: the corners of all faces, counter-clockwise seen from outside the first cell of each."""
         return self.complex.face_vertices
 
     @property
     def face_cells(self) -> np.ndarray:
+        """(F, 2) int32: the cell on each side of a face; -1 outside, which only the second may be."""
         return self.complex.face_cells
 
     @property
     def face_surface(self) -> np.ndarray:
+        """(F,) int32: the global index of the surface that a face lies on; -1 a vertical wall, -2 the flat
+        base, -3 a cut."""
         return self.complex.face_surface
 
     @property
     def cell_block(self) -> np.ndarray:
+        """(C,) int32: the block of each cell, an index of `blocks`."""
         return self.complex.cell_block
 
     @property
@@ -109,18 +119,22 @@ class ModelData:
 
     @property
     def surface_vertices(self) -> np.ndarray:
+        """(Vs, 3) float64: the vertices of all input surfaces, one surface after another."""
         return self.surfaces.vertices
 
     @property
     def surface_triangles(self) -> np.ndarray:
+        """(Ts, 3) int32: their triangles, which index within their own surface."""
         return self.surfaces.triangles
 
     @property
     def surface_vertex_offsets(self) -> np.ndarray:
+        """(S + 1,) int64: where the vertices of each surface begin."""
         return self.surfaces.vertex_offsets
 
     @property
     def surface_triangle_offsets(self) -> np.ndarray:
+        """(S + 1,) int64: where the triangles of each surface begin."""
         return self.surfaces.triangle_offsets
 
     @property
@@ -186,7 +200,7 @@ class ModelData:
         return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""
+        """Vertices (V, 3) and triangles (T, 3) of one input surface, by its global index `number`."""
         return self.surfaces.surface(number)
 
     @property
@@ -199,8 +213,8 @@ class ModelData:
         return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
     def sheet_triangles(self, number: int) -> list[np.ndarray]:
-        """The triangles (T, 3) of each sheet of a surface, by its global index; a surface that no fault
-        displaces has one."""
+        """The triangles (T, 3) of each sheet of a surface, by its global index `number`; a surface that no
+        fault displaces has one."""
         triangles = self.surface(number)[1]
         begin, end = self.surface_triangle_offsets[number : number + 2]
         sheet = self.surface_triangle_sheet[begin:end]

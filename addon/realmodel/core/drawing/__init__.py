@@ -28,4 +28,4 @@ def save_drawing(drawing: Drawing, path: str | Path) -> None:
         WRITERS[ending](drawing, file)
 
 
-__all__ = ["WRITERS", "Drawing", "save_drawing"]
+__all__ = ["Drawing", "save_drawing"]

@@ -58,7 +58,8 @@ class Drawing:
 
     width, height: of the page, in points (1/72 inch); the origin is the lower left corner. scale, origin:
     points for one unit of what is drawn, and where its zero is; formats without a page (DXF) are in those
-    units.
+    units. Colors are red, green, blue from 0 to 1, widths and sizes points; what has the name of a `layer`
+    becomes a layer of a DXF file, a group of an SVG file. items: what was drawn.
     """
 
     width: float
@@ -68,26 +69,29 @@ class Drawing:
     items: list[Polygon | Line | Dots | Text] = field(default_factory=list)
 
     def polygon(self, rings, fill=None, stroke=None, width=0.5, layer="") -> None:
-        """rings: (N, 2), or a list of them."""
+        """rings: (N, 2), or a list of them. fill, stroke: colors, None for none; width: of the stroke."""
         single = np.ndim(rings[0][0]) == 0
         arrays = [np.asarray(ring, np.float64) for ring in ([rings] if single else rings)]
         self.items.append(Polygon(arrays, fill, stroke, width, layer))
 
     def rectangle(self, box, fill=None, stroke=None, line=0.5, layer="") -> None:
-        """box: x, y, width, height."""
+        """box: x, y, width, height. fill, stroke: as of polygon; line: the width of the stroke."""
         x, y, width, height = box
         corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
         self.polygon(corners, fill, stroke, line, layer)
 
     def line(self, points, color=BLACK, width=0.75, dash=None, layer="") -> None:
+        """A line through points (N, 2), with a color and a width. dash: the length of its dashes and gaps;
+        None: a solid line."""
         self.items.append(Line(np.asarray(points, np.float64), color, width, dash, layer))
 
     def dots(self, points, radii, color=BLACK, layer="") -> None:
-        """radii: one number, or one for each point."""
+        """Filled circles of one color at points (N, 2). radii: one number, or one for each point."""
         points = np.asarray(points, np.float64).reshape(-1, 2)
         radii = np.broadcast_to(np.asarray(radii, np.float64), len(points))
         self.items.append(Dots(points, radii, color, layer))
 
     def text(self, x, y, text, size=9.0, color=BLACK, anchor="start", angle=0.0, layer="") -> None:
-        """One line of text from the baseline at (x, y). anchor: "start", "middle", or "end"."""
+        """One line of text from the baseline at (x, y), with a size and a color. anchor: "start", "middle",
+        or "end". angle: degrees, counter-clockwise."""
         self.items.append(Text(float(x), float(y), str(text), size, color, anchor, angle, layer))

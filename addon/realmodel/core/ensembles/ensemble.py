@@ -75,11 +75,11 @@ def added(parts: Iterable[Sums]) -> Sums:
 class Ensemble:
     """Realizations of a model.
 
-    model: with the interpolated heights. volumes: (R, B) float64, of each block in each realization.
-    surface_mean, surface_deviation: for each surface (V,) float64 at the nodes of the planar mesh, or where
-    faults divide the rock mass at the vertices of its sheets, the mean of the heights and their standard
-    deviation, NaN where not all realizations have a height; None for ready meshes. places: (N, 3).
-    probability: (N, B) float64, of each block at each place.
+    seed, correlation: as of `ensemble`. model: with the interpolated heights. volumes: (R, B) float64, of
+    each block in each realization. surface_mean, surface_deviation: for each surface (V,) float64 at the
+    nodes of the planar mesh, or where faults divide the rock mass at the vertices of its sheets, the mean of
+    the heights and their standard deviation, NaN where not all realizations have a height; None for ready
+    meshes. places: (N, 3). probability: (N, B) float64, of each block at each place.
     """
 
     model: Model
@@ -93,6 +93,7 @@ class Ensemble:
 
     @classmethod
     def of(cls, realizer: Realizer, sums: Sums, places: np.ndarray) -> Ensemble:
+        """The ensemble of the sums over its realizations. places: (P, 3), where probabilities are asked."""
         count = len(sums.volumes)
         means: list[np.ndarray | None] = []
         deviations: list[np.ndarray | None] = []
@@ -117,6 +118,7 @@ class Ensemble:
 
     @property
     def block_names(self) -> list[str]:
+        """(B,) the names of the blocks, as of the model."""
         return [block.name for block in self.model.blocks]
 
     def percentiles(self, percent: Iterable[float] = PERCENTILES) -> np.ndarray:
@@ -124,7 +126,7 @@ class Ensemble:
         return np.percentile(self.volumes, list(percent), axis=0)
 
     def at(self, begin: int = 0, end: int | None = None) -> Probabilities:
-        """The probability of each block at some of the places."""
+        """The probability of each block at places[begin:end]."""
         return Probabilities(self.block_names, self.probability[begin:end])
 
     def entropy(self) -> np.ndarray:
@@ -150,6 +152,14 @@ def ensemble(
     have none of their own. places: (N, 3) points of which the probability of each block is wanted, or a
     function that gives them for the built model. Other arguments as `build`.
     Raises as `build`; UsageError.
+
+    >>> points = [[0, 0, 1], [4, 0, 2], [4, 4, 2], [0, 4, 1], [2, 2, 3]]
+    >>> ground = Surface("ground", points=points, method="kriging", block="soil")
+    >>> square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    >>> rock = Rock("hill", [ground], region=square, edge_length=1, base_elevation=-9)
+    >>> found = ensemble(Project("hill", [rock]), realizations=10, seed=1)
+    >>> found.volumes.shape, found.percentiles([10, 90]).shape
+    ((10, 1), (2, 1))
     """
     check_request(realizations, seed, correlation)
 

@@ -23,8 +23,8 @@ def blocks_at(model, points: np.ndarray, threads: int = 0) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Probabilities:
-    """Probabilities of blocks at places. probability: (N, B) float64; the rest to 1 is the probability of no
-    block."""
+    """Probabilities of blocks, whose names are `block_names`, at places. probability: (N, B) float64; the
+    rest to 1 is the probability of no block."""
 
     block_names: list[str]
     probability: np.ndarray
@@ -45,5 +45,5 @@ class Probabilities:
         return np.column_stack([self._outside, self.probability]).argmax(axis=1) - 1
 
     def colors(self, block_colors: np.ndarray) -> np.ndarray:
-        """(N, 3) the mean of the colors of the blocks (B, 3), white for none."""
+        """(N, 3) the mean of the colors of the blocks, block_colors (B, 3) from 0 to 1; white for none."""
         return np.clip(self.probability @ block_colors + self._outside[:, None], 0.0, 1.0)

@@ -53,6 +53,7 @@ class Realizer:
         cancel: Cancel | None = None,
     ) -> Model:
         """The model with heights drawn for the number-th time, from 0. Ready meshes, faults and bodies stay.
+        cells: as of `build`.
 
         Raises InputRefused, BuildFailed, Cancelled.
         """
@@ -82,7 +83,8 @@ class Realizer:
         return inputs, structures
 
     def correlations(self, entry: RockInput) -> list[float]:
-        """The correlations of the errors of each surface of a rock mass with those of the next older one."""
+        """The correlations of the errors of each surface of a rock mass, an entry of the model's rock_inputs,
+        with those of the next older one."""
         own = [surface.correlation for surface in entry.rock.surfaces]
         return [self.correlation if each is None else each for each in own]
 

@@ -97,8 +97,8 @@ def section_samples(model, section: Section, size: float | Sequence[float] | Non
 
 
 def borehole_samples(model, x: float, y: float, height: float | None = None) -> BoreholeSamples:
-    """Samples of a vertical line through the whole height of the model. height: of cells; None: a
-    hundredth."""
+    """Samples of the vertical line at (x, y) through the whole height of the model. height: of cells; None: a
+    hundredth. Raises UsageError."""
     low, high = float(model.vertices[:, 2].min()), float(model.vertices[:, 2].max())
     beyond = _BEYOND * (high - low)
     bounds = _bounds(low - beyond, high + beyond, height or (high - low + 2 * beyond) / _ROWS)
@@ -110,7 +110,8 @@ def borehole_samples(model, x: float, y: float, height: float | None = None) -> 
 
 
 def grid_samples(model, size: float | Sequence[float] | None = None) -> GridSamples:
-    """Samples at the cells of regular_cells, with some more above and below. Raises UsageError."""
+    """Samples at the cells of a regular grid that covers the model, with some more above and below. size: of
+    the cells, as the cell_size of Model.save. Raises UsageError."""
     cell = checked_size(model, size)
     lowest, (nx, ny, nz) = frame_of(model, cell)
     beyond = math.ceil(_BEYOND * nz)

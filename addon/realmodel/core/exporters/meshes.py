@@ -122,7 +122,12 @@ def write_mesh(
 
 
 def save_mesh(mesh: Mesh, path: str | Path, step: Step = lambda _: None, unit: str = MODEL_UNIT) -> None:
-    """Writes a mesh to a file, or a folder, that appears whole or not at all."""
+    """Writes a mesh for simulation, or cleaned cells, to a file or folder by its ending (.foam, .vtu, .msh,
+    .inp, .cdb, .exo, ...). It appears whole or not at all.
+
+    step(share) is called now and then, last with 1. unit: of its lengths, for formats that name one. Raises
+    UsageError for an ending that is not known, OutputFailed where it cannot be written.
+    """
     mesh_format_for(path)
     with Outputs() as outputs:
         write_mesh(mesh, path, outputs, step, unit)

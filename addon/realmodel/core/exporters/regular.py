@@ -12,7 +12,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ..base.atomic import Outputs
-from ..base.vendored import vendored
+from ..base.packages import vendored
 from ..results.regular_cells import plan_grids, regular_cells
 from ..simulation.patches import solver_names
 from .encodings.text_rows import write_rows

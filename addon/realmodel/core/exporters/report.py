@@ -3,22 +3,64 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import platform
 import sys
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
+from ..base.errors import UsageError
 from ..base.work import native_module
+from ..notebook import data_frame
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport
 from ..results.erosion import Erosion
+from ..results.tables import block_entry
 from ..results.volume_uncertainty import volume_deviations
 from ..simulation import cleaned_entry, mesh_entry
 from ..structures.sheets.displacement import displacements
 from ..surfaces.surface_heights import used_vertices
 
+if TYPE_CHECKING:
+    import pandas
+
 SCHEMA = 1
+
+
+class Report(dict):
+    """The report of a model, as report.json has it (docs/reference/output_files.md)."""
+
+    def table(self, name: str) -> pandas.DataFrame:
+        """One of its lists, such as "blocks", "surfaces", "warnings", "compartments" or "faults", as a
+        DataFrame of pandas. What is within an entry becomes columns with dots in their names, and a list of
+        entries within it rows.
+
+        Raises UsageError where pandas is missing, or for a name that is no list of the report.
+
+        >>> model.report().table("surfaces")[["name", "lowest", "highest"]]
+                  name  lowest  highest
+        0  top of clay     2.0      2.0
+        1  top of sand     3.0      3.0
+        2       ground     1.0      5.0
+        """
+        lists = [key for key, value in self.items() if isinstance(value, list)]
+        if name not in lists:
+            raise UsageError(f"the report has no list {name!r}; there are {', '.join(lists)}")
+        return data_frame(itertools.chain.from_iterable(map(_rows, self[name])))
+
+
+def _rows(entry: dict) -> list[dict]:
+    """An entry without nesting: one row, or one for each combination of the entries of its lists."""
+    rows: list[dict] = [{}]
+    for key, value in entry.items():
+        inner = [value] if isinstance(value, dict) else value
+        if not (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
+            rows = [{**row, key: value} for row in rows]
+            continue
+        own = [{f"{key}.{name}": each for name, each in row.items()} for one in inner for row in _rows(one)]
+        rows = [{**row, **more} for row in rows for more in own]
+    return rows
 
 
 def model_report(
@@ -28,7 +70,7 @@ def model_report(
     erosion: Erosion | None = None,
     mesh=None,
     cells=None,
-) -> dict:
+) -> Report:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
@@ -39,7 +81,8 @@ def model_report(
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
     library = model.project.library
-    report = {
+    report = Report()
+    report |= {
         "schema": SCHEMA,
         "project": {
             "name": model.project.name,
@@ -191,19 +234,9 @@ def body_entry(body) -> dict:
 
 
 def _block(model, number: int, total: float, deviation: float) -> dict:
-    block = model.blocks[number]
-    entry = model.project.library.get(block.property) if model.project.library else None
     return {
-        "name": block.name,
-        "rock": model.project.rocks[block.rock].name,
-        "surface": model.surface_names[block.surface],
-        "property": block.property,
-        "property_name": entry.name if entry else None,
-        "volume": block.volume,
+        **block_entry(model, number, total),
         "volume_deviation_at_most": deviation if np.isfinite(deviation) else None,
-        "share": block.volume / total if total else 0.0,
-        "cells": block.cells,
-        "components": block.components,
         "component_volumes": model.component_volumes[number].tolist(),
     }
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, native_module, run
+from ..notebook import ShortRepr
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
@@ -20,8 +21,8 @@ from .run import heights
 DEFAULT_FOLDS = 10
 
 
-@dataclass(frozen=True)
-class CrossValidation:
+@dataclass(frozen=True, repr=False)
+class CrossValidation(ShortRepr):
     """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
     minus the points' heights; standardised (P,), errors divided by the kriging standard deviation, None where
     the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
@@ -46,6 +47,7 @@ class CrossValidation:
 
     @property
     def mean_absolute_error(self) -> float:
+        """The mean of the absolute errors, model units."""
         return float(np.abs(self.errors[self.known]).mean()) if self.known.any() else float("nan")
 
     @property
@@ -63,7 +65,7 @@ class CrossValidation:
         return np.isfinite(self.errors)
 
     def worst(self, number: int) -> np.ndarray:
-        """The indices of the points with the largest errors, the largest first."""
+        """The indices of the points with the largest errors, the largest first; number: how many, at most."""
         order = np.argsort(-np.abs(self.errors), kind="stable")  # NaN last
         return order[: min(number, int(self.known.sum()))]
 
@@ -97,6 +99,11 @@ def cross_validate(
     3)), for a method that works on a mesh. options: as for `interpolate`.
 
     Raises InputRefused, UsageError, Cancelled.
+
+    >>> x, y = np.mgrid[:5, :5].reshape(2, -1)
+    >>> result = cross_validate(np.column_stack([x, y, 2 * x + y]), "universal_kriging")
+    >>> result.rmse < 1e-6
+    True
     """
     points = checked_points(points)
     settings = method_settings(method, neighbours, options)

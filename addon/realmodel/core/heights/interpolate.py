@@ -37,6 +37,10 @@ def interpolate(
     a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
 
     Raises InputRefused for points or options that make no sense, UsageError for a wrong call, Cancelled.
+
+    >>> points = [[0, 0, 1], [4, 0, 5], [4, 4, 5], [0, 4, 1]]
+    >>> interpolate(points, [[2, 2], [3, 1]], method="tin").z
+    array([3., 4.])
     """
     settings = method_settings(method, neighbours, options)
     if points is not None or METHODS[method].needs_points(settings):

@@ -12,12 +12,13 @@ import numpy as np
 from ..base.sheet import Sheet
 from ..base.work import Arguments, Work
 from ..base.work import Result as Value
+from ..notebook import ShortRepr
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 
 
-@dataclass(frozen=True)
-class Interpolation:
+@dataclass(frozen=True, repr=False)
+class Interpolation(ShortRepr):
     """z (N,) heights, NaN where there are none; variance (N,) of the error, NaN where it is not known, None
     where the method gives none; the method used; the variogram, None where the method has none; warnings,
     sentences about the points.

@@ -46,6 +46,13 @@ def build(
     the fraction never falls. cancel() returning True ends it with Cancelled.
 
     Raises InputRefused (what, where, what to do), NotEnoughMemory, BuildFailed, UsageError, Cancelled.
+
+    >>> square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    >>> points = [[0, 0, 1], [4, 0, 5], [4, 4, 5], [0, 4, 1]]
+    >>> ground = Surface("ground", points=points, method="tin", block="soil")
+    >>> rock = Rock("hill", [ground], region=square, edge_length=1, base_elevation=0)
+    >>> round(build(Project("ramp", [rock])).volume, 9)
+    48.0
     """
     check_cells(cells)
     check_memory(memory)

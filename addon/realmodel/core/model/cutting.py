@@ -15,6 +15,7 @@ from ..base.triangles import checked_triangulation
 from ..base.work import Cancel, Progress, Work, native_module, refused_as, run
 from ..cells.cell_complex import CellComplex
 from ..cells.model_data import ModelData, SomeModel
+from ..notebook import ShortRepr
 from ..results.automatic_library import model_with_library
 from ..results.section_faults import traces_on_fence, traces_on_plane
 from ..settings.method_options import check_threads
@@ -23,8 +24,8 @@ from .section import Fence, Section
 _CUT_SHARE = 0.97
 
 
-@dataclass(eq=False)
-class Cut(Generic[SomeModel]):
+@dataclass(eq=False, repr=False)
+class Cut(ShortRepr, Generic[SomeModel]):
     """Both halves of a model, each a model with the same blocks, surfaces and project.
 
     above: the half to which the plane's normal points, above the surface, or outside of a closed surface or
@@ -41,10 +42,12 @@ class Cut(Generic[SomeModel]):
 
     @property
     def inside(self) -> SomeModel:
+        """The half inside a closed surface or block: `below`."""
         return self.below
 
     @property
     def outside(self) -> SomeModel:
+        """The half outside a closed surface or block: `above`."""
         return self.above
 
 
@@ -61,6 +64,10 @@ def cut_by_plane(
 
     point, normal: three numbers each; the normal may have any length. The model itself does not change.
     Raises UsageError for an invalid plane, BuildFailed, Cancelled.
+
+    >>> cut = model.cut_by_plane(point=(2, 2, 2), normal=(1, 0, 0))
+    >>> cut.above.volume, cut.below.volume, cut.section.area
+    (32.0, 16.0, 12.0)
     """
     point, normal = _plane(point, normal)
     return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
@@ -80,6 +87,11 @@ def cut_by_surface(
     vertices: (V, 3) float64; triangles: (T, 3) whole numbers, of any orientation.
     Raises InputRefused for a surface that does not separate the model, branches, has no two sides or crosses
     itself; BuildFailed, Cancelled.
+
+    >>> sheet = [[-1, -1, 2], [5, -1, 2], [5, 5, 2], [-1, 5, 2]], [[0, 1, 2], [0, 2, 3]]
+    >>> cut = model.cut_by_surface(*sheet)
+    >>> round(cut.below.volume, 9)
+    30.0
     """
     vertices, triangles = checked_triangulation(vertices, triangles)
     return _cut(model, lambda native: (native.cut_by_surface, vertices, triangles), threads, progress, cancel)
@@ -93,7 +105,8 @@ def cut_by_block(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut[SomeModel]:
-    """Cuts a model by a block (number or name) of another model, or of the same one: inside and outside.
+    """Cuts a model by a block (number or name) of the `other` model, which may be the same one: inside and
+    outside.
 
     Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
     """
@@ -168,7 +181,17 @@ def section(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Section:
-    """The section by a plane alone, in a fraction of the time of cut_by_plane."""
+    """The section by a plane alone, in a fraction of the time of cut_by_plane.
+
+    point, normal: as of cut_by_plane; in drawings the plane is seen from where the normal points. Raises
+    UsageError for an invalid plane, BuildFailed, Cancelled.
+
+    >>> section = model.section(point=(2, 2, 2), normal=(0, -1, 0))
+    >>> section
+    Section of 'three layers': 6 polygons of 3 blocks, 12 m²
+    >>> section.area_by_block()
+    array([7.5, 2.5, 2. ])
+    """
     point, normal = _plane(point, normal)
     threads = check_threads(threads)
     native_module()
@@ -197,7 +220,14 @@ def fence(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Fence:
-    """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
+    """Vertical sections along a polyline in plan, (N, 2), each between its two ends.
+
+    Raises UsageError for an invalid polyline, BuildFailed, Cancelled.
+
+    >>> fence = model.fence([[0, 2], [2, 2], [2, 4]])
+    >>> fence.length, fence.area
+    (4.0, 10.0)
+    """
     try:
         polyline = np.ascontiguousarray(polyline, np.float64)
     except (TypeError, ValueError) as error:

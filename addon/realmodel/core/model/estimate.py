@@ -76,6 +76,10 @@ def estimate(
     meshes the regions; nothing is interpolated or intersected.
 
     Raises InputRefused as build() does while it reads and meshes, UsageError, Cancelled.
+
+    >>> expected = estimate(model.project)
+    >>> expected.triangles, expected.fits
+    (6, True)
     """
     check_cells(cells)
     threads = check_threads(threads)

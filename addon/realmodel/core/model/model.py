@@ -12,15 +12,17 @@ from ..base.work import Cancel, Progress, run
 from ..cells.assembly import build_stage
 from ..cells.model_data import ModelData
 from ..exporters import save_model
+from ..exporters.report import Report, model_report
 from ..exporters.surfaces import save_surfaces
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
 from ..results.erosion import Erosion, eroded
 from ..results.geological_map import geological_map
 from ..results.model_boreholes import borehole
+from ..results.tables import block_table, borehole_table, map_dataset
 from ..settings.method_options import check_threads
-from ..simulation import cleaned_cells, simulation_mesh
-from . import cutting
+from ..simulation import CleanedCells, SimulationMesh, cleaned_cells, simulation_mesh
+from . import cutting, notebook_view
 from .model_file import read_model
 
 
@@ -74,7 +76,13 @@ class Model(ModelData):
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
         rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
-        surfaces up to m."""
+        surfaces up to m.
+
+        >>> model.stage(1).volume, model.volume  # when the sand had just been laid down, and now
+        (48.0, 48.0)
+        >>> [block.volume for block in model.stage(1).blocks]
+        [32.0, 16.0]
+        """
         if self.is_cut:
             raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
         return build_stage(self, m, progress, cancel)
@@ -85,6 +93,9 @@ class Model(ModelData):
         The volume of a block just before the surface, less that just after. For each surface that cuts the
         model is built once more up to the surface before, with whole blocks as cells; what rounding alone
         makes is given as 0. Raises UsageError where the model is a half, Cancelled.
+
+        >>> model.eroded().by_block
+        array([2., 6., 0.])
         """
         if self.is_cut:
             raise UsageError("a cut model has no erosion: ask the whole model")
@@ -104,9 +115,42 @@ class Model(ModelData):
         seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
         A model that fails is no error here: the report says what is wrong and where.
         Raises UsageError, Cancelled.
+
+        >>> model.validate().passed
+        True
         """
         return validate(self, places, seed, threads, progress, cancel)
 
+    def report(
+        self,
+        validation: ValidationReport | None = None,
+        erosion: Erosion | None = None,
+        mesh: SimulationMesh | None = None,
+        cells: CleanedCells | None = None,
+    ) -> Report:
+        """What report.json says of the model (docs/reference/output_files.md): a dict, whose lists are tables
+        of pandas, too (Report.table). Volumes are in model units cubed, times in seconds, memory in bytes.
+
+        validation: what `validate` found; None: it is asked now. erosion: what `eroded` found, mesh: a mesh
+        of the model, cells: its cleaned cells; without them the report says nothing of that.
+
+        >>> report = model.report()
+        >>> report["volume"], report["validation"]["passed"]
+        (48.0, True)
+        """
+        return model_report(self, validation=validation, erosion=erosion, mesh=mesh, cells=cells)
+
+    def __repr__(self) -> str:
+        return notebook_view.summary(self)
+
+    def _repr_html_(self) -> str:
+        return notebook_view.html(self)
+
+    to_pyvista = notebook_view.to_pyvista
+    surfaces_to_pyvista = notebook_view.surfaces_to_pyvista
+    to_xarray = map_dataset
+    block_table = block_table
+    borehole_table = borehole_table
     simulation_mesh = simulation_mesh
     cleaned_cells = cleaned_cells
     geological_map = geological_map

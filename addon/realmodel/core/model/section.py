@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 
 from ..base.atomic import Outputs
+from ..drawing.svg import write_svg
 from ..exporters.sections import section_writer
 from ..results.section_data import FenceData, SectionData
+from ..results.section_drawing import draw_section
 
 
 class Section(SectionData):
@@ -15,11 +18,19 @@ class Section(SectionData):
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
         """Writes the polygons, with block and property, to a file in the format of its ending, or a drawing
-        of them to a .svg, .dxf or .png with exaggerated heights. The file appears whole or not at all. Raises
-        UsageError, OutputFailed."""
+        of them to a .svg, .dxf or .png. exaggeration: of heights in drawings. The file appears whole or not
+        at all. Raises UsageError, OutputFailed."""
         writer = section_writer(path, exaggeration)
         with Outputs() as outputs, outputs.file(path) as file:
             writer(self, file)
+
+    def _repr_svg_(self) -> str | None:
+        """The drawing that `save` writes; None where there is none, as of the section by a surface."""
+        if not len(self) or not (self.plane or isinstance(self, FenceData)):
+            return None
+        file = BytesIO()
+        write_svg(draw_section(self), file)
+        return file.getvalue().decode()
 
 
 class Fence(Section, FenceData):

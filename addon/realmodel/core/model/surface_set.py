@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..exporters.surfaces import save_surfaces
 from ..heights import Interpolation
+from ..notebook import ShortRepr
 from ..project.build_options import check_stage
 from ..project.project import Project, Rock, check_project
 from ..settings.method_options import check_threads
@@ -23,16 +25,21 @@ from ..structures.setup import make_surfaces, mesh_inputs, read_inputs
 from ..surfaces.rock_input import RockInput
 from ..surfaces.surface_arrays import triangle_sheets, vertex_attributes
 from ..surfaces.surface_input import Reader, read_each
+from .notebook_view import surfaces_to_pyvista
+
+if TYPE_CHECKING:
+    import pyvista
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
 
 
-@dataclass(eq=False)
-class SurfaceSet:
+@dataclass(eq=False, repr=False)
+class SurfaceSet(ShortRepr):
     """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
     they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
     all numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
-    `project` holds the arrays in the place of files. `surface_kind` is that of a Model.
+    `project` holds the arrays in the place of files. `surface_kind` is that of a Model. `warnings`: of what
+    was read and interpolated. `rock_inputs`, `structures`: what a build goes on with.
     """
 
     project: Project
@@ -48,7 +55,7 @@ class SurfaceSet:
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
+        """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface, by its number."""
         interfaces = [entry.surface(k) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
         return [*interfaces, *self.structures.shapes][number].arrays
 
@@ -61,6 +68,10 @@ class SurfaceSet:
     def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
         """As Model.surface_attributes."""
         return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+
+    def to_pyvista(self) -> pyvista.MultiBlock:
+        """As Model.surfaces_to_pyvista."""
+        return surfaces_to_pyvista(self)
 
     def save(self, path: str | Path) -> None:
         """Writes the surfaces to a file, by its ending (.obj, .ply, .stl, .glb, .dxf, .ts with a

@@ -19,9 +19,12 @@ LOOK_NAMES = (AUTO_LOOK, *(key.lower() for key in LOOKS))
 
 @dataclass(frozen=True)
 class Property:
-    """One entry: `id` unique, `color` "#rrggbb" (sRGB), `density` in the user's units. For pictures: `look`
-    one of LOOK_NAMES, the size of its texture (1 suits the model) and its seed; `hardness`, above 0 and at
-    most 1, says how well the rock withstands weathering."""
+    """One entry of a library: a rock or another kind of material, by a unique `id` above 0 and a `name`.
+
+    rock, age, structure, description: texts. color: "#rrggbb" (sRGB). density: in the user's units. For
+    pictures: `look` one of LOOK_NAMES, the size `look_scale` of its texture (1 suits the model) and its seed
+    `look_seed`; `hardness`, above 0 and at most 1, says how well the rock withstands weathering.
+    """
 
     id: int
     name: str
@@ -47,7 +50,7 @@ class Property:
 
 @dataclass
 class Library:
-    """Properties by id. `path` is the file it was read from."""
+    """The `properties`, each with an id of its own. `path` is the file that they were read from, if any."""
 
     properties: list[Property] = field(default_factory=list)
     path: Path | None = None
@@ -69,7 +72,7 @@ class Library:
         return len(self.properties)
 
     def get(self, number: int) -> Property | None:
-        """The property of this id, or None."""
+        """The property whose id is `number`, or None."""
         return next((entry for entry in self.properties if entry.id == number), None)
 
 

@@ -58,8 +58,8 @@ class Surface(Shaped):
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
     Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
-    `property` is the library id of the block deposited beneath it (0: none), `block` that block's
-    name.
+    `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
+    the block deposited beneath it (0: none), `block` that block's name.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -94,6 +94,7 @@ class Surface(Shaped):
 
     @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
+        """The name of the block deposited beneath it."""
         return self.block or f"{self.name} block"
 
     def point_array(self) -> np.ndarray:
@@ -145,6 +146,7 @@ class Rock(Entry):
 
     @property
     def region_file(self) -> Path | None:
+        """The file of its region; None where there is none."""
         layer = map_layer(self.region)
         return None if layer is None else Path(layer.file)
 
@@ -165,6 +167,7 @@ class Rock(Entry):
 
     @property
     def interpolates(self) -> bool:
+        """Whether any of its surfaces is interpolated."""
         return any(surface.interpolated for surface in self.surfaces)
 
 
@@ -172,6 +175,7 @@ class Rock(Entry):
 class Project:
     """Rock masses that make one model, the faults and bodies in them, and the library of their properties.
 
+    name: of the model. rocks: its rock masses. path: the project file, if it was read from one.
     units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
     one counts.
     """

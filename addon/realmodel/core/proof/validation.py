@@ -101,8 +101,11 @@ class ValidationTest:
 @dataclass(frozen=True)
 class ValidationReport:
     """What Model.validate found. `str(report)` is for a reviewer to read, `to_json()` for report.json.
-    seed: of the places where the model was compared with the closed form.
-    build_seconds: what intersecting took, to compare the cost with (0: not known)."""
+
+    project: its name; cell_kind: as of Model; cells, faces, vertices: how many there are. tests: what was
+    tested, each with what it examined and what failed. seed: of the places where the model was compared with
+    the closed form. build_seconds: what intersecting took, to compare the cost with (0: not known).
+    """
 
     project: str
     cell_kind: str
@@ -115,10 +118,12 @@ class ValidationReport:
 
     @property
     def passed(self) -> bool:
+        """Whether every test passed."""
         return all(test.passed for test in self.tests)
 
     @property
     def seconds(self) -> float:
+        """The time that the tests took, seconds."""
         return sum(test.seconds for test in self.tests)
 
     def _cost(self) -> list[str]:
@@ -138,6 +143,7 @@ class ValidationReport:
         return None
 
     def to_json(self) -> dict:
+        """The entry of the report."""
         return {
             "passed": self.passed,
             "seconds": self.seconds,

@@ -88,14 +88,17 @@ class Intersection:
 
     @cached_property
     def loops(self) -> list[Loop]:
+        """The lines along which the surfaces meet."""
         return [Loop(*entry) for entry in self._native.loops]
 
     @cached_property
     def sub_surfaces(self) -> list[SubSurface]:
+        """The parts that these lines divide both surfaces into."""
         return [SubSurface(*entry) for entry in self._native.sub_surfaces]
 
     @cached_property
     def sub_blocks(self) -> list[SubBlock]:
+        """The parts of space that both surfaces enclose."""
         return [SubBlock(*entry) for entry in self._native.sub_blocks]
 
     def union(self) -> tuple[np.ndarray, np.ndarray]:
@@ -131,7 +134,8 @@ class Intersection:
         return rows, above[rows]
 
     def sides(self, part: SubSurface, number: int) -> tuple[bool, bool]:
-        """Whether a sub-surface is inside of the first (0) or second (1) surface, below it and above it.
+        """Whether a part of `sub_surfaces` is inside of the first (number 0) or second (1) surface, below it
+        and above it.
         These differ where it lies on that surface."""
         below, above = self._native.is_in[part.triangles[0], number].tolist()
         return below, above
@@ -209,6 +213,12 @@ def intersect(
     triangles cross after that. The result is the same for any number of threads.
 
     Raises InputRefused (with the numbers of the triangles and a place), UsageError, Cancelled, BuildFailed.
+
+    >>> level = [[0, 0, 1], [4, 0, 1], [0, 4, 1]], [[0, 1, 2]]
+    >>> upright = [[1, -1, 0], [1, 5, 0], [1, 2, 4]], [[0, 1, 2]]
+    >>> found = intersect(level, upright)
+    >>> len(found.triangles), [loop.kind for loop in found.loops]
+    (8, ['open'])
     """
     threads = check_threads(threads)
     return run(lambda work: intersect_within(work, a, b), progress, cancel, threads=threads)

@@ -20,7 +20,8 @@ _AUTOMATIC = 15  # levels, about
 class Contour:
     """A line of one height on the top of the model (surface ""), or on an input surface, by its name.
 
-    points: (N, 2) float64, higher ground to the left; closed where the first is the last.
+    elevation: its height, model units. points: (N, 2) float64, higher ground to the left; closed where the
+    first is the last.
     """
 
     surface: str
@@ -48,7 +49,12 @@ def checked_interval(interval: float | None, low: float, high: float) -> float:
 def contours(model, interval: float | None = None, ground: Ground | None = None) -> list[Contour]:
     """Contours of the top of the model, then of each input surface that is no fault or body, at multiples of
     the interval. interval: as of `checked_interval`. ground: as of `geological_map`. Raises UsageError,
-    BuildFailed."""
+    BuildFailed.
+
+    >>> line = model.contours(interval=2)[0]  # of the top
+    >>> line.elevation, sorted(line.points.tolist())
+    (2.0, [[1.0, 0.0], [1.0, 1.0], [1.0, 4.0]])
+    """
     ground = ground_of(model) if ground is None else ground
     shapes = [("", ground.corners, ground.vertices, ground.solid)]
     for number, name in enumerate(model.surface_names):

@@ -11,14 +11,15 @@ import numpy as np
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..cells.joining import build_joined
 from ..cells.native_rocks import native_rocks
+from ..notebook import ShortRepr
 from ..settings.rules import RULES
 from ..structures.parts.parts import Structures
 
 _RELATIVE = 1e-12  # how far sums of cells may be off
 
 
-@dataclass(frozen=True, eq=False)
-class Erosion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Erosion(ShortRepr):
     """Eroded volumes, model units cubed.
 
     volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
@@ -48,6 +49,7 @@ class Erosion:
 
     @property
     def total(self) -> float:
+        """The volume of everything that was eroded, model units cubed."""
         return float(self.volume.sum())
 
 

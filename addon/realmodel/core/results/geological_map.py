@@ -56,6 +56,9 @@ def geological_map(model, ground: Ground | None = None) -> list[MapArea]:
     Their polygons are unions of the faces on top, so they share borders vertex by vertex, and together are
     the plan of the model. Where one part of the model lies above another, as over a void, the higher one is
     shown. ground: where `ground_of` was called before. Raises BuildFailed.
+
+    >>> [(model.blocks[area.block].name, area.area) for area in model.geological_map()]
+    [('clay', 4.0), ('sand', 4.0), ('soil', 8.0)]
     """
     return (ground_of(model) if ground is None else ground).areas
 

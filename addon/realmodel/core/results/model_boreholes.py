@@ -12,7 +12,8 @@ _WALL = -1  # face_surface
 
 @dataclass(frozen=True)
 class Interval:
-    """A stretch of a borehole in one block (its number), between two heights, model units."""
+    """A stretch of a borehole in one block (its number), from the height `top` down to `bottom`, model
+    units."""
 
     block: int
     top: float
@@ -20,12 +21,20 @@ class Interval:
 
     @property
     def length(self) -> float:
+        """Between top and bottom, model units."""
         return self.top - self.bottom
 
 
 def borehole(model, x: float, y: float) -> list[Interval]:
-    """The blocks along the vertical line at a position in plan, from above downward; nothing where there is
-    no rock. On the border of two faces one of them counts."""
+    """The blocks along the vertical line at the position (x, y) in plan, from above downward; nothing where
+    there is no rock. On the border of two faces one of them counts.
+
+    >>> for interval in model.borehole(3.5, 1.0):
+    ...     print(model.blocks[interval.block].name, interval.top, interval.bottom)
+    soil 4.5 3.0
+    sand 3.0 2.0
+    clay 2.0 0.0
+    """
     faces = _faces_at(model, x, y)
     height, is_up = _heights(model, faces, x, y)
     cells = model.face_cells[faces]

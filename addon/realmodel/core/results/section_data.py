@@ -6,13 +6,25 @@ from __future__ import annotations
 import builtins
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.units import number_text
+from ..notebook import data_frame, polygon_mesh, with_data
 from .section_faults import FaultTrace
 
+if TYPE_CHECKING:
+    import pandas
+    import pyvista
 
-@dataclass(eq=False)
+
+def rgb_bytes(colors: np.ndarray) -> np.ndarray:
+    """(N, 3) uint8 of colors (N, 3) from 0 to 1."""
+    return np.rint(colors * 255).astype(np.uint8)
+
+
+@dataclass(eq=False, repr=False)
 class SectionData:
     """Convex polygons on a cutter, counter-clockwise seen from above it (from outside of a closed one).
 
@@ -41,6 +53,13 @@ class SectionData:
     compartment: np.ndarray = field(kw_only=True)
     compartment_names: list[str] = field(kw_only=True)
     faults: list[FaultTrace] = field(default_factory=list, kw_only=True)
+
+    def __repr__(self) -> str:
+        met = len(np.unique(self.block))
+        return (
+            f"{type(self).__name__} of {self.name!r}: {len(self):,} polygons of {met} blocks, "
+            f"{number_text(self.area)} {self.unit}²"
+        )
 
     def __len__(self) -> int:
         return len(self.block)
@@ -71,6 +90,29 @@ class SectionData:
         """(B,) float64: the area that each block of the model has in the section."""
         return np.bincount(self.block, weights=self.polygon_areas, minlength=len(self.block_names))
 
+    def block_table(self) -> pandas.DataFrame:
+        """The areas of the blocks, model units squared: a row for each block that the section meets, with its
+        number as index `block`, `name` and `area`.
+
+        Raises UsageError where pandas is missing.
+        """
+        rows = zip(self.block_names, self.area_by_block().tolist(), strict=True)
+        frame = data_frame(({"name": name, "area": area} for name, area in rows), ["name", "area"])
+        return frame[frame["area"] > 0].rename_axis("block")
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The polygons as a mesh of PyVista: cell data `block` (an index of block_names), `property`,
+        `compartment`, `cells` (the model's, below and above; -1: outside) and `color` (red, green, blue,
+        uint8: plot(scalars="color", rgb=True)); field data `block_names`.
+
+        Raises UsageError where PyVista is missing.
+        """
+        names = ("block", "property", "compartment", "cells")
+        data = {name: getattr(self, name) for name in names}
+        data["color"] = rgb_bytes(self.block_colors)[self.block]
+        texts = {"block_names": self.block_names}
+        return polygon_mesh(self.vertices, self.offsets, self.polygon_vertices, data, texts)
+
     def arrays(self) -> dict[str, np.ndarray]:
         """All arrays by name, as save writes them."""
         names = ("vertices", "offsets", "polygon_vertices", "cells", "blocks", "block", "property")
@@ -79,7 +121,7 @@ class SectionData:
         return arrays | {name: np.array(getattr(self, name)) for name in lists}
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class FenceData(SectionData):
     """Vertical sections along a polyline in plan.
 
@@ -89,6 +131,10 @@ class FenceData(SectionData):
 
     polyline: np.ndarray
     panel: np.ndarray
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """As SectionData.to_pyvista, with the cell data `panel`."""
+        return with_data(super().to_pyvista(), {"panel": self.panel})
 
     def unrolled(self) -> np.ndarray:
         """(V, 2) float64: distance along the polyline and height of each vertex, as fences are drawn."""
@@ -102,7 +148,8 @@ class FenceData(SectionData):
         return self.along_panels(self.vertices[self.polygon_vertices], panel)[:, 0]
 
     def along_panels(self, points: np.ndarray, panel: np.ndarray) -> np.ndarray:
-        """(N, 2) float64: distance along the polyline and height of points (N, 3) on its panels."""
+        """(N, 2) float64: distance along the polyline and height of points (N, 3). panel: (N,), that of
+        each."""
         steps = np.diff(self.polyline, axis=0)
         away = points[:, :2] - self.polyline[panel]
         along = self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]
@@ -115,4 +162,5 @@ class FenceData(SectionData):
 
     @property
     def length(self) -> float:
+        """The length of the polyline, model units."""
         return float(self.bends[-1])

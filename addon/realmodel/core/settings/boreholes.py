@@ -41,6 +41,7 @@ class Boreholes:
 
     @property
     def files(self) -> list[Path]:
+        """The tables that there are."""
         return [Path(file) for file in (self.collars, self.survey, self.picks) if file is not None]
 
     def check(self) -> None:

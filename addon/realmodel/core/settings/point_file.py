@@ -42,14 +42,17 @@ class PointFile:
 
     @property
     def nodata_values(self) -> list:
+        """The no-data values as a list."""
         return list_of(self.nodata)
 
     @property
     def plan_unit(self) -> str | None:
+        """Of x and y; None: that of the model."""
         return self.units.get("xy") if isinstance(self.units, Mapping) else self.units
 
     @property
     def height_unit(self) -> str | None:
+        """Of heights; None: that of the model."""
         return self.units.get("z") if isinstance(self.units, Mapping) else self.units
 
     @property
@@ -91,7 +94,8 @@ class PointFile:
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A ready mesh with its own units and z axis, as of a PointFile; None: units of the model."""
+    """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the
+    model."""
 
     file: str | Path
     units: str | Mapping | None = None

@@ -40,8 +40,8 @@ _FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found 
 
 @dataclass(frozen=True)
 class Structure:
-    """One part of a nested variogram: sill * f(h / range). anisotropy: {ratio, azimuth}, or None for that of
-    the interpolation."""
+    """One part of a nested variogram: sill * f(h / range), f that of the `model`. anisotropy: {ratio,
+    azimuth}, or None for that of the interpolation."""
 
     model: str
     range: float
@@ -49,6 +49,7 @@ class Structure:
     anisotropy: dict | None = None
 
     def settings(self) -> dict:
+        """The settings as in a project file."""
         settings = {"model": self.model, "range": self.range, "sill": self.sill}
         return settings if self.anisotropy is None else {**settings, "anisotropy": self.anisotropy}
 
@@ -88,7 +89,7 @@ class Variogram:
 
     @classmethod
     def from_fit(cls, fit: dict, finds_anisotropy: bool) -> Variogram:
-        """The variogram that the native fit returns; with the fitted anisotropy, if it was to be fitted."""
+        """The variogram that the native fit returns; finds_anisotropy: with the fitted anisotropy."""
         found = None
         if finds_anisotropy and fit["anisotropy_ratio"] != 1.0:
             found = {"ratio": fit["anisotropy_ratio"], "azimuth": fit["anisotropy_azimuth"]}
@@ -104,6 +105,7 @@ class Variogram:
 
     @property
     def fitted(self) -> bool:
+        """Whether it was fitted to points."""
         return self.lags is not None
 
     def experimental(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -112,7 +114,8 @@ class Variogram:
         return self.lags, self.gamma, self.pairs
 
     def semivariance(self, distance) -> np.ndarray:
-        """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
+        """gamma at each `distance`, (N,) float64, in the direction of the longest range; to draw it beside
+        `lags` and `gamma`."""
         distance = np.asarray(distance, np.float64)
         gamma = np.full(distance.shape, self.nugget)
         for part in self.parts():

@@ -91,14 +91,12 @@ class ElementFaces:
             np.concatenate(corners).astype(np.int32, copy=False),
             np.concatenate(cells).astype(np.int32, copy=False),
             np.concatenate(surface),
-            mesh.all_blocks,
+            mesh.of_all(mesh.element_block),
             mesh.block_names,
             mesh.block_property,
             mesh.surface_names,
             mesh.surface_kind,
-            None
-            if mesh.element_compartment is None
-            else np.concatenate([*mesh.element_compartment.values()]).astype(np.int32, copy=False),
+            None if mesh.element_compartment is None else mesh.of_all(mesh.element_compartment),
         )
 
     def sets(self, longest: int = 64) -> list[FaceSet]:

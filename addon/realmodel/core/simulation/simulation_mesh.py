@@ -28,7 +28,7 @@ _CHANGES_LESS = "a shorter edge length or a smaller minimum thickness changes le
 _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SimulationMesh(VolumeMesh):
     """A mesh for solvers, and its changes of volumes.
 
@@ -80,6 +80,10 @@ def simulation_mesh(
     made shorter than that to get there: what is thinner may be lost. Compartments are kept apart.
 
     Raises UsageError and InputRefused for what cannot be meshed so, BuildFailed, Cancelled.
+
+    >>> mesh = model.simulation_mesh(edge_length=1, minimum_thickness=0.2, layers={"clay": 2})
+    >>> float(abs(mesh.volumes.sum() - model.volume).round(6)), mesh.plan.layers
+    (0.0, 4)
     """
     threads = check_threads(threads)
     check_mesher(mesher)

@@ -3,18 +3,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ..notebook import ShortRepr, VtkCells, polyhedron_grid, volume_grid
+
+if TYPE_CHECKING:
+    import pyvista
 
 # The corners of each kind of element. They stand as in Gmsh, CGNS and Abaqus: of the first face (three or
 # four corners) counter-clockwise as seen from the rest of the element, so that volumes are positive; of a
 # prism and a hexahedron then the corners above them in the same order. VTK turns prisms the other way round.
 CORNERS = {"tetrahedron": 4, "pyramid": 5, "prism": 6, "hexahedron": 8}
+_VTK_TYPES = {"tetrahedron": 10, "pyramid": 14, "prism": 13, "hexahedron": 12}
+_VTK_PRISM = [0, 2, 1, 3, 5, 4]
 
 
-@dataclass(frozen=True, eq=False)
-class PlanMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class PlanMesh(ShortRepr):
     """The planar mesh that columns of elements stand on.
 
     vertices: (P, 2) float64. triangles: (T, 3) int32, counter-clockwise. column, layer: of the elements of
@@ -29,8 +38,8 @@ class PlanMesh:
     layers: int
 
 
-@dataclass(frozen=True, eq=False)
-class VolumeMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class VolumeMesh(ShortRepr):
     """A mesh of elements for solvers.
 
     points: (N, 3) float64, model units; every one is used.
@@ -63,14 +72,43 @@ class VolumeMesh:
         """The number of elements."""
         return sum(map(len, self.elements.values()))
 
-    @property
-    def all_blocks(self) -> np.ndarray:
-        """(E,) int32: the block of each element, kind by kind."""
-        return np.concatenate([*self.element_block.values(), np.empty(0, np.int32)]).astype(np.int32)
+    def vtk_cells(self) -> VtkCells:
+        """The elements one after another, kind by kind, as VTK has them."""
+        types, sizes, corners = [np.empty(0, np.uint8)], [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+        for kind, elements in self.elements.items():
+            types.append(np.full(len(elements), _VTK_TYPES[kind], np.uint8))
+            sizes.append(np.full(len(elements), CORNERS[kind]))
+            corners.append((elements[:, _VTK_PRISM] if kind == "prism" else elements).ravel())
+        offsets = np.cumsum(np.concatenate([np.zeros(1, np.int64), *sizes]))
+        return VtkCells(np.concatenate(types), offsets, np.concatenate(corners))
+
+    def of_all(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(E,) int32: values of the elements of each kind, in the order of vtk_cells."""
+        return np.concatenate([np.empty(0, np.int32), *(values[kind] for kind in self.elements)])
+
+    def cell_data(self) -> dict[str, np.ndarray]:
+        """(E,) int32 each, in the order of vtk_cells: `block`, an index of block_names, `property`, and where
+        there are any `compartment`."""
+        block = self.of_all(self.element_block)
+        found = {"block": block, "property": self.block_property[block] if len(block) else block}
+        if self.element_compartment is not None:
+            found["compartment"] = self.of_all(self.element_compartment)
+        return found
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """The elements as a grid of PyVista: cell data as of cell_data, and of columns `layer` (0 the
+        highest) and `column` (an index of plan.triangles); field data `block_names`.
+
+        Raises UsageError where PyVista is missing.
+        """
+        data = self.cell_data()
+        if self.plan is not None:
+            data |= {"layer": self.of_all(self.plan.layer), "column": self.of_all(self.plan.column)}
+        return volume_grid(self.points, self.vtk_cells(), data, {"block_names": self.block_names})
 
 
-@dataclass(frozen=True, eq=False)
-class PolyhedralMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class PolyhedralMesh(ShortRepr):
     """A mesh of polyhedra that share faces, in the layout of a model's arrays (docs/dev/geometry.md).
 
     points: (N, 3) float64. face_offsets: (F + 1,) int64; face_vertices: int32; face_cells: (F, 2) int32;
@@ -98,6 +136,28 @@ class PolyhedralMesh:
     def cells(self) -> int:
         """The number of polyhedra."""
         return len(self.cell_block)
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """The polyhedra as a grid of PyVista: cell data `block` (an index of block_names), `property` and
+        `compartment`; field data `block_names`.
+
+        Raises UsageError where PyVista is missing.
+        """
+        assert self.cell_compartment is not None  # __post_init__ makes it
+        block = self.cell_block
+        data = {
+            "block": block,
+            "property": self.block_property[block] if len(block) else block,
+            "compartment": self.cell_compartment,
+        }
+        return polyhedron_grid(
+            self.points,
+            self.face_offsets,
+            self.face_vertices,
+            self.face_cells,
+            data,
+            {"block_names": self.block_names},
+        )
 
     @classmethod
     def of_model(cls, model) -> PolyhedralMesh:

@@ -94,6 +94,10 @@ def mesh_region(
 
     Raises InputRefused where the rings cross or touch in a way that bounds no region, where a length or a
     constraint is none, or where the mesh would not fit the memory; UsageError; Cancelled.
+
+    >>> vertices, triangles = mesh_region([[0, 0], [4, 0], [4, 4], [0, 4]], edge_length=1)
+    >>> vertices.shape[1], triangles.dtype, float(vertices.max())
+    (2, dtype('int32'), 4.0)
     """
     check_mesher(mesher)
     options = MeshOptions(edge_length, mesher, triangles, size, constraints, constraint_points, points)

@@ -17,8 +17,10 @@ from ..base.errors import InputRefused, UsageError
 from ..cells.blocks import Block
 from ..model.model import Model
 from ..model.section import Fence, Section
+from ..notebook import ShortRepr
 from ..project.project import Project
 from ..results.model_boreholes import Interval
+from ..results.tables import block_table, borehole_table
 from .catalog import TILES, Catalog, TileEntry, read_catalog
 from .tile_model import read_model
 
@@ -26,11 +28,11 @@ _KEPT = 4  # models of tiles in memory
 _OFF = 64  # units in the last place beside a border, farther than rounding moves vertices
 
 
-@dataclass(eq=False)
-class Tile:
-    """One tile of a model. column, row: its place, from 0 in the southwest. box: low x, low y, high x,
-    high y. cells, faces, vertices: how many it has. extent: (2, 3), the corners of the box around its
-    vertices. volumes: (B,), of its part of each block. file: its .npz; beside it the same as .vtu."""
+@dataclass(eq=False, repr=False)
+class Tile(ShortRepr):
+    """One tile of a model, with its `name`. column, row: its place, from 0 in the southwest. box: low x, low
+    y, high x, high y. cells, faces, vertices: how many it has. extent: (2, 3), the corners of the box around
+    its vertices. volumes: (B,), of its part of each block. file: its .npz; beside it the same as .vtu."""
 
     column: int
     row: int
@@ -57,10 +59,12 @@ class Tile:
         return read_model(self._project, self.file)
 
 
-@dataclass(eq=False)
-class TiledModel:
-    """A model in tiles, over all tiles: its blocks as of Model. cells of columns count those of the tiles,
-    which borders divide. project: without shapes. patches, unequal: as of Catalog."""
+@dataclass(eq=False, repr=False)
+class TiledModel(ShortRepr):
+    """A model in tiles, over all tiles: `name`, `cell_kind`, `blocks` and `warnings` as of Model; cells of
+    columns count those of the tiles, which borders divide. folder: where it is. x, y: the lines between
+    tiles, model units. project: without shapes. patches: how many quadrilaterals of the borders between tiles
+    were compared, double for double; unequal: those that one side alone has."""
 
     name: str
     folder: Path
@@ -127,6 +131,9 @@ class TiledModel:
             if (low <= place).all() and (place <= high).all():
                 found += self._model(number).borehole(*place.tolist())
         return joined_intervals(found)
+
+    block_table = block_table
+    borehole_table = borehole_table
 
     def _corners(self, tile: Tile) -> np.ndarray:
         """(8, 3) of the box around a tile's vertices."""

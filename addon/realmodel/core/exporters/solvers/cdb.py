@@ -46,7 +46,7 @@ def write_cdb(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
     file.write(b"       -1\n")
     step(0.7)
     sets = ElementFaces(mesh).sets()
-    block = mesh.all_blocks
+    block = mesh.of_all(mesh.element_block)
     present = np.unique(block).tolist()
     names = solver_names(
         [*(mesh.block_names[k] for k in present), *(s.name for s in sets)], longest=_LONGEST_NAME

@@ -38,7 +38,7 @@ def write_f3grid(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]
         write_rows(file, f"Z {name} %d" + " %d" * len(order), numbers, elements[:, order] + 1)
         first += len(elements)
     file.write(b"* ZONE GROUPS\n")
-    block = mesh.all_blocks
+    block = mesh.of_all(mesh.element_block)
     names = distinct_names(mesh.block_names)
     for number in np.unique(block).tolist():
         _group(file, "ZGROUP", names[number], np.flatnonzero(block == number) + 1)

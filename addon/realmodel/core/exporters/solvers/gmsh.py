@@ -30,7 +30,7 @@ def write_msh(mesh: VolumeMesh, file: BinaryIO, step: Callable[[float], None]) -
         for k, s in enumerate(sets, 1)
     ]
     physical = distinct_names([*(s.name for s in sets), *groups])
-    blocks = np.unique(mesh.all_blocks).tolist()
+    blocks = np.unique(mesh.of_all(mesh.element_block)).tolist()
     names = distinct_names(mesh.block_names)
     file.write(b"$MeshFormat\n4.1 1 8\n" + np.array([1], "<i4").tobytes() + b"\n$EndMeshFormat\n")
     lines = [f'2 {k} "{name}"' for k, name in enumerate(physical, 1)]

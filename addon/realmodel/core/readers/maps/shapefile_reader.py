@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from ...base.errors import InputRefused
+from ...base.packages import vendored
 from ...base.text import Step, no_step
-from ...base.vendored import vendored
 from .shapes import Heights, Selection, Shapes
 
 _MAGIC = b"\0\0\x27\x0a"

@@ -18,8 +18,8 @@ import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import ROWS_AT_ONCE, JoinPieces, in_memory, in_pieces
+from ...base.packages import vendored
 from ...base.text import Step, no_step
-from ...base.vendored import vendored
 from ...base.work import native_module, refused_as
 from .raster import Raster, without_values
 
