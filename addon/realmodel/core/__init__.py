@@ -34,6 +34,8 @@ from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
+from .settings.dip_file import DipFile
+from .settings.field_data import Dips
 from .settings.map_layer import MapLayer
 from .settings.point_file import MeshFile, PointFile
 from .settings.variogram import Structure, Variogram
@@ -53,6 +55,8 @@ __all__ = [
     "Contour",
     "CrossValidation",
     "Cut",
+    "DipFile",
+    "Dips",
     "Erosion",
     "Estimate",
     "Fault",

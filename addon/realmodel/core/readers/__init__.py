@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of input files.
 
-Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
-boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
+Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
+of boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
 """
 
 from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
@@ -10,6 +10,7 @@ from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
 from .meshes.off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks, read_boreholes
+from .tables.dips import gradient_of, read_dips
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
 
@@ -20,9 +21,11 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
+    "gradient_of",
     "is_mesh_file",
     "preview_table",
     "read_boreholes",
+    "read_dips",
     "read_mesh",
     "read_off",
     "read_point_file",

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -46,18 +46,23 @@ class Boreholes:
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if not isinstance(self.columns, Mapping):
-            what = f"'columns' must be a table of column names, not {self.columns!r}"
-            raise OptionRefused(what, "columns", 'write columns = { hole = "BHID" }')
-        for name, column in self.columns.items():
-            if name not in COLUMNS:
-                what = f"'columns' has an unknown column '{name}'"
-                raise OptionRefused(what, "columns", f"there are {', '.join(COLUMNS)}")
-            is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
-            if not is_number and not (isinstance(column, str) and column.strip()):
-                what = f"column '{name}' must be a name or a number from 1, not {column!r}"
-                raise OptionRefused(what, "columns")
+        check_column_names(self.columns, COLUMNS, 'write columns = { hole = "BHID" }')
         if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
             what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
             raise OptionRefused(what, "downward_dip")
         check_units(self.units)
+
+
+def check_column_names(columns, known: Sequence[str], advice: str) -> None:
+    """Refuses names or numbers of columns that make no sense. known: the columns that they may be of. Raises
+    OptionRefused."""
+    if not isinstance(columns, Mapping):
+        raise OptionRefused(f"'columns' must be a table of column names, not {columns!r}", "columns", advice)
+    for name, column in columns.items():
+        if name not in known:
+            what = f"'columns' has an unknown column '{name}'"
+            raise OptionRefused(what, "columns", f"there are {', '.join(known)}")
+        is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
+        if not is_number and not (isinstance(column, str) and column.strip()):
+            what = f"column '{name}' must be a name or a number from 1, not {column!r}"
+            raise OptionRefused(what, "columns")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of tables of boreholes, with columns found by their usual names."""
+"""The rows of tables of boreholes and of dips, with columns found by their usual names."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from ...base.errors import InputRefused
 from ...base.text import Step
 from ...settings.boreholes import Boreholes
+from ...settings.dip_file import DipFile
 from .points import Table, open_table
 from .table_layout import Expected, fields, is_number, plain_name
 
@@ -81,7 +82,7 @@ class Row:
         return value
 
 
-def rows(given: Boreholes, file: Path, known: Columns, needed: Sequence[str], step: Step):
+def rows(given: Boreholes | DipFile, file: Path, known: Columns, needed: Sequence[str], step: Step):
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
     names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
@@ -117,7 +118,9 @@ def _parts(body: str, separator: str):
         yield from fields(line, separator)
 
 
-def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
+def _columns(
+    given: Boreholes | DipFile, table: Table, known: Columns, needed: Sequence[str]
+) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     names = [plain_name(name) for name in table.layout.names or ()]
     as_written = [name.strip().lower() for name in table.layout.names or ()]
