@@ -167,7 +167,7 @@ def test_a_point_that_is_left_out_is_estimated_with_all_dips(method, neighbours)
         given = DIPS.positions[chosen], DIPS.gradients[chosen]
         z, variance = dense_kriging_with_dips(others[near], given, place, variogram, use.baseline, drift)
         assert found.z[out] == pytest.approx(z[0], abs=1e-5)
-        assert found.standardised[out] == pytest.approx(
+        assert found.standardized[out] == pytest.approx(
             (z[0] - POINTS[out, 2]) / np.sqrt(variance[0]), abs=1e-4
         )
     assert cross_validate(POINTS, "spline", 0, dips=DIPS).rmse < cross_validate(POINTS, "spline", 0).rmse

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..settings.field_data import Dips
+from ..settings.dips import Dips
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights

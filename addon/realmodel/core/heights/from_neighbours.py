@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.work import native_module
-from ..settings.field_data import Dips
+from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
 from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
 from .interpolation import Result, Task

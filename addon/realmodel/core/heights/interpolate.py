@@ -8,7 +8,7 @@ import numpy as np
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
-from ..settings.field_data import Dips
+from ..settings.dips import Dips
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS, check_method, checked_options
 from . import Interpolation, Task, heights

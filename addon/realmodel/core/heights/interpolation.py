@@ -13,7 +13,7 @@ from ..base.sheet import Sheet
 from ..base.work import Arguments, Work
 from ..base.work import Result as Value
 from ..notebook import ShortRepr
-from ..settings.field_data import Dips
+from ..settings.dips import Dips
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 

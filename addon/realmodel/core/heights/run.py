@@ -10,7 +10,7 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import Work, refused_as
-from ..settings.field_data import Dips
+from ..settings.dips import Dips
 from ..settings.methods import METHODS, SURFACE_OPTIONS, check_takes_dips, checked_options
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated

@@ -2,7 +2,8 @@
 """Readers of input files.
 
 Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
-of boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
+of boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
+their line.
 """
 
 from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
@@ -11,8 +12,10 @@ from .meshes.off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks, read_boreholes
 from .tables.dips import gradient_of, read_dips
+from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
+from .tables.unit_names import UnitNames
 
 __all__ = [
     "MAP_ENDINGS",
@@ -21,12 +24,14 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
+    "UnitNames",
     "gradient_of",
     "is_mesh_file",
     "preview_table",
     "read_boreholes",
     "read_dips",
     "read_mesh",
+    "read_observed_places",
     "read_off",
     "read_point_file",
     "read_points",

@@ -13,9 +13,8 @@ from ...base.elementary import cos, sin
 from ...base.errors import InputRefused
 from ...base.text import Step, no_step
 from ...base.units import MODEL_UNIT, factor
-from ...settings.dip_file import DipFile
+from ...settings.dips import DipFile, Dips
 from ...settings.directions import unit_vector
-from ...settings.field_data import Dips
 from .hole_tables import Row, rows
 from .points import AXES
 

@@ -18,7 +18,7 @@ from ...heights import Interpolation
 from ...heights.mis_ties import contradictions, mean_heights
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
-from ...settings.field_data import Dips
+from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
 from ...surfaces.rock_input import RockInput

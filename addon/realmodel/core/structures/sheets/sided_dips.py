@@ -7,7 +7,7 @@ import numpy as np
 
 from ...base.work import Work, native_module
 from ...project.project import Surface
-from ...settings.field_data import Dips
+from ...settings.dips import Dips
 from ...surfaces.rock_input import RockInput
 from ...surfaces.sides import sides_of
 

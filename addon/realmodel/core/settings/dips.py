@@ -1,13 +1,43 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of a surface beside points on it: dips, and heights that it lies above or below."""
+"""Dips of a surface: arrays, or a table with its import options."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from ..base.errors import InputRefused, place_text
+from .boreholes import check_column_names
+from .point_file import check_units
+
+COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y")
+
+
+@dataclass(frozen=True)
+class DipFile:
+    """file: a table of dips of a surface: x, y, z (optional), dip, and dip_direction or strike, in degrees.
+
+    dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
+    dip direction is 90 degrees clockwise from it. polarity: optional, 1; -1, overturned, is refused.
+    slope_x and slope_y, how much the surface rises along x and along y, may take the place of angles.
+    columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
+    decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
+    model.
+    """
+
+    file: str | Path
+    columns: Mapping = field(default_factory=dict)
+    separator: str | None = None
+    decimal: str | None = None
+    units: str | Mapping | None = None
+
+    def check(self) -> None:
+        """Raises OptionRefused for a key that makes no sense."""
+        check_column_names(self.columns, COLUMNS)
+        check_units(self.units)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,41 +90,6 @@ class Dips:
         where = place_text(tuple(places[differ[0]].tolist()))
         many = "1 position has" if len(differ) == 1 else f"{len(differ)} positions have"
         return kept, f"{many} several dips, one at {where}: their mean slope is used"
-
-
-@dataclass(frozen=True, eq=False)
-class Bounds:
-    """Inequalities of a surface's heights. positions: (N, 2) float64 x, y; lower, upper: (N,) float64: the
-    surface lies at or above, and at or below these heights there; -inf and inf where there is no bound."""
-
-    positions: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.positions)
-
-    def some(self, kept: np.ndarray) -> Bounds:
-        """Some of them. kept: (N,) bool, or their numbers."""
-        return Bounds(self.positions[kept], self.lower[kept], self.upper[kept])
-
-    def checked(self) -> Bounds:
-        """The same as arrays of float64. Raises InputRefused."""
-        count = len(self.positions)
-        positions = _floats(self.positions, (count, 2), "positions of bounds")
-        lower, upper = (
-            _floats(values, (count,), f"{name} of bounds")
-            for name, values in (("lower", self.lower), ("upper", self.upper))
-        )
-        wrong = ~np.isfinite(positions).all(axis=1) | ~(lower <= upper) | (lower == np.inf)
-        bad = np.flatnonzero(wrong | (upper == -np.inf))
-        if len(bad):
-            raise InputRefused(
-                f"bound {bad[0]} at {place_text(positions[bad[0]])} is from {lower[bad[0]]:g} to "
-                f"{upper[bad[0]]:g}, which no height is",
-                item="bounds",
-            )
-        return Bounds(positions, lower, upper)
 
 
 def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
