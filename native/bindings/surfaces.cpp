@@ -104,10 +104,13 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
 using BoundArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
 /// Positions, slopes.
 using SlopeArrays = std::pair<Array<double>, Array<double>>;
+/// Points at or above which, and at or below which heights are.
+using PointBounds = std::pair<Array<double>, Array<double>>;
 
 py::dict dsi(const Array<double>& points, const Array<double>& nodes,
              const Array<std::int32_t>& triangles, const BoundArrays& bounds, double weight,
-             const std::optional<SlopeArrays>& dips, WatchedExecution* execution) {
+             const std::optional<SlopeArrays>& dips, const std::optional<PointBounds>& point_bounds,
+             WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
@@ -119,6 +122,10 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     if (dips) {
         constraints.dips = {rows<2>(dips->first, "positions of dips"),
                             rows<2>(dips->second, "slopes"), 1, 0};
+    }
+    if (point_bounds) {
+        constraints.lower = rows<3>(point_bounds->first, "lower bounds");
+        constraints.upper = rows<3>(point_bounds->second, "upper bounds");
     }
     interpolation::DsiHeights found;
     {
@@ -132,6 +139,7 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     out["misfit"] = found.misfit;
     out["dips_outside"] = found.dips_outside;
     out["dips_missed"] = found.dips_missed;
+    out["bounds_missed"] = found.bounds_missed;
     out["iterations"] = found.iterations;
     out["converged"] = found.converged;
     return out;
@@ -182,16 +190,19 @@ Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
     module.def(
         "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("bounds"),
-        arg("weight") = 0.0, arg("dips") = py::none(), arg("execution") = py::none(),
+        arg("weight") = 0.0, arg("dips") = py::none(), arg("point_bounds") = py::none(),
+        arg("execution") = py::none(),
         R"(Discrete smooth interpolation of points (P, 3) on a mesh: nodes (N, 2), triangles (T, 3).
 
 bounds  three arrays (N,) of heights that nodes have, are not below, are not above; NaN: none; empty: none
 weight  of a point's misfit against the roughness of one node; 0: points hold
 dips    (positions (D, 2), slopes (D, 2): dz/dx and dz/dy) of triangles, or None; met as points are
+point_bounds  (lower (L, 3), upper (U, 3)): x, y, z at or above which, and at or below which the surface
+              is, or None; outside the mesh they say nothing
 
 Returns a dict: z (N,); outside, the number of points in no triangle, which did not count; missed, the
 number of points that could not all be met, and misfit, the largest of theirs; dips_outside and
-dips_missed, as of points; iterations;
+dips_missed, as of points; bounds_missed, the number of point_bounds that are not kept; iterations;
 converged, whether they ended because nothing was left to improve.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "bad_index", "option";
 Cancelled.)");

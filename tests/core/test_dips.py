@@ -211,7 +211,7 @@ def test_several_dips_at_one_place_are_their_mean():
 
 
 def test_methods_that_do_not_use_dips_refuse_them():
-    able = {name for name, method in METHODS.items() if method.takes_dips}
+    able = {name for name, method in METHODS.items() if method.is_constrained}
     assert {"kriging", "universal_kriging", "spline", "auto"} <= able
     for method in set(METHODS) - able - {"parallel", "dsi"}:
         with pytest.raises(InputRefused, match=f"method '{method}' does not use dips"):
@@ -220,7 +220,7 @@ def test_methods_that_do_not_use_dips_refuse_them():
 
 def test_an_automatic_method_uses_dips():
     many = interpolate(POINTS, NODES, "auto", dips=DIPS)
-    assert METHODS[many.method].takes_dips
+    assert METHODS[many.method].is_constrained
     for count in (1, 2, 5):
         few = interpolate(POINTS[:count], NODES, "auto", dips=DIPS)
         assert few.method == "spline"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.algebra import principal_axes
 from ..settings.methods import METHODS, checked_options
-from . import from_neighbours
+from . import bounded, from_neighbours
 from .interpolation import Result, Task, run_method
 
 _FEW = 10  # points: too few for a variogram
@@ -51,7 +51,7 @@ class Trial:
     known: from_neighbours.Structure | None
 
     def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
-        task = replace(task, points=points, nodes=nodes, settings=self.settings)
+        task = replace(task, points=points, nodes=nodes, settings=self.settings, bounds=None)
         if self.known is not None:
             return from_neighbours.krige(task, self.known)
         return run_method(self.candidate.method, task)
@@ -73,7 +73,12 @@ class Trial:
 def automatic(task: Task) -> tuple[str, str, Result]:
     """The chosen method, the reason, and its result."""
     trial, reason = choose(task)
-    return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
+    if task.bounds is None:
+        return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
+    if task.bounds is None:
+        return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
+    task = replace(task, settings=trial.settings)
+    return trial.candidate.method, reason, bounded.interpolated(trial.candidate.method, task)
 
 
 def choose(task: Task) -> tuple[Trial, str]:
@@ -111,7 +116,7 @@ def choose(task: Task) -> tuple[Trial, str]:
 
 
 def _is_able(candidate: Candidate, task: Task) -> bool:
-    return task.dips is None or METHODS[candidate.method].takes_dips
+    return task.dips is None or METHODS[candidate.method].is_constrained
 
 
 def _trial(task: Task, candidate: Candidate) -> Trial:

@@ -66,7 +66,7 @@ class Draw:
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
         interpolated = heights(
-            own.method, replace(task, points=drawn, settings=plain, surfaces={}, dips=dips)
+            own.method, replace(task, points=drawn, settings=plain, surfaces={}, dips=dips, bounds=None)
         )
         z = own.result.z + (at_nodes - interpolated.z)
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))

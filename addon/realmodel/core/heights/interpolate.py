@@ -8,6 +8,7 @@ import numpy as np
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
+from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS, check_method, checked_options
@@ -23,6 +24,7 @@ def interpolate(
     threads: int = 0,
     *,
     dips: Dips | None = None,
+    bounds: Bounds | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     **options,
@@ -34,7 +36,7 @@ def interpolate(
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
     neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
     16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
-    dips: slopes of the surface, for methods that use them.
+    dips, bounds: slopes of the surface, and heights that it lies above or below, for methods that use them.
 
     Points at one place count once; where their heights differ a little (mis-ties of measured lines, up to
     a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
@@ -57,7 +59,7 @@ def interpolate(
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            return heights(method, Task(work, points, nodes, settings, triangles, dips=dips))
+            return heights(method, Task(work, points, nodes, settings, triangles, dips=dips, bounds=bounds))
 
     return run(task, progress, cancel, threads=threads)
 

@@ -36,6 +36,7 @@ def dsi(task: Task) -> Result:
         (equal, least, most),
         settings["weight"] or 0.0,
         dips,
+        None if task.bounds is None else (task.bounds.lower, task.bounds.upper),
     )
     warnings = []
     if found["outside"]:
@@ -56,6 +57,11 @@ def dsi(task: Task) -> Result:
         warnings.append(
             "some dips cannot be honored on this mesh beside the points in their triangles: use a shorter "
             "edge_length, or give points a weight"
+        )
+    if found["bounds_missed"]:
+        warnings.append(
+            f"{found['bounds_missed']} bounds cannot be kept on this mesh beside its points: use a shorter "
+            "edge_length"
         )
     if not found["converged"]:
         warnings.append(

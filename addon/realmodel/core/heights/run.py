@@ -11,10 +11,10 @@ from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import Work, refused_as
 from ..settings.dips import Dips
-from ..settings.methods import METHODS, SURFACE_OPTIONS, check_takes_dips, checked_options
-from . import automatic
+from ..settings.methods import METHODS, SURFACE_OPTIONS, check_uses_dips, checked_options
+from . import automatic, bounded
 from .extrapolation import outside_hull, replace_extrapolated
-from .interpolation import Interpolation, Result, Task, run_method
+from .interpolation import Interpolation, Result, Task
 from .mis_ties import without_mis_ties
 
 
@@ -32,7 +32,7 @@ def heights(method: str, task: Task) -> Interpolation:
             settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
             task = replace(task, settings=settings)
         else:
-            result = run_method(method, task)
+            result = bounded.interpolated(method, task)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     warnings = [*([mis_ties] if mis_ties else []), *of_dips]
@@ -58,7 +58,7 @@ def with_dips(method: str, task: Task) -> tuple[Task, list[str]]:
     OptionRefused where the method does not use dips."""
     if task.dips is None or not len(task.dips):
         return replace(task, dips=None), []
-    check_takes_dips(method)
+    check_uses_dips(method)
     dips, warning = task.dips.merged()
     return replace(task, dips=dips), [warning] if warning else []
 
@@ -134,4 +134,4 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
 def left_out_heights(method: str, task: Task) -> Result:
     """The height of each point, estimated from the others by a method that leaves one out."""
     with refused_as(refused_points):
-        return run_method(method, replace(task, nodes=np.empty((0, 2)), left_out=True))
+        return bounded.interpolated(method, replace(task, nodes=np.empty((0, 2)), left_out=True))

@@ -30,7 +30,7 @@ from ..settings.methods import (
     METHODS,
     SURFACE_OPTIONS,
     check_method,
-    check_takes_dips,
+    check_uses_dips,
     checked_options,
 )
 from ..settings.observation_file import ObservationFile
@@ -126,6 +126,11 @@ class Surface(Shaped):
         """The dips of a surface that is read."""
         assert self.dips is None or isinstance(self.dips, Dips)
         return self.dips
+
+    @builtins.property  # a field of this class is called property
+    def has_bounds(self) -> bool:
+        """Whether heights are known that it lies above or below."""
+        return self.bounds is not None and len(self.bounds) > 0
 
     def contact_array(self) -> np.ndarray:
         """(C, 3) float64 its contacts; none where it has none."""
@@ -404,7 +409,7 @@ def _check_dips(surface: Surface, refuse) -> None:
     if not surface.interpolated:
         raise refuse("'dips' has no effect, as a mesh is not interpolated", "dips")
     with refused_by(refuse):
-        check_takes_dips(surface.method or DEFAULT_METHOD)
+        check_uses_dips(surface.method or DEFAULT_METHOD)
 
 
 def _check_continuation(surface: Surface, refuse) -> None:

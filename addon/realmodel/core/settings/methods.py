@@ -32,9 +32,9 @@ class Method:
     instead_of_points: the option that takes the place of points, if any. on_mesh: it needs the triangles of
     the nodes. leaves_one_out: it estimates each point from the others in one run. is_local: its heights at a
     node do not depend on the other nodes, and it is cheap. is_triangulated: it works on the triangulation of
-    the points. spreads_thickness: `parallel` may use it. takes_dips: it uses dips. has_shape: one or two
-    points are too few for its surface. tamed_by: the advice where its heights go far beyond those of the
-    points.
+    the points. spreads_thickness: `parallel` may use it. is_constrained: it uses dips and bounds. has_shape:
+    one or two points are too few for its surface. tamed_by: the advice where its heights go far beyond those
+    of the points.
     """
 
     label: str
@@ -47,7 +47,7 @@ class Method:
     is_local: bool = False
     is_triangulated: bool = False
     spreads_thickness: bool = False
-    takes_dips: bool = False
+    is_constrained: bool = False
     has_shape: bool = True
     tamed_by: str | None = None
 
@@ -207,7 +207,7 @@ METHODS: dict[str, Method] = {
         leaves_one_out=True,
         is_local=True,
         spreads_thickness=True,
-        takes_dips=True,
+        is_constrained=True,
     ),
     "universal_kriging": Method(
         "Universal Kriging",
@@ -228,7 +228,7 @@ METHODS: dict[str, Method] = {
         },
         leaves_one_out=True,
         is_local=True,
-        takes_dips=True,
+        is_constrained=True,
         tamed_by='its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
     ),
     "idw": Method(
@@ -267,7 +267,7 @@ METHODS: dict[str, Method] = {
             **_EXTRAPOLATE,
         },
         is_local=True,
-        takes_dips=True,
+        is_constrained=True,
         tamed_by='use smoothing, or extrapolate = "nearest"',
     ),
     "dsi": Method(
@@ -291,7 +291,7 @@ METHODS: dict[str, Method] = {
             **_EXTRAPOLATE,
         },
         on_mesh=True,
-        takes_dips=True,
+        is_constrained=True,
         tamed_by="points that differ much within a triangle make it steep: give points a weight",
     ),
     "natural_neighbour": Method(
@@ -390,7 +390,7 @@ METHODS: dict[str, Method] = {
         "Chooses the method with the smallest cross-validation error",
         None,
         _EXTRAPOLATE,
-        takes_dips=True,
+        is_constrained=True,
     ),
 }
 
@@ -428,12 +428,12 @@ def check_method(method: str) -> None:
     raise OptionRefused(f"unknown method '{method}'", option="method", advice=advice)
 
 
-def check_takes_dips(method: str) -> None:
+def check_uses_dips(method: str) -> None:
     """Refuses a method that dips have no effect on."""
     check_method(method)
-    if METHODS[method].takes_dips:
+    if METHODS[method].is_constrained:
         return
-    able = ", ".join(name for name, each in METHODS.items() if each.takes_dips)
+    able = ", ".join(name for name, each in METHODS.items() if each.is_constrained)
     raise OptionRefused(f"method '{method}' does not use dips", option="dips", advice=f"{able} use them")
 
 

@@ -188,9 +188,11 @@ def local_surfaces(rock: Rock) -> set[int]:
 
 def is_local(surface: Surface) -> bool:
     """Whether the heights of a surface at some nodes do not depend on others."""
-    if not surface.interpolated or surface.dips is not None:  # dips are few: they are not divided
+    if not surface.interpolated:
         return False
     method, settings = surface.method_options()
+    if METHODS[method].is_constrained and (surface.dips is not None or surface.has_bounds):
+        return False  # how dips and bounds count depends on all of them
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):
         return False
     if method == "parallel":

@@ -98,7 +98,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            result = give(method, replace(task, dips=surface.known_dips()))
+            result = give(method, replace(task, dips=surface.known_dips(), bounds=surface.bounds))
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes

@@ -17,6 +17,7 @@ struct DsiConstraints {
     std::span<const double> equal;  ///< heights that nodes have, such as a fixed border
     std::span<const double> least;  ///< lower bounds
     std::span<const double> most;   ///< upper bounds
+    std::span<const std::array<double, 3>> lower{}, upper{};  ///< x, y, z: bounds anywhere
     Dips dips{};  ///< slopes that triangles have; met as points are. The baseline is not used
 };
 
@@ -27,6 +28,7 @@ struct DsiHeights {
     double misfit = 0;              ///< the largest of theirs
     std::int64_t dips_outside = 0;  ///< as of points
     std::int64_t dips_missed = 0;
+    std::int64_t bounds_missed = 0;
     int iterations = 0;     ///< of conjugate gradients, in all
     bool converged = true;  ///< whether the heights are as smooth as possible, to 1e-9
 };

@@ -70,6 +70,15 @@ void check_constraints(const DsiConstraints& c, std::size_t nodes) {
     }
 }
 
+void check_bounds(std::span<const std::array<double, 3>> bounds) {
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        if (usable(bounds[i][0]) && usable(bounds[i][1]) && usable(bounds[i][2])) continue;
+        throw InputError("not_finite",
+                         "bound " + std::to_string(i) + " is not a finite number below 1e150", -1,
+                         {static_cast<std::int64_t>(i)});
+    }
+}
+
 /// Everything between input and heights.
 class Interpolation {
 public:
@@ -94,6 +103,9 @@ public:
         subtract_plane();
         add_nodes(constraints.least, Kind::kLeast);
         add_nodes(constraints.most, Kind::kMost);
+        add_bounds(constraints.lower, Kind::kLeast, locator, triangles);
+        add_bounds(constraints.upper, Kind::kMost, locator, triangles);
+        tighten_bounds();
         hold_tilt();
     }
 
@@ -110,6 +122,8 @@ public:
         out.iterations = iterations_;
         out.converged = system_->converged();
         for (const Constraint& c : constraints_) {
+            const bool is_bound = c.kind == Kind::kLeast || c.kind == Kind::kMost;
+            if (is_bound && !c.of_node && c.violation(z) > 2 * kMet * range_) ++out.bounds_missed;
             const bool exact_point = c.kind == Kind::kEqual && !c.of_node;
             if (!exact_point || c.violation(z) <= 1e3 * kMet * range_) continue;
             if (c.is_rise()) {
@@ -139,16 +153,44 @@ private:
                 ++outside_;
                 continue;
             }
-            Constraint c{{}, found->weights, 0, weighted ? Kind::kWeighted : Kind::kEqual, height};
-            for (std::size_t k = 0; k < 3; ++k)
-                c.nodes[k] = mesh_.new_number[triangles[found->triangle][k]];
-            const auto most = std::max_element(c.weights.begin(), c.weights.end());
-            if (*most > 1 - 1e-12) {
-                c.nodes.fill(c.nodes[most - c.weights.begin()]);
-                c.weights = {1, 0, 0};
-            }
-            c.strength = (weighted ? weight_ : kExactStrength) * system_->stiffness(c.nodes);
-            constraints_.push_back(c);
+            add_height(*found, triangles, weighted ? Kind::kWeighted : Kind::kEqual, height);
+        }
+    }
+
+    Constraint& add_height(const spatial::MeshLocator::Found& found,
+                           std::span<const Triangle> triangles, Kind kind, double height) {
+        Constraint c{{}, found.weights, 0, kind, height};
+        for (std::size_t k = 0; k < 3; ++k)
+            c.nodes[k] = mesh_.new_number[triangles[found.triangle][k]];
+        const auto most = std::max_element(c.weights.begin(), c.weights.end());
+        if (*most > 1 - 1e-12) {
+            c.nodes.fill(c.nodes[most - c.weights.begin()]);
+            c.weights = {1, 0, 0};
+        }
+        const double strength = kind == Kind::kWeighted ? weight_ : kExactStrength;
+        c.strength = strength * system_->stiffness(c.nodes);
+        constraints_.push_back(c);
+        return constraints_.back();
+    }
+
+    /// Bounds outside the mesh say nothing.
+    void add_bounds(std::span<const std::array<double, 3>> bounds, Kind kind,
+                    const spatial::MeshLocator& locator, std::span<const Triangle> triangles) {
+        for (const auto& [x, y, height] : bounds) {
+            const auto found = locator.find({x, y});
+            if (!found) continue;
+            Constraint& c = add_height(*found, triangles, kind, height);
+            c.height -= plane_at(c.position(mesh_.nodes));
+            range_ = std::max(range_, std::abs(c.height));
+        }
+    }
+
+    /// Bounds of points are kept to the last digit: what the rounds leave is kept on their side.
+    void tighten_bounds() {
+        for (Constraint& c : constraints_) {
+            if (c.of_node || c.is_rise()) continue;
+            if (c.kind == Kind::kLeast) c.height += kMet * range_;
+            if (c.kind == Kind::kMost) c.height -= kMet * range_;
         }
     }
 
@@ -377,6 +419,8 @@ DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Po
     require_finite_nodes(nodes);
     check_constraints(constraints, nodes.size());
     check_dips(constraints.dips);
+    check_bounds(constraints.lower);
+    check_bounds(constraints.upper);
     if (nodes.empty() || triangles.empty()) {
         throw InputError("option",
                          "there is no mesh: discrete smooth interpolation needs triangles");

@@ -18,6 +18,7 @@ from ...heights import Interpolation
 from ...heights.mis_ties import contradictions, mean_heights
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
+from ...project.project import Surface
 from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
@@ -60,6 +61,9 @@ class InterpolatedSurface:
         self.counts = self._that_count()
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
         self.dips, self.dip_sides = sided_dips(work, self.surface, entry)
+        self.bounds = self.surface.bounds
+        if self.bounds is not None:
+            self.bound_sides = sides_of(work, self.bounds.places, structure.faults)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most = (-1, None)
@@ -117,12 +121,28 @@ class InterpolatedSurface:
         shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
         return are_few(self.surface, shown, self.entry.planar_mesh().vertices, self._within(family))
 
-    def _own_dips(self, family: Family, hidden: np.ndarray | None = None) -> Dips | None:
-        """The dips in its compartments. hidden: (D,) bool, those that do not count."""
-        if self.dips is None:
-            return None
-        own = self._within(family).has(self.dip_sides)
-        return self.dips.some(own if hidden is None else own & ~hidden)
+    def _own_dips(self, family: Family) -> Dips | None:
+        return None if self.dips is None else self.dips.some(self._within(family).has(self.dip_sides))
+
+    def _constrained(self, surface: Surface, family: Family, beside: Sequence[tuple] = ()) -> Surface:
+        """The surface with its dips and bounds in a family's compartments. beside: faults that die out there,
+        the side of each that is asked for, and its trace: what lies beside that on the other side does not
+        count."""
+        dips, bounds = self.dips, surface.bounds
+        if dips is not None:
+            dips = dips.some(self._that_constrain(family, dips.positions, self.dip_sides, beside))
+        if self.bounds is not None:
+            plan = np.ascontiguousarray(self.bounds.places[:, :2])
+            bounds = self.bounds.some(self._that_constrain(family, plan, self.bound_sides, beside))
+        return replace(surface, dips=dips, bounds=bounds)
+
+    def _that_constrain(
+        self, family: Family, plan: np.ndarray, sides: np.ndarray, beside: Sequence[tuple]
+    ) -> np.ndarray:
+        own = self._within(family).has(sides)
+        for fault, side, trace in beside:
+            own &= (sides[:, fault] != -side) | ~trace.beside(plan)
+        return own
 
     def _certain(self, family: Family) -> np.ndarray:
         """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
@@ -180,8 +200,8 @@ class InterpolatedSurface:
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
         trend = None if trends is None else trends[first]
-        with_dips = replace(self.surface, dips=self._own_dips(family))
-        common = self._interpolated(family, first, own, with_dips, trend)
+        constrained = self._constrained(self.surface, family)
+        common = self._interpolated(family, first, own, constrained, trend)
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.divided().faults.shapes[fault] for fault in family.dying]
@@ -203,7 +223,7 @@ class InterpolatedSurface:
             for side in (-1, 1)
         }
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
-        settled = _settled(with_dips, self.made[common][0])
+        settled = _settled(constrained, self.made[common][0])
         counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
@@ -214,13 +234,12 @@ class InterpolatedSurface:
                     away |= hidden[number, side]
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
-            surface = settled
-            if self.dips is not None:
-                beyond = np.zeros(len(self.dips), bool)
-                for number, side in zip(met, sides, strict=True):
-                    other = self.dip_sides[:, family.dying[number]] == -side
-                    beyond |= other & traces[number].beside(self.dips.positions) & (side != 0)
-                surface = replace(settled, dips=self._own_dips(family, beyond))
+            beside = [
+                (family.dying[number], side, traces[number])
+                for number, side in zip(met, sides, strict=True)
+                if side
+            ]
+            surface = self._constrained(settled, family, beside)
             lips = [
                 Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
                 for number, side in zip(met, sides, strict=True)
