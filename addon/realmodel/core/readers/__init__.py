@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of input files.
 
-Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
-boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
+Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
+of boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
 their line.
 """
 
@@ -11,6 +11,7 @@ from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
 from .meshes.off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks, read_boreholes
+from .tables.dips import gradient_of, read_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
@@ -24,9 +25,11 @@ __all__ = [
     "Picks",
     "TablePreview",
     "UnitNames",
+    "gradient_of",
     "is_mesh_file",
     "preview_table",
     "read_boreholes",
+    "read_dips",
     "read_mesh",
     "read_observed_places",
     "read_off",

@@ -171,6 +171,7 @@ SURFACE = {
     "points": _OTHER,
     **READING,
     "mesh": _OTHER,
+    "dips": _OTHER,
     "method": Setting(
         DEFAULT_METHOD,
         kind="word",
