@@ -6,6 +6,8 @@ extras (`realmodel[notebook]`)."""
 from __future__ import annotations
 
 import importlib
+import importlib.util
+import sys
 from types import ModuleType
 from typing import Any
 
@@ -43,7 +45,17 @@ def extra(module: str, purpose: str, name: str = "notebook") -> Any:
         raise missing(module.partition(".")[0], purpose, name, f" ({error})") from error
 
 
+def require_extra(module: str, name: str, purpose: str) -> None:
+    """Raises UsageError where a module of an optional package is not installed; it is not imported."""
+    if importlib.util.find_spec(module) is None:
+        raise missing(module, purpose, name)
+
+
 def missing(package: str, purpose: str, name: str, cause: str = "") -> UsageError:
     """The error that says which extra has a package. cause: of what Python says."""
     text = f"{purpose} needs {package}, which cannot be imported{cause}"
+    if "bpy" in sys.modules:  # the add-on: it was not installed by pip
+        return UsageError(
+            f'{text}; install it for Blender\'s Python: "{sys.executable}" -m pip install {package}'
+        )
     return UsageError(f'{text}; install it: pip install "realmodel[{name}]"')

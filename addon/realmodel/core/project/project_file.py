@@ -53,7 +53,8 @@ def load_project(path: str | Path) -> Project:
     units = top.text("units") or MODEL_UNIT
     if units not in METERS:
         raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METERS)}")
-    project = Project(name, rocks, library, path, units, faults, bodies)
+    crs = _values(top, PROJECT, ("crs",)).get("crs")
+    project = Project(name, rocks, library, path, units, faults, bodies, crs)
     check_project(project)
     return project
 
@@ -172,7 +173,7 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     if not isinstance(given, dict):
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
-    said = ("columns", "separator", "decimal", "units", "downward_dip")
+    said = ("columns", "separator", "decimal", "units", "downward_dip", "layer")
     keys.allow_only(("picks", "collars", "survey", *said))
     values = {name: given[name] for name in said if name in given}
     for name in ("collars", "survey"):

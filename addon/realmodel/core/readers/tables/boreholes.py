@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import numpy as np
 
 from ...base.errors import InputRefused, number_list
 from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factor
 from ...settings.boreholes import Boreholes
 from .hole_directions import HoleDirections, is_inclined
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
@@ -28,16 +26,15 @@ class Picks:
     warnings: list[str] = field(default_factory=list)
 
 
-def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Picks:
-    """The points of every surface that the picks name, in the model's unit and the order of the table.
+def read_borehole_tables(given: Boreholes, step: Step, scale: np.ndarray) -> Picks:
+    """The points of every surface that the picks name, in the order of the table. scale (3,): the factors to
+    the model's unit.
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
     (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
     depth are left out with a warning: the hole did not reach the surface.
     Raises InputRefused naming file and line.
     """
-    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
-    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
     holes = _Holes(given)
     found: dict[str, list] = {}
     met: dict[str, tuple] = {}
