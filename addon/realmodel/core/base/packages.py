@@ -8,6 +8,9 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
@@ -43,6 +46,20 @@ def extra(module: str, purpose: str, name: str = "notebook") -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise missing(module.partition(".")[0], purpose, name, f" ({error})") from error
+
+
+def omf_library(purpose: str) -> Any:
+    """The package omf. Raises UsageError where it cannot be imported."""
+    with quiet():
+        return extra("omf", purpose, "omf")
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Within it Python says nothing of what it will no longer have, which old packages use."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
 
 
 def require_extra(module: str, name: str, purpose: str) -> None:

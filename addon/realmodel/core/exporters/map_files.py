@@ -28,7 +28,6 @@ AREAS, CONTOURS = "geology", "contours"
 _TOP = "top of the model"
 _POLYGONS, _LINE = 6, 2  # well-known binary: several polygons, a line
 _UNDEFINED = -1  # the plane system that is not known, of GeoPackages
-_OWN_SYSTEM = 100_000  # of one that is not EPSG's
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,15 +158,13 @@ CREATE TABLE gpkg_geometry_columns (
 
 
 def _write_system(base: sqlite3.Connection, crs: str | None) -> int:
-    """The number of the coordinate system in the file; one that the project names gets its row. Programs know
-    the definition by the code."""
-    if crs is None:
+    """The number of the coordinate system in the file. EPSG's get their row: programs know the definition by
+    the code. That of others we do not have."""
+    number = epsg_code(crs)
+    if number is None:
         return _UNDEFINED
-    authority, _, code = crs.partition(":")
-    number = epsg_code(crs) or _OWN_SYSTEM
     base.execute(
-        "INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, 'undefined', NULL)",
-        [crs, number, authority.upper(), int(code) if code.isdecimal() else number],
+        "INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, 'undefined', NULL)", [crs, number, number]
     )
     return number
 

@@ -39,8 +39,8 @@ PROJECT = {
         label="CRS",
         tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
         check=checked_crs,
-        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoTIFF, GeoPackage, "
-        "GeoJSON, geoh5 and OMF files name it",
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 and "
+        "OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
     ),
     **dict.fromkeys(("rock", "fault", "body"), _OTHER),
 }

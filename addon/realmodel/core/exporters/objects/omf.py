@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ...base.atomic import Outputs
-from ...base.omf_library import omf_library, quiet
+from ...base.packages import omf_library, quiet
 from ...results.regular_cells import regular_cells
 from ..shapes.parts import Part
 from .contents import BlockShell, Contents, Hole, SurfaceShape, largest_share, stable_uuid

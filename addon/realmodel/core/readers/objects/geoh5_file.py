@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.packages import extra
+from ...base.packages import extra, quiet
 from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
 
 _MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -30,10 +29,8 @@ def open_geoh5(file: Path) -> Iterator[OpenFile]:
     library = extra("geoh5py", "reading geoh5", "geoh5")
     if file.suffix != _ENDING:
         raise ValueError(f"its name does not end in {_ENDING}")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what the file lacks
-        with library.Workspace(file, mode="r") as workspace:
-            yield _Geoh5File(workspace)
+    with quiet(), library.Workspace(file, mode="r") as workspace:
+        yield _Geoh5File(workspace)
 
 
 class _Geoh5File:

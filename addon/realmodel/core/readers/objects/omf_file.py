@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ...base.omf_library import omf_library, quiet
+from ...base.packages import omf_library, quiet
 from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
 
 _MAGIC = b"\x84\x83\x82\x81"
