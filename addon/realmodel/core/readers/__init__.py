@@ -2,7 +2,8 @@
 """Readers of input files.
 
 Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
-boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
+boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
+their line.
 """
 
 from .borehole_input import read_boreholes
@@ -12,8 +13,10 @@ from .meshes.off import read_off
 from .objects.object_file import OBJECT_ENDINGS, objects_in
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks
+from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
+from .tables.unit_names import UnitNames
 
 __all__ = [
     "MAP_ENDINGS",
@@ -23,11 +26,13 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
+    "UnitNames",
     "is_mesh_file",
     "objects_in",
     "preview_table",
     "read_boreholes",
     "read_mesh",
+    "read_observed_places",
     "read_off",
     "read_point_file",
     "read_points",

@@ -89,6 +89,8 @@ ROCK = {
     ),
     "constraints": _OTHER,
     "boreholes": _OTHER,
+    "observations": _OTHER,
+    "names": _OTHER,
 }
 
 SIZE = {

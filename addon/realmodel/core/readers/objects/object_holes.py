@@ -13,8 +13,9 @@ from ...base.errors import InputRefused
 from ...base.text import Step
 from ...settings.boreholes import Boreholes
 from ..tables.boreholes import Picks
-from ..tables.hole_tables import NO_VALUE, PICKS
+from ..tables.hole_tables import PICKS
 from ..tables.table_layout import names_shown, plain_name
+from ..tables.unit_names import UnitNames
 from .geo_object import HOLE, LINES, POINTS, GeoObject, Values
 from .object_file import read_objects
 
@@ -22,14 +23,15 @@ _KINDS = (HOLE, LINES, POINTS)
 _BLOCK = "block"  # how intervals are called where no pick is
 
 
-def read_hole_objects(given: Boreholes, step: Step, scale: np.ndarray) -> Picks:
+def read_hole_objects(given: Boreholes, step: Step, scale: np.ndarray, units: UnitNames) -> Picks:
     """The picks of the boreholes of a file, or of the object `layer`. scale (3,): the factors to the model's
-    unit.
+    unit. units: what the names in it mean.
 
     An object's points that name a surface are picks; intervals that name one have it at their top, where the
     interval above has another name. `hole` among its data names the hole, else the object's name does.
     Raises InputRefused naming the file and the object.
     """
+    assert given.picks is not None
     file = Path(given.picks)
     picks = Picks()
     found_points: dict[str, list[np.ndarray]] = {}
@@ -37,7 +39,10 @@ def read_hole_objects(given: Boreholes, step: Step, scale: np.ndarray) -> Picks:
     kinds = (HOLE,) if given.layer is None else _KINDS
     found = read_objects(file, given.layer, kinds)
     for number, each in enumerate(found):
-        for surface, hole, place, collar in _picks_of(each, given):
+        for name, hole, place, collar in _picks_of(each, given):
+            surface = units.surface(name)
+            if units.says_nothing(name) or not surface:
+                continue
             if not np.isfinite(place).all():
                 missing += 1
                 continue
@@ -57,7 +62,7 @@ def read_hole_objects(given: Boreholes, step: Step, scale: np.ndarray) -> Picks:
 
 
 def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np.ndarray, np.ndarray | None]]:
-    """Surface, hole, place (3,) and collar of each pick of an object."""
+    """Name of the surface, hole, place (3,) and collar of each pick of an object."""
     values, column = _table(found, given)
     names = _texts(values.columns[column])
     hole = _column(values, given.columns.get("hole"), PICKS["hole"])
@@ -66,7 +71,7 @@ def _picks_of(found: GeoObject, given: Boreholes) -> Iterator[tuple[str, str, np
     for name, own, place in zip(names, holes, values.places, strict=True):
         repeats = values.are_intervals and (name, own) == before
         before = (name, own)
-        if not repeats and name.lower() not in NO_VALUE:
+        if not repeats:
             yield name, own, place, found.collar
 
 
