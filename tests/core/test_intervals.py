@@ -355,6 +355,16 @@ def test_arrays_and_own_points_go_together():
     ]
 
 
+def test_a_surface_that_needs_no_points_gets_none_from_bounds():
+    surfaces = [Surface("S0", method="constant", options={"value": 3.0}), Surface("S1", method="tin")]
+    seen = Observations([[1, 1, 8], [8, 1, 8], [5, 8, 8], [5, 5, 1]], ["S1", "S1", "S1", "S0"])
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-3.0, observations=seen)
+    model = build(Project("p", [rock]))
+    points = [surface.point_array().tolist() for surface in model.project.rocks[0].surfaces]
+    assert points[0] == [] and len(points[1]) == 4
+    assert [warning.surface for warning in model.warnings if warning.kind == "no_contact"] == ["S1"]
+
+
 def level_logs(places, throws, tops=(6.0, 4.0)):
     """Intervals of vertical holes through level surfaces that are lower by the throw at each place."""
     rows = []

@@ -90,7 +90,7 @@ def _with_points(
         return surface, met
     if surface.point_file is None:
         surface = replace(surface, points=surface.own_points())
-    is_alone = surface.points is None and met is None
+    is_alone = surface.points is None and met is None and surface.needs_points
     contacts = contacts_for(derived, number, is_alone)
     surface = replace(surface, contacts=contacts if len(contacts) else None)
     known = [each for each in (met, contacts) if each is not None and len(each)]
