@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of input files.
 
-Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
-boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
+Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
+of boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
 their line.
 """
 
@@ -13,6 +13,7 @@ from .meshes.off import read_off
 from .objects.object_file import OBJECT_ENDINGS, objects_in
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks
+from .tables.dips import gradient_of, read_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
@@ -27,10 +28,12 @@ __all__ = [
     "Picks",
     "TablePreview",
     "UnitNames",
+    "gradient_of",
     "is_mesh_file",
     "objects_in",
     "preview_table",
     "read_boreholes",
+    "read_dips",
     "read_mesh",
     "read_observed_places",
     "read_off",

@@ -187,6 +187,7 @@ SURFACE = {
     "points": _OTHER,
     **READING,
     "mesh": _OTHER,
+    "dips": _OTHER,
     "method": Setting(
         DEFAULT_METHOD,
         kind="word",
