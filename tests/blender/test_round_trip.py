@@ -19,6 +19,7 @@ EVERY_KEY = """
 format = 1
 name = "every key"
 units = "ft"
+crs = "EPSG:25832"
 library = "library.toml"
 
 [[rock]]
@@ -277,6 +278,7 @@ def said(project):
     return {
         "name": project.name,
         "units": project.units,
+        "crs": project.crs,
         "library": [vars(entry) for entry in project.library or ()],
         "rocks": [_rock(rock) for rock in rocks],
         "structures": [_structure(entry) for entry in (*faults, *bodies)],

@@ -98,7 +98,9 @@ def compose(scene, depsgraph, whole=True):
     group = scene.realmodel
     if not len(group.rocks):
         raise InputRefused("there is no rock mass", advice="add one, or open a project file")
-    project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
+    project = Project(
+        group.name, [], library_rows.library_of(scene), units=group.units, crs=group.crs.strip() or None
+    )
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     source = _Source(scene, depsgraph, whole)
     for number, row in enumerate(group.rocks):
@@ -369,7 +371,7 @@ def fill(scene, project):
         group.rocks.clear()
         group.results.clear()
         group.active_rock = group.stage = 0
-        group.name, group.units = project.name, project.units
+        group.name, group.units, group.crs = project.name, project.units, project.crs or ""
         group.exists = True
         group.version = settings.VERSION
         group.project_file = str(project.path or "")
