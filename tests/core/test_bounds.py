@@ -2,6 +2,7 @@
 """Inequalities of heights, against quadratic programs solved by brute force."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,8 +18,12 @@ from realmodel.core import (
     interpolate,
     mesh_region,
 )
-from realmodel.core.base.work import native_module
+from realmodel.core.base.work import Work, native_module
 from realmodel.core.heights.bounded import TOLERANCE, consistent
+from realmodel.core.heights.draws import Draw
+from realmodel.core.heights.interpolation import Task
+from realmodel.core.heights.turning_bands import Frame, Noise
+from realmodel.core.settings.methods import checked_options
 from structure_cases import heights_at, plane_fault, prepared
 
 VARIOGRAM = {"model": "matern52", "range": 60.0, "sill": 40.0}
@@ -189,6 +194,25 @@ def test_ten_thousand_bounds_are_affordable():
     bounds = random_bounds(10_000, 21)
     z = interpolate(points, np.ascontiguousarray(bounds.places[:, :2]), variogram=VARIOGRAM, bounds=bounds).z
     assert missed(z, bounds) <= TOLERANCE * height_range(bounds)
+
+
+@pytest.mark.parametrize("nugget", [0.0, 1.0])
+def test_realizations_keep_bounds(nugget):
+    bounds = random_bounds(60, 15)
+    settings = checked_options("kriging", {"variogram": {**VARIOGRAM, "nugget": nugget}, "neighbours": 8})
+    places = np.ascontiguousarray(bounds.places[:, :2])
+    task = Task(Work(), POINTS, places, settings, bounds=bounds)
+    drawn = []
+    for seed in (1, 2):
+        draw = Draw(Frame(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
+        drawn.append(draw.heights("kriging", task).z)
+        if not nugget:
+            assert missed(drawn[-1], bounds) <= 1e-7
+        free = Draw(Frame(np.zeros(2), np.full(2, 100.0)), Noise((seed, 0)), {})
+        assert missed(free.heights("kriging", replace(task, bounds=None)).z, bounds) > 1
+        at_points = draw.heights("kriging", replace(task, nodes=np.ascontiguousarray(POINTS[:, :2])))
+        np.testing.assert_allclose(at_points.z, POINTS[:, 2], atol=1e-9)
+    assert abs(drawn[0] - drawn[1]).max() > 0.1
 
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])

@@ -59,7 +59,7 @@ def interpolated(method: str, task: Task) -> Result:
         kept[given.left_out] = False
         result = run_method(method, replace(task, bounds=bounds.some(kept)))
         return replace(result, warnings=[*result.warnings, *contradiction_warnings(bounds, given.left_out)])
-    run = _runner(method, free)
+    run = runner(method, free)
 
     give = Heights(replace(free, left_out=False), run, METHODS[method].leaves_one_out)
     active = active_bounds(task.work, task.points, given, give)
@@ -99,7 +99,12 @@ class Heights:
         return z
 
 
-def _runner(method: str, task: Task) -> Callable[[Task], Result]:
+def holds_bounds(method: str) -> bool:
+    """Whether bounds count as points in a method."""
+    return METHODS[method].is_constrained and not METHODS[method].on_mesh
+
+
+def runner(method: str, task: Task) -> Callable[[Task], Result]:
     """The method with what it finds from the points alone."""
     if "variogram" in task.settings:
         known = from_neighbours.structure(task)

@@ -14,12 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..readers.tables.observations import Bounds
 from ..settings.dips import Dips
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights
+from .bounded import Heights, active_bounds, consistent, holds_bounds, runner
 from .from_neighbours import dip_use, structure
-from .interpolation import Task
+from .interpolation import Result, Task
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
 from .run import with_dips
@@ -54,22 +56,49 @@ class Draw:
     given: Interpolation | None = None
 
     def heights(self, method: str, task: Task) -> Interpolation:
-        """As heights.heights, with a random error added, which is 0 at the points."""
+        """As heights.heights, with a random error added, which is 0 at the points. A realization that would
+        lie beyond a bound goes through it."""
         own = self._known(method, task)
         if own.variogram is None:
             return own.result
         points, _ = without_mis_ties(task.points[own.counts])
         field = GaussianField(own.variogram, own.settings.get("anisotropy"), self.frame, self.noise)
         at_points, at_nodes = self._field(task, field, points[:, :2])
-        drawn = np.column_stack([points[:, :2], at_points])
-        dips = None if task.dips is None else self._drawn_dips(replace(task, points=points), field, own)
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
+        free = replace(task, points=points, settings=plain, surfaces={}, bounds=None)
+        z = own.result.z
+        if task.bounds is not None and len(task.bounds) and holds_bounds(own.method):
+            supports = self._supports(free, task.bounds, field, own, at_points)
+            free = replace(free, points=np.vstack([points, supports]))
+            at_points = np.concatenate([at_points, field.at(task.work, supports[:, :2])])
+            z = heights(own.method, free).z
+        drawn = np.column_stack([free.points[:, :2], at_points])
         interpolated = heights(
-            own.method, replace(task, points=drawn, settings=plain, surfaces={}, dips=dips, bounds=None)
+            own.method, replace(free, points=drawn, dips=self._drawn_dips(free, field, own))
         )
-        z = own.result.z + (at_nodes - interpolated.z)
+        z = z + (at_nodes - interpolated.z)
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
+
+    def _supports(
+        self, free: Task, bounds: Bounds, field: GaussianField, own: _Known, at_points: np.ndarray
+    ) -> np.ndarray:
+        """(A, 3) the bounds that support the realization, as points. at_points: (P,) S at the points."""
+        run, given = runner(own.method, free), consistent(free.points, bounds)
+        dips, count = self._drawn_dips(free, field, own), len(at_points)
+        at_bounds = field.at(free.work, given.positions)  # a field is drawn anew for each call
+        known = dict(zip(map(tuple, given.positions.tolist()), at_bounds.tolist(), strict=True))
+
+        def field_at(places: np.ndarray) -> np.ndarray:
+            return np.array([known[tuple(place)] for place in places.tolist()])
+
+        def drawn(each: Task) -> Result:
+            at_data = np.concatenate([at_points, field_at(each.points[count:, :2])])
+            data = np.column_stack([each.points[:, :2], at_data])
+            error = field_at(each.nodes) - run(replace(each, points=data, dips=dips)).z
+            return Result(run(each).z + error)
+
+        return active_bounds(free.work, free.points, given, Heights(free, drawn, False))
 
     def _drawn_dips(self, task: Task, field: GaussianField, own: _Known) -> Dips | None:
         """The slopes of S where the surface has dips, over the baseline that its method has for them."""
@@ -93,6 +122,8 @@ class Draw:
         key = hashlib.sha256(points).digest() + hashlib.sha256(nodes).digest()
         if task.dips is not None:
             key += hashlib.sha256(np.hstack([task.dips.positions, task.dips.gradients])).digest()
+        if task.bounds is not None:
+            key += hashlib.sha256(np.column_stack([task.bounds.places, task.bounds.is_lower])).digest()
         if key not in self.known:
             self.known[key] = self._of_result(method, task, self.given or heights(method, task))
         return self.known[key]
