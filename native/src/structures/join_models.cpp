@@ -247,10 +247,28 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     return joined;
 }
 
+/// One cell that fills a box.
+CellComplex box_cell(const std::array<Position, 2>& corners) {
+    CellComplex cell;
+    for (std::size_t v = 0; v < 8; ++v)
+        cell.vertices.push_back({corners[v & 1][0], corners[v >> 1 & 1][1], corners[v >> 2][2]});
+    cell.face_vertices = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    for (std::int64_t begin = 0; begin <= 24; begin += 4)
+        cell.face_offsets.push_back(begin);
+    cell.face_cells.assign(6, {0, -1});
+    cell.face_surface.assign(6, kWall);
+    cell.cell_block.push_back(0);
+    cell.cell_kind = CellKind::kBlocks;
+    return cell;
+}
+
 }  // namespace
 
-std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
-                           const Execution& execution) {
+std::vector<Part> parts_of(const std::array<std::array<double, 3>, 2>& corners,
+                           std::span<const Structure> structures, const Execution& execution) {
+    const CellComplex cell = box_cell(corners);
+    ComplexView rock = cell;
+    rock.blocks = 1;
     cutting::check_model(rock);
     const StructureSurface surface = structure_surface(structures, box_of(rock));
     SurfaceOverlay overlay(rock, surface.surface, execution);

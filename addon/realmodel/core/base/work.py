@@ -54,16 +54,19 @@ class Work:
         self._share = 0.0
         self._reported = 0.0
         self._text = ""
+        self._has_steps = False
         self._cancelled = False
 
     # -- in the working thread
 
     @contextmanager
-    def phase(self, start: float, end: float, text: str):
-        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1."""
+    def phase(self, start: float, end: float, text: str, has_steps: bool = False):
+        """A phase of work: the progress goes from `start` to `end`, both between 0 and 1. has_steps: its
+        native call says itself what it is doing."""
         self.check()
         with self._lock:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
+            self._has_steps = has_steps
         yield
         self.step(1.0)
 
@@ -166,7 +169,8 @@ class Work:
             share = self._share
             if self._execution is not None:
                 share = max(share, self._execution.fraction)
-            text = self._text
+            steps = self._execution.text if self._execution is not None and self._has_steps else ""
+            text = steps or self._text
             if self._works:
                 states = [work.state() for work in self._works]
                 share = max(share, sum(each for each, _ in states) / len(states))
