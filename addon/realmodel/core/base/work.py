@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Literal, ParamSpec, TypeVar, cast
@@ -72,8 +72,8 @@ class Work:
 
     @contextmanager
     def part(self, start: float, end: float):
-        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job as a
-        part of another."""
+        """Within it the phases, from 0 to 1, take the progress from `start` to `end` only: for a job, or a
+        step that has phases of its own, as a part of another."""
         before = self._part
         low, high = before
         with self._lock:
@@ -88,6 +88,13 @@ class Work:
     def stretch(self) -> tuple[float, float]:
         """The progress that the present phase begins and ends at."""
         return self._start, self._end
+
+    def share_out(self, items: Sequence[Item]) -> Iterator[Item]:
+        """The items one after the other, each with an equal part of the progress: its phases go from 0 to
+        1."""
+        for number, item in enumerate(items):
+            with self.part(number / len(items), (number + 1) / len(items)):
+                yield item
 
     def step(self, share: float) -> None:
         """Sets the progress of the present phase, 0 to 1. Raises Cancelled if the caller has cancelled."""

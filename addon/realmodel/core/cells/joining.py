@@ -33,8 +33,6 @@ def build_joined(
     inputs: list[RockInput],
     structures: Structures,
     cells: str,
-    start: float,
-    end: float,
     reach: Reach | None = None,
 ) -> BuiltCells:
     """The cells of rock masses (RockInput) with structures, and their parts.
@@ -45,14 +43,14 @@ def build_joined(
     there = structures.there()
     if len(there) < len(structures):
         few, part = structures.only(there)
-        built = build_joined(work, inputs, few, cells, start, end)
+        built = build_joined(work, inputs, few, cells)
         return _renumbered(built, np.array(there, np.int64), part, len(structures))
     reach = reach or Reach(work, structures)
     divides = blocks_divided(inputs, structures)
     surfaces = _first_surfaces(inputs)[-1]
     piece = None if structures.continued is None else (structures.continued, structures.largest)
     refused = refused_as(lambda error: _refused(error, inputs, structures))
-    with work.phase(start, end, "intersecting and cutting", has_steps=True), refused as native:
+    with work.phase(0.0, 1.0, "intersecting and cutting", has_steps=True), refused as native:
         joined = work.native(
             native.build_parts,
             [_part(work, inputs, structures, reach, part, cells) for part in range(len(structures.sides))],
