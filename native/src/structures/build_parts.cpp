@@ -239,7 +239,9 @@ Joined build_parts(const StructuredInput& input, const Execution& execution) {
     give_back_memory();
     begin_phase(execution.progress, kBuilt, 1, "joining the compartments");
     Progress joining(execution.progress, 1 - kBuilt);
-    return join_parts(input, PartModels(input, built), {execution.threads, &joining});
+    Joined joined = join_parts(input, PartModels(input, built), {execution.threads, &joining});
+    joining.report(1.0, nullptr);
+    return joined;
 }
 
 }  // namespace realmodel::structures

@@ -170,10 +170,11 @@ TEST(ParallelTasks, EachRunsOnceWithItsShare) {
 }
 
 TEST(ParallelTasks, TheErrorIsThatOfTheLowestAndThoseAboveItAreStopped) {
-    std::atomic<int> stopped{0};
+    std::atomic<int> begun{0}, stopped{0};
     try {
         parallel_tasks(3, {3, nullptr}, 1.0, [&](std::size_t task, const Execution& own) {
             if (task == 2) {
+                ++begun;
                 try {
                     for (;;)
                         own.progress->check();
@@ -182,9 +183,9 @@ TEST(ParallelTasks, TheErrorIsThatOfTheLowestAndThoseAboveItAreStopped) {
                     throw;
                 }
             }
-            if (task == 1) throw std::runtime_error("1");
-            while (stopped == 0)  // this one still runs
+            while ((task == 1 ? begun : stopped) == 0)  // the lowest still runs when another failed
                 own.progress->check();
+            if (task == 1) throw std::runtime_error("1");
             throw std::runtime_error("0");
         });
         FAIL();
