@@ -2,17 +2,20 @@
 """What is kept in memory is bounded by its size."""
 
 import unittest
+from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 from realmodel.bl import built_models, caches, stored_arrays
+from realmodel.core import Project, Rock, Surface, build
 
 
 class _Model:
     cell_kind = "columns"
 
     def __init__(self, size):
-        self.vertices = np.zeros(size, np.uint8)
+        self.complex = SimpleNamespace(vertices=np.zeros(size, np.uint8))
+        self.surfaces = SimpleNamespace()
 
 
 class KeptModels(unittest.TestCase):
@@ -21,7 +24,7 @@ class KeptModels(unittest.TestCase):
         self.addCleanup(caches.clear)
 
     def kept(self):
-        return [model.vertices.nbytes for model in built_models._models.values()]
+        return [model.complex.vertices.nbytes for model in built_models._models.values()]
 
     def test_the_oldest_go_where_all_are_too_large(self):
         with mock.patch.object(built_models._models, "_most", 100):
@@ -30,6 +33,13 @@ class KeptModels(unittest.TestCase):
             self.assertEqual(self.kept(), [50, 30])
             built_models.remember(_Model(1000))  # the newest stays, however large
             self.assertEqual(self.kept(), [1000])
+
+    def test_the_cells_and_surfaces_of_a_model_count(self):
+        square = np.array([(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
+        surface = Surface("top", square, np.array([(0, 1, 2), (0, 2, 3)]))
+        model = build(Project("one", [Rock("rock", [surface], base_elevation=0.0)]))
+        arrays = (model.vertices, model.face_vertices, model.face_cells, model.surface_vertices)
+        self.assertGreater(built_models._bytes_of(model), sum(array.nbytes for array in arrays))
 
     def test_many_small_ones_stay(self):
         for _ in range(20):

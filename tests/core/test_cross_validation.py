@@ -24,9 +24,9 @@ def test_kriging_leaves_one_out(neighbours, drift):
         z, variance = dense_kriging(near, POINTS[i : i + 1], SPHERICAL, drift)
         assert result.z[i] == pytest.approx(z[0])
         assert result.errors[i] == pytest.approx(z[0] - POINTS[i, 2])
-        assert result.standardised[i] == pytest.approx((z[0] - POINTS[i, 2]) / np.sqrt(variance[0]))
+        assert result.standardized[i] == pytest.approx((z[0] - POINTS[i, 2]) / np.sqrt(variance[0]))
     assert result.rmse == pytest.approx(np.sqrt((result.errors**2).mean()))
-    assert result.within_two_deviations == (abs(result.standardised) <= 2).mean()
+    assert result.within_two_deviations == (abs(result.standardized) <= 2).mean()
     assert (result.method, result.variogram.sill) == (method, 9.0)
 
 
@@ -36,7 +36,7 @@ def test_inverse_distance_leaves_one_out():
         others = np.delete(POINTS, i, axis=0)
         z = interpolate(others, POINTS[i : i + 1, :2], "idw", neighbours=8, power=3).z
         assert result.z[i] == pytest.approx(z[0])
-    assert result.standardised is None
+    assert result.standardized is None
     assert result.within_two_deviations is None
     everything = cross_validate(POINTS, "idw", neighbours=0)
     others = POINTS[1:]
@@ -58,7 +58,7 @@ def test_a_fitted_variogram_has_honest_variances():
     z = np.linalg.cholesky(covariance) @ RNG.normal(size=400)
     result = cross_validate(np.column_stack([plan, z]))
     assert 0.8 <= result.within_two_deviations <= 0.99
-    assert 0.7 < result.standardised.std() < 1.3
+    assert 0.7 < result.standardized.std() < 1.3
 
 
 def test_refused_and_cancelled():

@@ -53,7 +53,7 @@ def test_cross_validation_sets_errors_beyond_two_deviations_apart():
     result = cross_validate(POINTS)
     drawing = plots.cross_validation(result, "m")
     within, beyond = (len(item.points) for item in items(drawing, Dots))
-    assert (beyond, beyond + within) == ((np.abs(result.standardised) > 2).sum(), 90)
+    assert (beyond, beyond + within) == ((np.abs(result.standardized) > 2).sum(), 90)
     assert f"RMSE {result.rmse:.4g} m" in texts(drawing)
     low, high = box(drawing)
     for item in items(drawing, Dots):

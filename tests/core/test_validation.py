@@ -2,13 +2,13 @@
 """Model.validate finds what is wrong with a model and passes what is right; so does the outside check."""
 
 import dataclasses
-import importlib.util
 import json
 import random
 
 import numpy as np
 import pytest
-from conftest import ROOT, grid_surface
+from conftest import grid_surface
+from realmodel.batch import command, sources
 from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.cells.cell_complex import ARRAYS
 from realmodel.core.exporters.report import model_report
@@ -315,18 +315,13 @@ def test_it_can_be_cancelled(model):
 
 
 @pytest.fixture
-def program(monkeypatch):
-    """build_model.py as a module, and a way to spoil what it builds."""
-    spec = importlib.util.spec_from_file_location("build_model", ROOT / "build_model.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    monkeypatch.setattr(module.signal, "signal", lambda *_: None)
-    return module
+def main(monkeypatch):
+    """The command line; it leaves the signals of the tests' own process alone."""
+    monkeypatch.setattr(command.signal, "signal", lambda *_: None)
+    return command.main
 
 
 def spoil_builds(monkeypatch):
-    from realmodel.batch import sources
-
     whole = sources.build
 
     def spoilt(*arguments, **options):
@@ -336,16 +331,16 @@ def spoil_builds(monkeypatch):
     monkeypatch.setattr(sources, "build", spoilt)
 
 
-def test_check_model_prints_the_proof(program, layers, tmp_path, capsys):
-    assert program.main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")]) == 0
+def test_check_model_prints_the_proof(main, layers, tmp_path, capsys):
+    assert main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")]) == 0
     out = capsys.readouterr().out
     assert "Validation of layers: passed" in out and "% of the time of intersecting" in out
     assert (tmp_path / "m.npz").exists()
 
 
-def test_check_model_keeps_a_wrong_model_from_being_written(program, monkeypatch, layers, tmp_path, capsys):
+def test_check_model_keeps_a_wrong_model_from_being_written(main, monkeypatch, layers, tmp_path, capsys):
     spoil_builds(monkeypatch)
-    status = program.main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")])
+    status = main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")])
     captured = capsys.readouterr()
     assert status == 1
     assert captured.err.count("\n") == 1 and "belongs to no face" in captured.err
@@ -353,9 +348,9 @@ def test_check_model_keeps_a_wrong_model_from_being_written(program, monkeypatch
     assert not (tmp_path / "m.npz").exists()
 
 
-def test_the_report_of_a_wrong_model_says_so(program, monkeypatch, layers, tmp_path, capsys):
+def test_the_report_of_a_wrong_model_says_so(main, monkeypatch, layers, tmp_path, capsys):
     spoil_builds(monkeypatch)
-    assert program.main([str(layers([0, 1])), "--report", str(tmp_path / "r.json")]) == 0
+    assert main([str(layers([0, 1])), "--report", str(tmp_path / "r.json")]) == 0
     assert "the model fails its check" in capsys.readouterr().out
     report = json.loads((tmp_path / "r.json").read_text())
     assert report["validation"]["passed"] is False

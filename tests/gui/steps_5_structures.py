@@ -66,7 +66,8 @@ def compartments_apart(walk):
 
 def _show_alone(wanted):
     """Registers these panels of the tab alone, unfolded; returns all that there were."""
-    found = [cls for cls in TabPanel.__subclasses__() if cls.is_registered]
+    known = [cls for cls in bpy.types.Panel.__subclasses__() if issubclass(cls, TabPanel)]
+    found = [cls for cls in known if cls.is_registered]
     found.sort(key=lambda cls: hasattr(cls, "bl_parent_id"))
     for cls in reversed(found):
         bpy.utils.unregister_class(cls)

@@ -13,8 +13,9 @@ from . import caches
 
 
 def _bytes_of(model):
-    """The memory that the arrays of a model take."""
-    return sum(value.nbytes for value in vars(model).values() if isinstance(value, np.ndarray))
+    """The memory that the arrays of a model take: those of its cells and of its surfaces, and its own."""
+    held = [value for part in (model, model.complex, model.surfaces) for value in vars(part).values()]
+    return sum(value.nbytes for value in held if isinstance(value, np.ndarray))
 
 
 _models = caches.new(most=1 << 30, size_of=_bytes_of)  # (stamp, cells) -> realmodel.core.Model

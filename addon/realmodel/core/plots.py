@@ -95,8 +95,8 @@ def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words:
     axes.frame(_with_unit("Measured", unit), _with_unit("Estimated", unit))
     axes.drawing.line(axes.at([(limits[0], limits[0]), (limits[1], limits[1])]), GRAY, 0.8)
     beyond = np.zeros(len(places), bool)
-    if result.standardised is not None:
-        beyond = np.abs(result.standardised[known]) > 2
+    if result.standardized is not None:
+        beyond = np.abs(result.standardized[known]) > 2
     radius = 2.2 * max(min(1.0, _MANY / max(len(places), 1)), 0.1) ** 0.5
     for chosen, color in ((~beyond, BLUE), (beyond, RED)):
         some = places[chosen][:: max(1, int(np.ceil(chosen.sum() / _MOST_DOTS)))]

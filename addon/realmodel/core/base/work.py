@@ -79,10 +79,12 @@ class Work:
         with self._lock:
             self._part = low + (high - low) * start, low + (high - low) * end
             self._start, self._end, self._share = 0.0, 1.0, 0.0
-        yield
-        with self._lock:
-            self._part = before
-            self._start, self._end, self._share = start, end, 1.0
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._part = before
+                self._start, self._end, self._share = start, end, 1.0
 
     @property
     def stretch(self) -> tuple[float, float]:

@@ -24,7 +24,7 @@ DEFAULT_FOLDS = 10
 @dataclass(frozen=True, repr=False)
 class CrossValidation(ShortRepr):
     """points (P, 3), no two at one position in plan; z (P,), estimated from the other points; errors (P,), z
-    minus the points' heights; standardised (P,), errors divided by the kriging standard deviation, None where
+    minus the points' heights; standardized (P,), errors divided by the kriging standard deviation, None where
     the method gives no variance; rmse, the root mean square error; the method, and the variogram used.
 
     Where a point cannot be estimated (a method that gives no height outside the hull of the other points),
@@ -34,7 +34,7 @@ class CrossValidation(ShortRepr):
     points: np.ndarray
     z: np.ndarray
     errors: np.ndarray
-    standardised: np.ndarray | None
+    standardized: np.ndarray | None
     rmse: float
     method: str
     variogram: Variogram | None = None
@@ -72,10 +72,10 @@ class CrossValidation(ShortRepr):
     @property
     def within_two_deviations(self) -> float | None:
         """The share of errors below twice their deviation: about 0.95 where variances are honest."""
-        if self.standardised is None:
+        if self.standardized is None:
             return None
-        known = np.isfinite(self.standardised)
-        return float((np.abs(self.standardised[known]) <= 2).mean()) if known.any() else None
+        known = np.isfinite(self.standardized)
+        return float((np.abs(self.standardized[known]) <= 2).mean()) if known.any() else None
 
 
 def cross_validate(
@@ -139,13 +139,13 @@ def validate(method: str, task: Task, folds: int) -> CrossValidation:
     else:
         z = _in_folds(method, task, min(folds, len(points)))
     errors = z - points[:, 2]
-    standardised = None
+    standardized = None
     if variance is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
-            standardised = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
+            standardized = np.where(errors == 0, 0.0, errors / np.sqrt(variance))
     known = np.isfinite(errors)
     rmse = float(np.sqrt(np.mean(errors[known] ** 2))) if known.any() else float("nan")
-    return CrossValidation(points, z, errors, standardised, rmse, method, variogram)
+    return CrossValidation(points, z, errors, standardized, rmse, method, variogram)
 
 
 def distinct_points(points: np.ndarray) -> np.ndarray:

@@ -77,6 +77,8 @@ ROCK = {
     ),
     "constraints": _OTHER,
     "boreholes": _OTHER,
+    "observations": _OTHER,
+    "names": _OTHER,
 }
 
 SIZE = {

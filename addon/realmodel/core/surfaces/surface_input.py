@@ -47,8 +47,8 @@ class ReadSurface:
 @dataclass(frozen=True)
 class SurfaceInput:
     """A surface before it is read, with all that reading it needs: another process may read it. rock: the
-    name of its rock mass; boreholes: the last file of boreholes, if any; met: the points where they meet
-    it."""
+    name of its rock mass; boreholes: the last file of boreholes or observations, if any; met: the points
+    where they meet it."""
 
     rock: str
     surface: Surface
@@ -59,6 +59,8 @@ class SurfaceInput:
     @classmethod
     def of(cls, rock: Rock, surface: Surface, met: np.ndarray | None, units: str) -> SurfaceInput:
         boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
+        if boreholes is None and rock.observation_file is not None:
+            boreholes = Path(rock.observation_file.file)
         return cls(rock.name, surface, boreholes, met, units)
 
     def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:
@@ -86,7 +88,7 @@ class SurfaceInput:
             own = np.empty((0, 3)) if points is None else checked_points(points)
             points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
         if points is None and surface.needs_points:
-            raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
+            raise InputRefused("it has no points, and no borehole or observation tells of it", file=file)
         if points is None or (isinstance(points, Sized) and not len(points) and not surface.needs_points):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
