@@ -258,6 +258,22 @@ def test_arrays_that_do_not_fit():
         Observations([["x", 0, 1]], ["a"])
 
 
+def test_places_of_a_hole_in_any_order():
+    rows = [
+        (0, 5, "b", 5),
+        (9, 1, "", np.nan),
+        (0, 9, "b", 1),
+        (3, 2, "a", np.nan),
+        (3, 8, "a", 2),
+        (0, 5, "b", 5),
+    ]
+    given = Observations(
+        [[x, 0, z] for x, z, *_ in rows], list("123456"), [row[2] for row in rows], [row[3] for row in rows]
+    )
+    assert given.along_holes().blocks.tolist() == ["3", "1", "6", "2", "5", "4"]
+    assert not len(Observations(np.empty((0, 3)), []).along_holes())
+
+
 def test_a_model_of_logs_alone(project, tmp_path):
     """B2 and B5 meet no clay: sand lies on the basement, which the surface over the clay is."""
     model = build(load_project(project()))
@@ -353,6 +369,16 @@ def test_arrays_and_own_points_go_together():
         ("S1", True, 3.0),
         ("S0", True, 2.0),
     ]
+
+
+def test_a_surface_that_needs_no_points_gets_none_from_bounds():
+    surfaces = [Surface("S0", method="constant", options={"value": 3.0}), Surface("S1", method="tin")]
+    seen = Observations([[1, 1, 8], [8, 1, 8], [5, 8, 8], [5, 5, 1]], ["S1", "S1", "S1", "S0"])
+    rock = Rock("r", surfaces, region=SQUARE, edge_length=1.0, base_elevation=-3.0, observations=seen)
+    model = build(Project("p", [rock]))
+    points = [surface.point_array().tolist() for surface in model.project.rocks[0].surfaces]
+    assert points[0] == [] and len(points[1]) == 4
+    assert [warning.surface for warning in model.warnings if warning.kind == "no_contact"] == ["S1"]
 
 
 def level_logs(places, throws, tops=(6.0, 4.0)):

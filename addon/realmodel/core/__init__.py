@@ -36,6 +36,7 @@ from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
+from .settings.dips import DipFile, Dips
 from .settings.map_layer import MapLayer
 from .settings.observation_file import ObservationFile
 from .settings.point_file import MeshFile, PointFile
@@ -57,6 +58,8 @@ __all__ = [
     "Contour",
     "CrossValidation",
     "Cut",
+    "DipFile",
+    "Dips",
     "Erosion",
     "Estimate",
     "Fault",

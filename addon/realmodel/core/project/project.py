@@ -18,10 +18,12 @@ from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
+from ..settings.crs import checked_crs
+from ..settings.dips import DipFile, Dips
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
-from ..settings.method_options import is_name
+from ..settings.method_options import OptionRefused, is_name
 from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
@@ -29,6 +31,7 @@ from ..settings.methods import (
     METHODS,
     SURFACE_OPTIONS,
     check_method,
+    check_takes_dips,
     checked_options,
 )
 from ..settings.observation_file import ObservationFile
@@ -61,7 +64,8 @@ class Surface(Shaped):
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
     (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
+    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. With
+    `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
@@ -81,6 +85,7 @@ class Surface(Shaped):
     property: int = 0
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
+    dips: Dips | DipFile | str | Path | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
     contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
@@ -110,6 +115,18 @@ class Surface(Shaped):
         """(P, 3) float64 the points of a surface that is read; none where it has none."""
         assert not isinstance(self.points, (str, Path, PointFile))
         return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
+
+    @builtins.property  # a field of this class is called property
+    def dip_file(self) -> DipFile | None:
+        """The file of its dips and how it is read; None where they are arrays, or there are none."""
+        if isinstance(self.dips, (str, Path)):
+            return DipFile(self.dips)
+        return self.dips if isinstance(self.dips, DipFile) else None
+
+    def known_dips(self) -> Dips | None:
+        """The dips of a surface that is read."""
+        assert self.dips is None or isinstance(self.dips, Dips)
+        return self.dips
 
     def contact_array(self) -> np.ndarray:
         """(C, 3) float64 its contacts; none where it has none."""
@@ -225,7 +242,8 @@ class Project:
 
     name: of the model. rocks: its rock masses. path: the project file, if it was read from one.
     units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
-    one counts.
+    one counts. crs: the code of its coordinate reference system, "EPSG:25832", which files that have a place
+    for it name.
     """
 
     name: str
@@ -235,6 +253,7 @@ class Project:
     units: str = MODEL_UNIT
     faults: list[Fault] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
+    crs: str | None = None
 
     def input_files(self) -> list[Path]:
         """Every file that this project reads, itself included."""
@@ -248,6 +267,8 @@ class Project:
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
+                if surface.dip_file is not None:
+                    files.append(Path(surface.dip_file.file))
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
@@ -274,6 +295,10 @@ def check_project(project: Project) -> None:
     if project.units not in METERS:
         what = f"unknown unit {project.units!r}"
         raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
+    try:
+        checked_crs("crs", project.crs)
+    except OptionRefused as error:
+        raise InputRefused(error.what, file=project.path, item="crs", advice=error.advice) from error
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     for rock in named_once(project.rocks, "rock mass"):
@@ -336,6 +361,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         raise surface.refused("a surface has no name", "name", item=rock.item)
     refuse = partial(surface.refused, item=surface_item(rock, surface))
     _check_shape(rock, surface, refuse, bool(project.faults))
+    _check_dips(surface, refuse)
     check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
     check_property(project.library, surface.property, refuse)
 
@@ -372,6 +398,20 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
                 "points",
                 f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
             )
+
+
+def _check_dips(surface: Surface, refuse) -> None:
+    if surface.dips is None:
+        return
+    file = surface.dip_file
+    with refused_by(refuse, "dips", "dips: "):
+        if file is not None:
+            file.check()
+    check_file(None if file is None else file.file, "dips", refuse)
+    if not surface.interpolated:
+        raise refuse("'dips' has no effect, as a mesh is not interpolated", "dips")
+    with refused_by(refuse):
+        check_takes_dips(surface.method or DEFAULT_METHOD)
 
 
 def _check_continuation(surface: Surface, refuse) -> None:

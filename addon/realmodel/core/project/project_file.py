@@ -12,6 +12,7 @@ from ..base.finite import is_number
 from ..base.toml_table import Source, Table, TomlDocument
 from ..base.units import METERS, MODEL_UNIT
 from ..settings.boreholes import Boreholes
+from ..settings.dips import DipFile
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
@@ -54,7 +55,8 @@ def load_project(path: str | Path) -> Project:
     units = top.text("units") or MODEL_UNIT
     if units not in METERS:
         raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METERS)}")
-    project = Project(name, rocks, library, path, units, faults, bodies)
+    crs = _values(top, PROJECT, ("crs",)).get("crs")
+    project = Project(name, rocks, library, path, units, faults, bodies, crs)
     check_project(project)
     return project
 
@@ -175,7 +177,7 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     if not isinstance(given, dict):
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
-    said = ("columns", "separator", "decimal", "units", "downward_dip")
+    said = ("columns", "separator", "decimal", "units", "downward_dip", "layer")
     files = ("picks", "collars", "survey", "intervals")
     keys.allow_only((*files, *said))
     values = {name: given[name] for name in said if name in given}
@@ -230,11 +232,25 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     return Surface(
         name=name,
         method=table.text("method"),
+        dips=_read_dips(table, folder),
         options=options,
         source=Source(table.document, table.path),
         **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness", "correlation")),
         **_shape_files(table, folder),
     )
+
+
+def _read_dips(table: Table, folder: Path) -> DipFile | Path | None:
+    given = table.content.get("dips")
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        return folder / table.text("dips", required=True)
+    keys = _inner(table, "dips", given)
+    said = ("columns", "separator", "decimal", "units")
+    keys.allow_only(("file", *said))
+    values = {name: given[name] for name in said if name in given}
+    return DipFile(folder / keys.text("file", required=True), **values)
 
 
 def _shape_files(table: Table, folder: Path) -> dict:

@@ -53,7 +53,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             observed, not_used = read_observed_places(rock.observation_file, units, project.units)
             found.append(observed)
             left_out += not_used
-    observations = Observations.joined(found) if found else None
+    observations = Observations.joined(found).along_holes() if found else None
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
         _with_points(surface, number, picks.points.pop(surface.name, None), derived)
@@ -90,7 +90,7 @@ def _with_points(
         return surface, met
     if surface.point_file is None:
         surface = replace(surface, points=surface.own_points())
-    is_alone = surface.points is None and met is None
+    is_alone = surface.points is None and met is None and surface.needs_points
     contacts = contacts_for(derived, number, is_alone)
     surface = replace(surface, contacts=contacts if len(contacts) else None)
     known = [each for each in (met, contacts) if each is not None and len(each)]

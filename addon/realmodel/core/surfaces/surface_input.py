@@ -18,7 +18,8 @@ from ..base.triangles import checked_triangulation
 from ..base.work import Work
 from ..heights.interpolate import checked_points
 from ..project.project import Rock, Surface, surface_item
-from ..readers import read_mesh, read_point_file
+from ..readers import read_dips, read_mesh, read_point_file
+from ..settings.dips import Dips
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ class SurfaceInput:
         with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.interpolated:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, warnings)
+                read = replace(surface, points=points, dips=self._dips(step), shape_file=file)
+                return ReadSurface(read, None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
         return ReadSurface(surface, Sheet(vertices, triangles), faces, warnings)
@@ -96,16 +98,21 @@ class SurfaceInput:
         is_kept = surface.point_file is not None or self.met is not None
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
 
+    def _dips(self, step: Step) -> Dips | None:
+        if (file := self.surface.dip_file) is not None:
+            return read_dips(file, self.units, step)
+        dips = self.surface.known_dips()
+        return None if dips is None else dips.checked()
+
     def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface
         if surface.mesh_file is None:
             return *checked_triangulation(surface.vertices, surface.triangles), None, []
-        file = surface.mesh_file.file
         if arrays is None:
-            mesh = read_mesh(file, step)
+            mesh = read_mesh(surface.mesh_file, step)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
         else:
-            mesh = read_mesh(file, step, arrays.rows)
+            mesh = read_mesh(surface.mesh_file, step, arrays.rows)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
 

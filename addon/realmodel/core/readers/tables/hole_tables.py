@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of tables of boreholes, with columns found by their usual names."""
+"""The rows of tables of boreholes and of dips, with columns found by their usual names."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ OBSERVED = {
     "y": PICKS["y"],
     "z": ("z", "elevation", "elev", "altitude", "rl", "height"),
     "block": _BLOCK,
-    "hole": _HOLE,
+    "hole": _HOLE[:-2],  # names and ids are of the places
     "depth": ("depth", "md"),
 }
 # What stands in a column where there is no value; in small letters.
@@ -82,7 +82,7 @@ Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its mean
 
 
 class Reading(Protocol):
-    """How tables are read: of Boreholes, or of an ObservationFile."""
+    """How tables are read: of Boreholes, of an ObservationFile, or of a DipFile."""
 
     @property
     def columns(self) -> Mapping: ...

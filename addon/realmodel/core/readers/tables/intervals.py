@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -111,6 +112,7 @@ def _observed(
     depths: list[float] = []
     blocks: list[str] = []
 
+    @cache
     def place(depth: float) -> np.ndarray:
         # Depths, and horizontal offsets along a hole, are in the unit of z.
         way = holes.way_to(hole.row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)

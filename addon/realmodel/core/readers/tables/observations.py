@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...base.errors import InputRefused, place_text
+from ...notebook import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Observations:
+@dataclass(frozen=True, eq=False, repr=False)
+class Observations(ShortRepr):
     """Places that are known to lie in a block, or on its boundary.
 
     places: (N, 3) float64, model units. blocks: (N,) texts, each the name of the surface that the block lies
@@ -62,6 +63,17 @@ class Observations:
         """Some of them. chosen: (N,) bool, or numbers of rows."""
         return Observations(self.places[chosen], self.blocks[chosen], self.holes[chosen], self.depths[chosen])
 
+    def along_holes(self) -> Observations:
+        """The same with the places of each hole one after another downward along it: by their depths, or by
+        their heights where some have none."""
+        names, first, number = np.unique(self.holes, return_index=True, return_inverse=True)
+        without = np.bincount(number.ravel(), np.isnan(self.depths), len(names)) > 0
+        along = np.where(without[number.ravel()], -self.places[:, 2], self.depths)
+        has_hole = self.holes != ""
+        rows = np.arange(len(self))
+        at = np.where(has_hole, first[number.ravel()] if len(names) else 0, rows)
+        return self.some(np.lexsort((rows, np.where(has_hole, along, 0.0), at)))
+
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""
         return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
@@ -76,10 +88,11 @@ class Observations:
 
 
 def source_text(hole: str, depth: float, place) -> str:
-    """ "hole 'B1' at 12.5", or the place where there is no hole."""
+    """The hole with the depth, or the place where there is none: hole 'B1' at 12.5; else the place alone."""
+    at = place_text(np.asarray(place).tolist())
     if not hole:
-        return place_text(np.asarray(place).tolist())
-    return f"hole '{hole}'" if np.isnan(depth) else f"hole '{hole}' at {depth:.9g}"
+        return at
+    return f"hole '{hole}' at {at if np.isnan(depth) else format(depth, '.9g')}"
 
 
 @dataclass(frozen=True)
@@ -111,8 +124,8 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Bounds:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bounds(ShortRepr):
     """Heights that a surface lies at or above, or at or below.
 
     places: (N, 3) float64, model units; with faults a bound counts in the compartment of its place. is_lower:

@@ -261,8 +261,8 @@ def along_bounds(bounds: Bounds) -> np.ndarray:
 
 
 def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:
-    """(C, 3) the contacts of a surface. is_alone: it has no other points: where there is no contact either,
-    places on its bounds."""
+    """(C, 3) the contacts of a surface. is_alone: it has no other points, and needs some: where there is no
+    contact either, places on its bounds."""
     contacts = derived.contacts[number]
     return along_bounds(derived.bounds[number]) if is_alone and not len(contacts) else contacts
 
@@ -276,7 +276,7 @@ def with_contacts(rock: Rock, derived: Derived) -> Rock:
         if not surface.interpolated:
             continue
         own = surface.own_points()
-        contacts = contacts_for(derived, number, own is None)
+        contacts = contacts_for(derived, number, own is None and surface.needs_points)
         if not np.array_equal(contacts, surface.contact_array()):
             known = contacts if own is None else np.concatenate([own, contacts])
             surfaces[number] = replace(surfaces[number], points=known, contacts=contacts)
