@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, number_list
+from ..base.errors import InputRefused, naming, number_list
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
-from ..project.project import Project, Rock
+from ..project.project import Project, Rock, surface_item
+from ..readers import read_dips
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
@@ -84,7 +85,7 @@ def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
 
 def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
-    or of text, boreholes and observations, which are read into arrays. Raises InputRefused."""
+    or of text, boreholes, observations and dips, which are read into arrays. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
@@ -98,6 +99,9 @@ def with_arrays(project: Project) -> Project:
             field = read_field_data(project, rock)
             surfaces = []
             for surface, met in field.surfaces:
+                if surface.dip_file is not None:
+                    with naming(surface_item(rock, surface)):
+                        surface = replace(surface, dips=read_dips(surface.dip_file, project.units))
                 if met is not None:
                     surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
                 surfaces.append(surface)
