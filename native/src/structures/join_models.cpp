@@ -43,6 +43,7 @@ struct Together {
     std::vector<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
     std::vector<std::int32_t> model_of_cell;
     std::vector<std::uint8_t> is_near;  ///< of cells
+    std::vector<Sides> model_sides;
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
@@ -81,6 +82,7 @@ Together::Together(std::span<const PartModel> models,
     };
     for (const PartModel& own : models) {
         positions.push_back(own.model.vertex_count());
+        model_sides.push_back(own.sides);
         blocks = std::max(blocks, own.model.blocks);
         surfaces = std::max(surfaces, own.model.surfaces);
         if (own.model.cell_kind == CellKind::kBlocks) cell_kind = CellKind::kBlocks;
@@ -209,7 +211,7 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
 /// Joins the models where only the cells that are near structures take part in cutting; nothing
 /// where rounding went beyond them.
 std::optional<Joined> join(const Together& together, const StructureSurface& surface,
-                           std::span<const PartModel> models, std::span<const Structure> structures,
+                           std::span<const Structure> structures,
                            std::span<const std::uint8_t> acts, double least_rounding,
                            const Execution& execution) {
     const ComplexView all = together.view();
@@ -224,10 +226,7 @@ std::optional<Joined> join(const Together& together, const StructureSurface& sur
     const CutterWinding winding(overlay, execution.progress);
     const StructureSides sides(overlay, winding, surface, structures, execution.progress);
     assert(model_of_cell.size() == near.cell_count());
-    std::vector<Sides> model_sides;
-    for (const PartModel& own : models)
-        model_sides.push_back(own.sides);
-    const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
+    const WantedParts wanted(overlay, winding, sides, model_of_cell, together.model_sides, acts);
     begin(execution.progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, execution.progress);
     begin(execution.progress, 0.85, 0.92, "rounding what was cut");
@@ -320,10 +319,10 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     Together together(models, places, execution);
     together.share_vertices(execution);
     const double least = largest > 0 ? kComputedUlps * ulp(largest) : 0;
-    if (auto joined = join(together, surface, models, structures, acts, least, execution))
+    if (auto joined = join(together, surface, structures, acts, least, execution))
         return *std::move(joined);
     together.is_near.assign(together.is_near.size(), 1);
-    return *join(together, surface, models, structures, acts, least, execution);
+    return *join(together, surface, structures, acts, least, execution);
 }
 
 std::vector<std::int8_t> sides_of_points(std::span<const Structure> structures,
