@@ -39,6 +39,13 @@ int main(int argc, char** argv) {
         const double x = uniform(), y = uniform();
         points.push_back({4e5 + 5000 * x, 5e6 + 5000 * y, 100 * std::sin(6 * x) * std::cos(5 * y)});
     }
+    std::vector<std::array<double, 2>> places, slopes;
+    for (int i = 0; i < point_count / 10; ++i) {
+        const double x = uniform(), y = uniform();
+        places.push_back({4e5 + 5000 * x, 5e6 + 5000 * y});
+        slopes.push_back(
+            {0.12 * std::cos(6 * x) * std::cos(5 * y), -0.1 * std::sin(6 * x) * std::sin(5 * y)});
+    }
     std::vector<std::array<double, 2>> nodes;
     const int side = static_cast<int>(std::sqrt(static_cast<double>(node_count)));
     for (int j = 0; j < side; ++j) {
@@ -53,8 +60,15 @@ int main(int argc, char** argv) {
             char name[80];
             std::snprintf(name, sizeof name, "kriging, %s, %d neighbours",
                           std::string(name_of(model)).c_str(), neighbours);
+            const Variogram variogram{model, 1500, 2500, 0, {}};
+            time_it(name, nodes.size(), "nodes",
+                    [&] { (void)krige(points, nodes, variogram, {{neighbours}}, {threads}); });
+            // A dip for ten points: as many count at a node as lie among its points on average.
+            std::snprintf(name, sizeof name, "  and %d dips", (neighbours + 9) / 10);
+            const Dips dips{places, slopes, 5, (neighbours + 9) / 10};
             time_it(name, nodes.size(), "nodes", [&] {
-                (void)krige(points, nodes, {model, 1500, 2500, 0, {}}, {{neighbours}}, {threads});
+                (void)krige(points, nodes, variogram, {{neighbours}, Drift::kConstant, dips},
+                            {threads});
             });
         }
     }

@@ -31,9 +31,19 @@ using NestedTuple = std::tuple<std::string, double, double, double, double>;
 /// At most how many neighbors, how many in an eighth of the directions, and how far away.
 using NeighborhoodTuple = std::tuple<int, int, double>;
 constexpr NeighborhoodTuple kNearest{16, 0, 0.0};
+/// Positions, slopes, the baseline of slopes, and how many dips count at a node.
+using DipsTuple = std::tuple<Array<double>, Array<double>, double, int>;
 
 interpolation::Neighborhood neighborhood_of(const NeighborhoodTuple& of) {
     return std::make_from_tuple<interpolation::Neighborhood>(of);
+}
+
+/// @return spans of the arrays in `of`
+interpolation::Dips dips_of(const std::optional<DipsTuple>& of) {
+    if (!of) return {};
+    const auto& [positions, slopes, baseline, neighbors] = *of;
+    return {rows<2>(positions, "positions of dips"), rows<2>(slopes, "slopes"), baseline,
+            neighbors};
 }
 
 /// Of what fit_variogram gives.
@@ -71,11 +81,13 @@ KrigedArrays kriged_tuple(interpolation::Kriged&& kriged) {
 
 KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
                    const py::dict& variogram, const NeighborhoodTuple& neighborhood,
-                   const std::string& drift, WatchedExecution* execution) {
+                   const std::string& drift, const std::optional<DipsTuple>& dips,
+                   WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto model = variogram_of(variogram);
-    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift)};
+    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
+                                                dips_of(dips)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
@@ -86,10 +98,11 @@ KrigedArrays krige(const Array<double>& points, const Array<double>& nodes,
 
 KrigedArrays krige_left_out(const Array<double>& points, const py::dict& variogram,
                             const NeighborhoodTuple& neighborhood, const std::string& drift,
-                            WatchedExecution* execution) {
+                            const std::optional<DipsTuple>& dips, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto model = variogram_of(variogram);
-    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift)};
+    const interpolation::KrigingOptions options{neighborhood_of(neighborhood), drift_of(drift),
+                                                dips_of(dips)};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
@@ -125,14 +138,15 @@ Array<double> idw_left_out(const Array<double>& points, double power,
 
 Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
                      const NeighborhoodTuple& neighborhood, double spacing,
-                     WatchedExecution* execution) {
+                     const std::optional<DipsTuple>& dips, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
+    const interpolation::ThinPlateOptions options{smoothing, neighborhood_of(neighborhood), spacing,
+                                                  dips_of(dips)};
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::thin_plate(from, to, {smoothing, neighborhood_of(neighborhood), spacing},
-                                      run(execution));
+        z = interpolation::thin_plate(from, to, options, run(execution));
     }
     return to_array(std::move(z));
 }
@@ -208,7 +222,7 @@ py::dict fit_variogram(const Array<double>& points,
 void bind_estimators(py::module_& module) {
     using py::arg;
     module.def("krige", &krige, arg("points"), arg("nodes"), arg("variogram"),
-               arg("neighborhood") = kNearest, arg("drift") = "constant",
+               arg("neighborhood") = kNearest, arg("drift") = "constant", arg("dips") = py::none(),
                arg("execution") = py::none(),
                R"(Kriging: ordinary, or with a drift universal.
 
@@ -225,6 +239,9 @@ neighborhood  (neighbors, octants, radius): the nearest in plan that make a node
               points, factored once; at most so many points from each eighth of the directions, 0:
               any; points farther away do not count, 0: all do
 drift         constant, linear or quadratic
+dips          (positions (D, 2), slopes (D, 2): dz/dx and dz/dy, baseline, number), or None: along
+              each axis a slope is that between the heights at the ends of the baseline; so many of
+              the nearest dips count at a node, 0: all
 execution     Execution, or None
 
 Returns (z (N,), variance of its error (N,) float64, number of nodes without a point within the
@@ -233,8 +250,10 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points" (items
 "variogram", "anisotropy", "option", "too_large"; Cancelled.)");
     module.def(
         "krige_left_out", &krige_left_out, arg("points"), arg("variogram"),
-        arg("neighborhood") = kNearest, arg("drift") = "constant", arg("execution") = py::none(),
-        R"(krige at each of the points, from all the others. Returns and raises as krige does.)");
+        arg("neighborhood") = kNearest, arg("drift") = "constant", arg("dips") = py::none(),
+        arg("execution") = py::none(),
+        R"(krige at each of the points, from all the others and the dips. Returns and raises as krige
+does.)");
     module.def("idw", &idw, arg("points"), arg("nodes"), arg("power") = 2.0,
                arg("neighborhood") = kNearest, arg("execution") = py::none(),
                R"(Inverse distance: means of the nearest points weighted by distance ** -power.
@@ -249,7 +268,8 @@ Raises InputError as krige does; Cancelled.)");
                arg("neighborhood") = kNearest, arg("execution") = py::none(),
                R"(idw at each of the points, from all the others. Returns z (P,).)");
     module.def("spline", &spline, arg("points"), arg("nodes"), arg("smoothing") = 0.0,
-               arg("neighborhood") = kNearest, arg("spacing") = 0.0, arg("execution") = py::none(),
+               arg("neighborhood") = kNearest, arg("spacing") = 0.0, arg("dips") = py::none(),
+               arg("execution") = py::none(),
                R"(Thin plate splines through the nearest points of each node.
 
 points        (P, 3) float64: x, y, z
@@ -258,6 +278,7 @@ smoothing     added to the diagonal where distances count in the points' mean sp
               hold
 neighborhood  as krige
 spacing       the unit of distances, mean_spacing of all points where these are a part; 0: of these
+dips          as krige
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
 }

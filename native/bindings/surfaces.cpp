@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "execution.hpp"
@@ -101,10 +102,12 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
 
 /// Of each node, or empty: the height that it has, the least and the most.
 using BoundArrays = std::tuple<Array<double>, Array<double>, Array<double>>;
+/// Positions, slopes.
+using SlopeArrays = std::pair<Array<double>, Array<double>>;
 
 py::dict dsi(const Array<double>& points, const Array<double>& nodes,
              const Array<std::int32_t>& triangles, const BoundArrays& bounds, double weight,
-             WatchedExecution* execution) {
+             const std::optional<SlopeArrays>& dips, WatchedExecution* execution) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     const auto faces = rows<3>(triangles, "triangles");
@@ -112,7 +115,11 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
         return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
     };
     const auto& [equal, least, most] = bounds;
-    const interpolation::NodeConstraints constraints{heights(equal), heights(least), heights(most)};
+    interpolation::DsiConstraints constraints{heights(equal), heights(least), heights(most)};
+    if (dips) {
+        constraints.dips = {rows<2>(dips->first, "positions of dips"),
+                            rows<2>(dips->second, "slopes"), 1, 0};
+    }
     interpolation::DsiHeights found;
     {
         const py::gil_scoped_release unlocked;
@@ -123,6 +130,8 @@ py::dict dsi(const Array<double>& points, const Array<double>& nodes,
     out["outside"] = found.outside;
     out["missed"] = found.missed;
     out["misfit"] = found.misfit;
+    out["dips_outside"] = found.dips_outside;
+    out["dips_missed"] = found.dips_missed;
     out["iterations"] = found.iterations;
     out["converged"] = found.converged;
     return out;
@@ -173,14 +182,16 @@ Returns z (N,), and (N,) bool: where it is that of all points, to the last bit.)
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
     module.def(
         "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("bounds"),
-        arg("weight") = 0.0, arg("execution") = py::none(),
+        arg("weight") = 0.0, arg("dips") = py::none(), arg("execution") = py::none(),
         R"(Discrete smooth interpolation of points (P, 3) on a mesh: nodes (N, 2), triangles (T, 3).
 
 bounds  three arrays (N,) of heights that nodes have, are not below, are not above; NaN: none; empty: none
 weight  of a point's misfit against the roughness of one node; 0: points hold
+dips    (positions (D, 2), slopes (D, 2): dz/dx and dz/dy) of triangles, or None; met as points are
 
 Returns a dict: z (N,); outside, the number of points in no triangle, which did not count; missed, the
-number of points that could not all be met, and misfit, the largest of theirs; iterations;
+number of points that could not all be met, and misfit, the largest of theirs; dips_outside and
+dips_missed, as of points; iterations;
 converged, whether they ended because nothing was left to improve.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "bad_index", "option";
 Cancelled.)");

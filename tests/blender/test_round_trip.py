@@ -33,7 +33,9 @@ size = [{ at = "outline", length = 4.1, distance = 2.3 },
   { at = [[60, 20], [70, 25.5]], length = 2.5, distance = 0 },
   { at = "constraints", length = 3, distance = 1 }]
 constraints = ["river.geojson", [[5, 5], [30.3, 60]], [80, 60]]
-boreholes = { collars = "collars.csv", picks = "picks.csv", columns = { hole = "BHID" }, units = "ft" }
+boreholes = {collars="collars.csv", picks="picks.csv", intervals="log.csv", units="ft", columns={hole="BHID"}}
+observations = "seen.csv"
+names = { B = "Bottom", D = "distance" }
 
 [[rock.surface]]
 name = "kriged"
@@ -235,6 +237,9 @@ def write_files(folder: Path):
         for name, depth in (("in holes only", 8), ("trend", 30))
     )
     (folder / "picks.csv").write_text("BHID,surface,depth\n" + picks)
+    log = "".join(f"B{n},{top},{bottom},{block}\n" for n in (1, 2, 3) for top, bottom, block in LOG)
+    (folder / "log.csv").write_text("BHID,from,to,block\n" + log)
+    (folder / "seen.csv").write_text("x,y,z,block\n20,60,55,in holes only\n60,60,2,B\n")
     (folder / "river.geojson").write_text('{"type": "LineString", "coordinates": [[90, 5], [95, 60]]}')
     squares = ",".join(
         f'{{"type": "Feature", "properties": {{"unit": "{unit}"}}, "geometry": {{"type": "Polygon", '
@@ -244,6 +249,9 @@ def write_files(folder: Path):
     (folder / "two.geojson").write_text(f'{{"type": "FeatureCollection", "features": [{squares}]}}')
     write_contours(folder / "contours.gpkg")
     (folder / "mesh.off").write_text("OFF\n4 2 0\n390 -5 1\n510 -5 1\n510 90 2\n390 90 2\n3 0 1 2\n3 0 2 3\n")
+
+
+LOG = ((0, 8, "in holes only"), (9, 30, "smooth"), (30, 34, "D"), (35, 36, "B"))
 
 
 def write_contours(path):
@@ -288,6 +296,8 @@ def _rock(rock):
         "size": [{**entry, "at": _plain(entry["at"])} for entry in rock.size],
         "constraints": [line.tolist() for line in rock.constraints],
         "surfaces": [_surface(surface) for surface in rock.surfaces],
+        "observations": rock.observed
+        and [array.tolist() for array in (rock.observed.places, rock.observed.blocks, rock.observed.holes)],
         **{
             key: getattr(rock, key)
             for key in ("name", "edge_length", "triangles", "mesher", "base_elevation")
@@ -301,6 +311,7 @@ def _surface(surface):
             None if array is None else array.tolist()
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
+        "contacts": surface.contact_array().tolist(),
         "method": surface.method_options() if surface.interpolated else None,
         **{
             key: getattr(surface, key)
@@ -477,6 +488,17 @@ class Written(PanelCase):
         self.assertEqual((self.composed().edge_length, self.composed().triangles), ("auto", None))
         rock.edge_length = 7.0  # as a script sets it
         self.assertEqual((rock.edges_by, self.composed().edge_length), ("LENGTH", 7.0))
+
+    def test_observations_follow_the_names_of_surfaces(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        rock = self.model.rocks[0]
+        contacts = {surface.name: len(surface.contact_array()) for surface in self.composed().surfaces}
+        self.assertEqual([name for name, count in contacts.items() if count], ["distance"])
+        next(surface for surface in rock.surfaces if surface.name == "distance").name = "moved"
+        seen = self.composed().observations
+        self.assertEqual(sorted(set(seen.blocks)), ["in holes only", "kriged", "moved", "smooth"])
+        self.assertEqual(len(seen), 26)
 
     def test_boreholes(self):
         write_files(self.folder)

@@ -160,7 +160,7 @@ def test_a_project_of_boreholes(write, tmp_path):
     ("boreholes", "line", "words"),
     [
         ("3", 8, "must be a file or a table"),
-        ('{ collars = "c.csv" }', 8, "key 'picks' is missing"),
+        ('{ collars = "c.csv" }', 8, "neither picks nor intervals"),
         ('{ collars = "no.csv", picks = "p.csv" }', 8, "file not found"),
         ('{ pick = "p.csv" }', 8, "did you mean 'picks'?"),
         ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "unknown column 'deep'"),

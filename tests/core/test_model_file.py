@@ -121,6 +121,7 @@ MADE = {
     "geological_map": lambda m, _: m.geological_map(),
     "native": lambda m, _: m.native(),
     "of": lambda m, _: Model.of(m),
+    "observed": lambda m, _: m.observed(),
     "require_project": lambda m, _: m.require_project("nothing"),
     "save": saved,
     "save_surfaces": saved_surfaces,

@@ -80,6 +80,8 @@ def run(options: argparse.Namespace) -> None:
             progress.close()
     proof = [f"{validation}\n"] if options.check_model else []
     lines = [*proof, volume_table(model, erosion), *lines]
+    if any(rock.observed is not None for rock in model.project.rocks):
+        lines.append(f"observed: {model.observed().summary()}")
     if mesh is not None:
         lines.append(mesh_request.line(mesh))
     if cells is not None:

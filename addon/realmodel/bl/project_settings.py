@@ -26,6 +26,7 @@ from . import (
     library_rows,
     method_settings,
     names,
+    observed_blocks,
     plan_mesh,
     reading_text,
     settings,
@@ -102,7 +103,10 @@ def compose(scene, depsgraph, whole=True):
     source = _Source(scene, depsgraph, whole)
     for number, row in enumerate(group.rocks):
         base = method_settings.value(row, "base_elevation", ROCK)
-        rock = Rock(row.name, [], base_elevation=base, hole_picks=borehole_picks.of_rock(row))
+        picks = borehole_picks.of_rock(row)
+        rock = Rock(row.name, [], base_elevation=base, hole_picks=picks)
+        with naming(rock.item):
+            rock.observations = observed_blocks.of_rock(row)
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(source, composed, number, rock, row)
         composed.project.rocks.append(rock)
@@ -343,7 +347,9 @@ def packed(surface):
     if getattr(surface, "traced", None) is not None:
         return structure_settings.packed_trace(surface.traced)
     if getattr(surface, "points", None) is not None:
-        return stored_arrays.pack(points=np.asarray(surface.points, np.float64))
+        contacts = getattr(surface, "contacts", None)
+        derived = {} if contacts is None else {"contacts": contacts}
+        return stored_arrays.pack(points=np.asarray(surface.points, np.float64), **derived)
     return stored_arrays.pack_mesh(surface.vertices, surface.triangles)
 
 
@@ -392,6 +398,7 @@ def add_rock(group, rock):
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)
         borehole_picks.keep(row, rock.hole_picks)
+        observed_blocks.keep(row, rock.observed)
     return row
 
 

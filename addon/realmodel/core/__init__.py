@@ -27,14 +27,18 @@ from .project.library import Library, Property, load_library
 from .project.project import Project, Rock, Surface
 from .project.project_file import load_project
 from .project.structure_entries import Body, Fault
+from .proof.observed import Observed, ObservedBlock, ObservedContact, ViolatedBound
 from .proof.validation import ValidationReport
+from .readers.tables.observations import Bounds, LeftOut, Observations
 from .results.booleans import Intersection, Loop, SubBlock, SubSurface, intersect
 from .results.contours import Contour
 from .results.erosion import Erosion
 from .results.geological_map import MapArea
 from .results.model_boreholes import Interval
 from .settings.boreholes import Boreholes
+from .settings.dips import DipFile, Dips
 from .settings.map_layer import MapLayer
+from .settings.observation_file import ObservationFile
 from .settings.point_file import MeshFile, PointFile
 from .settings.variogram import Structure, Variogram
 from .simulation import CleanedCells, SimulationMesh
@@ -46,6 +50,7 @@ __all__ = [
     "BlockBoundary",
     "Body",
     "Boreholes",
+    "Bounds",
     "BuildFailed",
     "BuildWarning",
     "Cancelled",
@@ -53,6 +58,8 @@ __all__ = [
     "Contour",
     "CrossValidation",
     "Cut",
+    "DipFile",
+    "Dips",
     "Erosion",
     "Estimate",
     "Fault",
@@ -61,6 +68,7 @@ __all__ = [
     "Interpolation",
     "Intersection",
     "Interval",
+    "LeftOut",
     "Library",
     "Loop",
     "MapArea",
@@ -69,6 +77,11 @@ __all__ = [
     "MeshFile",
     "Model",
     "NotEnoughMemory",
+    "ObservationFile",
+    "Observations",
+    "Observed",
+    "ObservedBlock",
+    "ObservedContact",
     "OutputFailed",
     "PointFile",
     "Project",
@@ -88,6 +101,7 @@ __all__ = [
     "UsageError",
     "ValidationReport",
     "Variogram",
+    "ViolatedBound",
     "build",
     "build_surfaces",
     "cross_validate",

@@ -274,6 +274,9 @@ def _digest(frame: Frame, inputs: list[RockInput], of_surfaces: dict[int, bytes]
         for surface in entry.rock.surfaces:
             how = (surface.method_options(), surface.minimum_thickness) if surface.interpolated else None
             digest.update(repr((entry.rock.base_elevation, surface.rule, how)).encode())
+            if surface.bounds is not None:
+                for array in (surface.contact_array(), surface.bounds.places, surface.bounds.is_lower):
+                    digest.update(np.ascontiguousarray(array))
     for _, found in sorted(of_surfaces.items()):
         digest.update(found)
     return digest.hexdigest()

@@ -15,11 +15,6 @@ namespace realmodel::interpolation {
 
 namespace {
 
-// Squares of larger numbers overflow.
-bool usable(double number) {
-    return std::abs(number) < 1e150;
-}
-
 [[noreturn]] void refuse_contradiction(std::span<const std::array<double, 3>> points,
                                        std::int32_t first, std::int32_t second) {
     const auto& a = points[first];
@@ -34,6 +29,10 @@ bool usable(double number) {
 }
 
 }  // namespace
+
+bool usable(double number) {
+    return std::abs(number) < 1e150;
+}
 
 std::vector<double> DataPoints::for_given(std::span<const double> found) const {
     std::vector<double> out(number_of.size());

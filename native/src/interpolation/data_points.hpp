@@ -33,6 +33,9 @@ struct DataPoints {
 ///         values at one position; items: both points; place), "too_large"
 DataPoints prepare_points(std::span<const std::array<double, 3>> points);
 
+/// Whether a number can be squared.
+bool usable(double number);
+
 /// A fixed, even part of the numbers below `count`: at most `most` of them, ascending.
 std::vector<std::int32_t> even_part(std::size_t count, std::size_t most);
 

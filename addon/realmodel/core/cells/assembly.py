@@ -146,12 +146,13 @@ def list_blocks(
     blocks: list[Block] = []
     first_surface = 0
     for number, entry in enumerate(inputs):
+        names = entry.rock.block_names()
         for k in range(_first_block(entry), len(entry.surfaces)):
             surface = entry.rock.surfaces[k]
             at = len(blocks)
             blocks.append(
                 Block(
-                    name=surface.block_name if k else surface.block or "base block",
+                    name=names[k],
                     rock=number,
                     surface=first_surface + k,
                     property=int(surface.property),

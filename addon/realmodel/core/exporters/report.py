@@ -14,6 +14,7 @@ import numpy as np
 from ..base.errors import UsageError
 from ..base.work import native_module
 from ..notebook import data_frame
+from ..proof.observed import Observed, observed
 from ..proof.validation import PLACES_OF_REPORT, ValidationReport
 from ..results.erosion import Erosion
 from ..results.tables import block_entry
@@ -118,6 +119,8 @@ def model_report(
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
         report["bodies"] = [body_entry(body) for body in model.structures.bodies]
+    if any(rock.observed is not None for rock in model.project.rocks):
+        report |= observation_entries(observed(model))
     if erosion is not None:
         report["erosion"] = _erosion(model, erosion)
     if mesh is not None:
@@ -238,6 +241,19 @@ def _block(model, number: int, total: float, deviation: float) -> dict:
         **block_entry(model, number, total),
         "volume_deviation_at_most": deviation if np.isfinite(deviation) else None,
         "component_volumes": model.component_volumes[number].tolist(),
+    }
+
+
+def observation_entries(found: Observed) -> dict[str, list[dict]]:
+    """What became of the observations of a model, as lists of the report."""
+    return {
+        "observations": [vars(each) for each in found.blocks],
+        "contacts": [{**vars(each), "place": list(each.place)} for each in found.contacts],
+        "violated_bounds": [{**vars(each), "place": list(each.place)} for each in found.violated],
+        "left_out": [
+            {"rock": rock, **vars(each), "place": None if each.place is None else list(each.place)}
+            for rock, each in found.left_out
+        ],
     }
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.algebra import principal_axes
-from ..settings.methods import checked_options
+from ..settings.methods import METHODS, checked_options
 from . import from_neighbours
 from .interpolation import Result, Task, run_method
 
@@ -37,7 +37,8 @@ _CANDIDATES = (
     Candidate("spline", {"neighbours": 32}),
     Candidate("natural_neighbour", {}),
 )
-_OF_FEW = (Candidate("plane", {}), Candidate("spline", {}), Candidate("idw", {}))
+_OF_DIPS = Candidate("spline", {})  # of few points
+_OF_FEW = (Candidate("plane", {}), _OF_DIPS, Candidate("idw", {}))
 
 
 @dataclass(frozen=True)
@@ -78,17 +79,22 @@ def automatic(task: Task) -> tuple[str, str, Result]:
 def choose(task: Task) -> tuple[Trial, str]:
     """The chosen candidate, and the reason in one sentence."""
     places = np.unique(task.points[:, :2], axis=0)
+    if len(places) <= 2 and task.dips is not None:
+        return _trial(task, _OF_DIPS), f"there are {len(places)} points, and it uses dips"
     if len(places) == 1:
         return _trial(task, Candidate("constant", {})), "there is one point only"
     if len(places) == 2:
         why = "there are two points only: the slope between them is all they show"
         return _trial(task, Candidate("plane", {})), why
     spread, _ = principal_axes(places)
-    if len(places) < _FEW and spread[1] < _IN_LINE * spread[0]:
+    if len(places) < _FEW and spread[1] < _IN_LINE * spread[0] and task.dips is None:
         why = f"there are {len(places)} points, nearly in one line"
         return _trial(task, Candidate("plane", {})), why
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
-    trials = [_trial(task, candidate) for candidate in (_OF_FEW if len(places) < _FEW else _CANDIDATES)]
+    able = [each for each in (_OF_FEW if len(places) < _FEW else _CANDIDATES) if _is_able(each, task)]
+    if len(able) == 1:
+        return _trial(task, able[0]), "there are few points, and it uses dips"
+    trials = [_trial(task, candidate) for candidate in able]
     errors = [trial.error(task, points) for trial in trials]
     significant = np.maximum(errors, _ROUNDING * np.abs(points[:, 2]).max())
     least = significant.min()
@@ -102,6 +108,10 @@ def choose(task: Task) -> tuple[Trial, str]:
     )
     said = [f"{trial.candidate.name} {error:.4g}" for trial, error in zip(trials, errors, strict=True)]
     return best, f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"
+
+
+def _is_able(candidate: Candidate, task: Task) -> bool:
+    return task.dips is None or METHODS[candidate.method].takes_dips
 
 
 def _trial(task: Task, candidate: Candidate) -> Trial:

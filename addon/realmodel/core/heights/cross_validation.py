@@ -10,13 +10,14 @@ import numpy as np
 from ..base.errors import InputRefused, UsageError
 from ..base.work import Cancel, Progress, Work, native_module, run
 from ..notebook import ShortRepr
+from ..settings.dips import Dips
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 from . import Task, left_out_heights
 from .interpolate import checked_nodes, checked_points, checked_triangles, method_settings
 from .mis_ties import without_mis_ties
-from .run import heights
+from .run import heights, with_dips
 
 DEFAULT_FOLDS = 10
 
@@ -86,6 +87,7 @@ def cross_validate(
     folds: int = DEFAULT_FOLDS,
     *,
     mesh=None,
+    dips: Dips | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     **options,
@@ -96,7 +98,7 @@ def cross_validate(
     distance leave the points out one by one, with the variogram fitted to all of them (where all points are
     neighbours, by the identities of Dubrule 1983, Mathematical Geology 15, from one factor). The other
     methods are run `folds` times, each time without every folds-th point. mesh: (nodes (N, 2), triangles (T,
-    3)), for a method that works on a mesh. options: as for `interpolate`.
+    3)), for a method that works on a mesh. dips, options: as for `interpolate`; dips are never left out.
 
     Raises InputRefused, UsageError, Cancelled.
 
@@ -108,6 +110,7 @@ def cross_validate(
     points = checked_points(points)
     settings = method_settings(method, neighbours, options)
     threads = check_threads(threads)
+    known = None if dips is None else dips.checked()
     if isinstance(folds, bool) or not hasattr(folds, "__index__") or int(folds) < 2:
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
     if (mesh is None) == METHODS[method].on_mesh:
@@ -120,7 +123,7 @@ def cross_validate(
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
             nodes, triangles = (np.empty((0, 2)), None) if mesh is None else mesh
-            return validate(method, Task(work, points, nodes, settings, triangles), int(folds))
+            return validate(method, Task(work, points, nodes, settings, triangles, dips=known), int(folds))
 
     return run(task, progress, cancel, threads=threads)
 
@@ -129,7 +132,7 @@ def validate(method: str, task: Task, folds: int) -> CrossValidation:
     """cross_validate within a work that is already running. task: with the nodes and triangles of a mesh for
     a method that works on one."""
     points = distinct_points(task.points)
-    task = replace(task, points=points)
+    task, _ = with_dips(method, replace(task, points=points))
     if len(points) < 2:
         raise InputRefused("cross-validation needs at least two points", item="points")
     variance, variogram = None, None

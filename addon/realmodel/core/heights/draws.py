@@ -14,13 +14,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..settings.dips import Dips
 from ..settings.methods import SURFACE_OPTIONS, checked_options
 from ..settings.variogram import Variogram
 from . import Interpolation, heights
-from .from_neighbours import structure
+from .from_neighbours import dip_use, structure
 from .interpolation import Task
 from .mis_ties import without_mis_ties
 from .on_mesh import within_bounds
+from .run import with_dips
 from .surface_reference import heights_of
 from .turning_bands import Frame, GaussianField, Noise
 
@@ -60,11 +62,27 @@ class Draw:
         field = GaussianField(own.variogram, own.settings.get("anisotropy"), self.frame, self.noise)
         at_points, at_nodes = self._field(task, field, points[:, :2])
         drawn = np.column_stack([points[:, :2], at_points])
+        dips = None if task.dips is None else self._drawn_dips(replace(task, points=points), field, own)
         plain = {**own.settings, **dict.fromkeys(SURFACE_OPTIONS)}
         plain = {option: value for option, value in plain.items() if option in own.settings}
-        interpolated = heights(own.method, replace(task, points=drawn, settings=plain, surfaces={}))
+        interpolated = heights(
+            own.method, replace(task, points=drawn, settings=plain, surfaces={}, dips=dips)
+        )
         z = own.result.z + (at_nodes - interpolated.z)
         return replace(own.result, z=within_bounds(replace(task, points=points), z, own.result.z))
+
+    def _drawn_dips(self, task: Task, field: GaussianField, own: _Known) -> Dips | None:
+        """The slopes of S where the surface has dips, over the baseline that its method has for them."""
+        known, _ = with_dips(own.method, replace(task, settings=own.settings))
+        if known.dips is None:
+            return None
+        baseline = dip_use(known, own.variogram if "variogram" in own.settings else None, 0).baseline
+        slopes = []
+        for axis in np.eye(2) * (baseline / 2):
+            ends = (known.dips.positions + axis, known.dips.positions - axis)
+            to, begin = (field.at(task.work, end) for end in ends)
+            slopes.append((to - begin) / baseline)
+        return replace(known.dips, gradients=np.column_stack(slopes))
 
     def _known(self, method: str, task: Task) -> _Known:
         """The data that do not change between realizations. They are not cached for a surface that depends on
@@ -73,6 +91,8 @@ class Draw:
             return self._of_result(method, task, heights(method, task))
         points, nodes = np.ascontiguousarray(task.points), task.nodes
         key = hashlib.sha256(points).digest() + hashlib.sha256(nodes).digest()
+        if task.dips is not None:
+            key += hashlib.sha256(np.hstack([task.dips.positions, task.dips.gradients])).digest()
         if key not in self.known:
             self.known[key] = self._of_result(method, task, self.given or heights(method, task))
         return self.known[key]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.work import native_module
+from ..settings.dips import Dips
 from ..settings.methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
-from ..settings.variogram import Variogram, fit_warnings
+from ..settings.variogram import NO_ANISOTROPY, Variogram, fit_warnings
 from .interpolation import Result, Task
 
 
@@ -18,11 +19,67 @@ def _neighborhood(settings: dict, neighbours: int) -> tuple[int, int, float]:
 
 
 @dataclass(frozen=True)
+class DipUse:
+    """How dips count. baseline: a slope is that between the heights at its ends. neighbours: so many of the
+    nearest count at a node, 0: all."""
+
+    baseline: float
+    neighbours: int
+
+    def native(self, dips: Dips | None) -> tuple | None:
+        """The argument of native functions."""
+        return None if dips is None else (dips.positions, dips.gradients, self.baseline, self.neighbours)
+
+
+_OF_SMOOTH = 1 / 64  # of the spacing of the data: what a baseline is where slopes have a variance
+_LEAST_BASELINE = 1 / 1024  # of a range: less leaves too few digits of differences
+_ROUGH = ("spherical", "exponential")  # models without one
+_FEWEST_DIPS = 2
+
+
+def dip_use(task: Task, variogram: Variogram | None, neighbours: int) -> DipUse:
+    """How the dips of a task count, of which at a node `neighbours` points count.
+
+    A model that is not differentiable at 0 has slopes of infinite variance, and a slope at a point would say
+    nothing of heights around it; so it is with a spline (variogram None), but for a logarithm. There the
+    slope is that over the mean spacing of points and dips. Otherwise the baseline is so short that the slope
+    is that at its position. Of as many dips as lie among the nearest points, on average, but no more than of
+    these, the nearest count.
+    """
+    dips, points = task.dips, task.points
+    if dips is None:
+        return DipUse(1.0, 0)
+    baseline = _spacing(points, dips)
+    if variogram is not None:
+        parts = variogram.parts()
+        ratios = [
+            (part.anisotropy or task.settings["anisotropy"] or NO_ANISOTROPY)["ratio"] for part in parts
+        ]
+        shortest = min(part.range / max(r, 1 / r) for part, r in zip(parts, ratios, strict=True))
+        baseline = min(baseline, shortest)
+        if not any(part.model in _ROUGH and part.sill > 0 for part in parts):
+            baseline = max(_OF_SMOOTH * baseline, _LEAST_BASELINE * max(part.range for part in parts))
+    share = -(-neighbours * len(dips) // max(len(points), 1))
+    return DipUse(baseline, min(max(share, _FEWEST_DIPS), neighbours) if neighbours else 0)
+
+
+def _spacing(points: np.ndarray, dips: Dips) -> float:
+    """The side of a square as large as the share of each point and dip in the box of all; as
+    native_module().mean_spacing."""
+    low = np.minimum(points[:, :2].min(axis=0), dips.positions.min(axis=0))
+    extent = np.maximum(points[:, :2].max(axis=0), dips.positions.max(axis=0)) - low
+    count = len(points) + len(dips)
+    width, height = extent.tolist()
+    return max((width * height / count) ** 0.5, max(width, height) / count) or 1.0
+
+
+@dataclass(frozen=True)
 class Structure:
-    """The variogram of kriging, its number of neighbours, and warnings."""
+    """The variogram of kriging, its number of neighbours, how dips count, and warnings."""
 
     variogram: Variogram
     neighbours: int
+    dips: DipUse
     warnings: tuple[str, ...] = ()
 
 
@@ -32,7 +89,9 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     settings = task.settings
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
-        return Structure(Variogram.from_settings(given), DEFAULT_NEIGHBOURS if asked is None else asked)
+        variogram = Variogram.from_settings(given)
+        neighbours = DEFAULT_NEIGHBOURS if asked is None else asked
+        return Structure(variogram, neighbours, dip_use(task, variogram, neighbours))
     anisotropy = settings["anisotropy"]
     along = None if anisotropy is None else (anisotropy["ratio"], anisotropy["azimuth"])
     fitted = task.run(
@@ -45,7 +104,8 @@ def structure(task: Task, are_apart: bool = False) -> Structure:
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
     variogram = Variogram.from_fit(fitted, anisotropy is None)
-    return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points, "drift" in settings)))
+    warnings = tuple(fit_warnings(variogram, task.points, "drift" in settings))
+    return Structure(variogram, neighbours, dip_use(task, variogram, neighbours), warnings)
 
 
 def krige(task: Task, known: Structure | None = None) -> Result:
@@ -60,6 +120,7 @@ def krige(task: Task, known: Structure | None = None) -> Result:
         known.variogram.native(settings["anisotropy"]),
         _neighborhood(settings, known.neighbours),
         settings.get("drift", "constant"),
+        known.dips.native(task.dips),
     )
     if task.left_out:
         z, variance, alone = task.run(native.krige_left_out, task.points, *arguments)
@@ -110,6 +171,7 @@ def thin_plate(task: Task, spacing: float = 0.0) -> Result:
     """Thin-plate splines. spacing: the mean spacing of all points, where the task has a part of them; 0: it
     has all."""
     settings = task.settings
-    near = _neighborhood(settings, settings["neighbours"])
-    z = task.run(native_module().spline, task.points, task.nodes, settings["smoothing"], near, spacing)
+    neighbours = settings["neighbours"]
+    near, dips = _neighborhood(settings, neighbours), dip_use(task, None, neighbours).native(task.dips)
+    z = task.run(native_module().spline, task.points, task.nodes, settings["smoothing"], near, spacing, dips)
     return Result(z, warnings=_beyond_radius(task))

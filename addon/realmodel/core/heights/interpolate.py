@@ -8,6 +8,7 @@ import numpy as np
 from ..base.errors import InputRefused, UsageError, place_text
 from ..base.mapped_arrays import ROWS_AT_ONCE, in_pieces
 from ..base.work import Cancel, Progress, Work, run
+from ..settings.dips import Dips
 from ..settings.method_options import check_threads
 from ..settings.methods import METHODS, check_method, checked_options
 from . import Interpolation, Task, heights
@@ -21,6 +22,7 @@ def interpolate(
     neighbours: int | None = None,
     threads: int = 0,
     *,
+    dips: Dips | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     **options,
@@ -32,6 +34,7 @@ def interpolate(
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
     neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
     16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
+    dips: slopes of the surface, for methods that use them.
 
     Points at one place count once; where their heights differ a little (mis-ties of measured lines, up to
     a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
@@ -50,10 +53,11 @@ def interpolate(
     nodes = checked_nodes(nodes)
     threads = check_threads(threads)
     triangles = checked_triangles(triangles, len(nodes))
+    dips = None if dips is None else dips.checked()
 
     def task(work: Work) -> Interpolation:
         with work.phase(0.0, 1.0, "interpolating"):
-            return heights(method, Task(work, points, nodes, settings, triangles))
+            return heights(method, Task(work, points, nodes, settings, triangles, dips=dips))
 
     return run(task, progress, cancel, threads=threads)
 

@@ -13,6 +13,7 @@ from ..base.sheet import Sheet
 from ..base.work import Arguments, Work
 from ..base.work import Result as Value
 from ..notebook import ShortRepr
+from ..settings.dips import Dips
 from ..settings.methods import METHODS
 from ..settings.variogram import Variogram
 
@@ -42,7 +43,8 @@ class Interpolation(ShortRepr):
 class Task:
     """The input of a method: points (P, 3) without contradictions, nodes (N, 2), the complete settings of the
     method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be estimated from
-    the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3))."""
+    the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3)). dips:
+    of the surface, no two at one position, or None."""
 
     work: Work
     points: np.ndarray
@@ -51,6 +53,7 @@ class Task:
     triangles: np.ndarray | None = None
     left_out: bool = False
     surfaces: Mapping[str, Sheet] = field(default_factory=dict)
+    dips: Dips | None = None
 
     def run(
         self, function: Callable[Arguments, Value], *arguments: Arguments.args, **options: Arguments.kwargs

@@ -26,6 +26,7 @@ def dsi(task: Task) -> Result:
         given["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), given["equal"], np.nan)
     for lower, upper in (("above", "below"), ("above", "border"), ("border", "below")):
         _refuse_crossed(task, given, lower, upper)
+    dips = None if task.dips is None else (task.dips.positions, task.dips.gradients)
     equal, least, most = (given.get(bound, np.zeros(0)) for bound in ("equal", "least", "most"))
     found = task.run(
         native_module().dsi,
@@ -34,6 +35,7 @@ def dsi(task: Task) -> Result:
         task.triangles,
         (equal, least, most),
         settings["weight"] or 0.0,
+        dips,
     )
     warnings = []
     if found["outside"]:
@@ -41,12 +43,19 @@ def dsi(task: Task) -> Result:
             f"{found['outside']} of {len(task.points)} points lie outside the mesh and are ignored; "
             "other methods use them"
         )
+    if found["dips_outside"]:
+        warnings.append(f"{found['dips_outside']} dips lie outside the mesh and are ignored")
     beyond = [*_beyond(task, "above"), *_beyond(task, "below")]
     warnings += beyond
     if found["missed"] and not beyond:
         warnings.append(
             f"{found['missed']} of {len(task.points)} points cannot all be honored on this mesh, the "
             f"largest misfit is {found['misfit']:.3g}: use a shorter edge_length, or give points a weight"
+        )
+    if found["dips_missed"]:
+        warnings.append(
+            "some dips cannot be honored on this mesh beside the points in their triangles: use a shorter "
+            "edge_length, or give points a weight"
         )
     if not found["converged"]:
         warnings.append(

@@ -10,7 +10,8 @@ import numpy as np
 from ..base.errors import InputRefused
 from ..base.mapped_arrays import in_pieces
 from ..base.work import Work, refused_as
-from ..settings.methods import METHODS, SURFACE_OPTIONS, checked_options
+from ..settings.dips import Dips
+from ..settings.methods import METHODS, SURFACE_OPTIONS, check_takes_dips, checked_options
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task, run_method
@@ -23,7 +24,7 @@ def heights(method: str, task: Task) -> Interpolation:
     if not len(task.points) and METHODS[method].needs_points(settings):
         raise InputRefused("there are no points", item="points")
     points, mis_ties = without_mis_ties(task.points)
-    task = replace(task, points=points)
+    task, of_dips = with_dips(method, replace(task, points=points))
     reason = ""
     with refused_as(refused_points):
         if method == "auto":
@@ -34,7 +35,8 @@ def heights(method: str, task: Task) -> Interpolation:
             result = run_method(method, task)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
-    warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, nodes)]
+    warnings = [*([mis_ties] if mis_ties else []), *of_dips]
+    warnings += [*(few_points(points, method) if task.dips is None else []), *elsewhere(points, nodes)]
     warnings += result.warnings
     if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
         warnings += runs_away(points, result.z, method)
@@ -51,14 +53,25 @@ def heights(method: str, task: Task) -> Interpolation:
     )
 
 
-def chosen(work: Work, points, settings: dict) -> tuple[str, dict]:
-    """The method that "auto" with these settings takes for points, and its options: they give the same
-    heights. Raises InputRefused."""
+def with_dips(method: str, task: Task) -> tuple[Task, list[str]]:
+    """The task with one dip at each position, or None where there are none, and a warning. Raises
+    OptionRefused where the method does not use dips."""
+    if task.dips is None or not len(task.dips):
+        return replace(task, dips=None), []
+    check_takes_dips(method)
+    dips, warning = task.dips.merged()
+    return replace(task, dips=dips), [warning] if warning else []
+
+
+def chosen(work: Work, points, settings: dict, dips: Dips | None = None) -> tuple[str, dict]:
+    """The method that "auto" with these settings takes for points and dips, and its options: they give the
+    same heights. Raises InputRefused."""
     if not len(points):
         raise InputRefused("there are no points", item="points")
     points, _ = without_mis_ties(points)
     with refused_as(refused_points):
-        trial, _ = automatic.choose(Task(work, points, np.empty((0, 2)), settings))
+        task, _ = with_dips("auto", Task(work, points, np.empty((0, 2)), settings, dips=dips))
+        trial, _ = automatic.choose(task)
     method, options = trial.candidate.method, trial.candidate.options
     if "extrapolate" in METHODS[method].options:
         options = {**options, "extrapolate": settings["extrapolate"]}

@@ -14,6 +14,7 @@ from ..cells.model_data import ModelData
 from ..exporters import save_model
 from ..exporters.report import Report, model_report
 from ..exporters.surfaces import save_surfaces
+from ..proof.observed import observed
 from ..proof.validation import PLACES_OF_CHECK, ValidationReport, validate
 from ..results.contours import contours
 from ..results.erosion import Erosion, eroded
@@ -161,3 +162,4 @@ class Model(ModelData):
     section = cutting.section
     fence = cutting.fence
     borehole = borehole
+    observed = observed

@@ -16,7 +16,9 @@ from ..base.stored_objects import NOT_STORED
 from ..base.toml_table import Source
 from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
+from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
+from ..settings.dips import DipFile, Dips
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
@@ -28,8 +30,10 @@ from ..settings.methods import (
     METHODS,
     SURFACE_OPTIONS,
     check_method,
+    check_takes_dips,
     checked_options,
 )
+from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.rules import DEFAULT_RULE
 from ..settings.schema import ROCK, SURFACE
@@ -42,11 +46,14 @@ from .entry import (
     refused_by,
     shapes_given,
 )
+from .field_checks import check_field_data, names_of_units
 from .library import Library
 from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .region_rings import is_several
 from .structure_checks import check_structures
 from .structure_entries import Body, Fault, Shaped
+
+BASE_BLOCK = "base block"  # the name of the block on the base, where its surface gives it none
 
 
 @dataclass
@@ -56,10 +63,13 @@ class Surface(Shaped):
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
     (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
     PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
+    Some methods do without points; some also use its `dips`, a file, a DipFile or arrays. With
+    `minimum_thickness` an interpolated surface stays so far above the
     older one; `correlation` is that of the errors of its heights with those of the older one, in ensembles.
     `rule` says what it does to older rock (docs/reference/project_file.md). `property` is the library id of
     the block deposited beneath it (0: none), `block` that block's name.
+    `contacts` are those of its points that follow from observations of its rock mass, and `bounds` the
+    heights that it lies at or above, or at or below; both are found when a project is read, and no input.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -74,8 +84,11 @@ class Surface(Shaped):
     property: int = 0
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
+    dips: Dips | DipFile | str | Path | None = None
     minimum_thickness: float | None = None
     correlation: float | None = None
+    contacts: np.ndarray | None = field(default=None, repr=False, compare=False)
+    bounds: Bounds | None = field(default=None, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
 
@@ -102,6 +115,33 @@ class Surface(Shaped):
         assert not isinstance(self.points, (str, Path, PointFile))
         return np.empty((0, 3)) if self.points is None else np.asanyarray(self.points, np.float64)
 
+    @builtins.property  # a field of this class is called property
+    def dip_file(self) -> DipFile | None:
+        """The file of its dips and how it is read; None where they are arrays, or there are none."""
+        if isinstance(self.dips, (str, Path)):
+            return DipFile(self.dips)
+        return self.dips if isinstance(self.dips, DipFile) else None
+
+    def known_dips(self) -> Dips | None:
+        """The dips of a surface that is read."""
+        assert self.dips is None or isinstance(self.dips, Dips)
+        return self.dips
+
+    def contact_array(self) -> np.ndarray:
+        """(C, 3) float64 its contacts; none where it has none."""
+        return np.empty((0, 3)) if self.contacts is None else self.contacts
+
+    def own_points(self) -> np.ndarray | None:
+        """(P, 3) the points of a surface that is read without its contacts; None where it has no others."""
+        points, contacts = self.point_array(), self.contact_array()
+        count = len(points) - len(contacts)
+        if np.array_equal(points[max(count, 0) :], contacts):  # as they are added
+            own = points[:count]
+        else:
+            known = set(map(tuple, contacts.tolist()))
+            own = points[[tuple(point) not in known for point in points.tolist()]]
+        return own if len(own) else None
+
     def method_options(self) -> tuple[str, dict]:
         """The method and its complete options; of a ready mesh those by which it is continued to faults.
         Raises OptionRefused."""
@@ -117,8 +157,11 @@ class Rock(Entry):
 
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
-    `boreholes` give points to every surface that is not a ready mesh, beside its own; `hole_picks` is what
-    each of them met once they are read (Picks.holes): for display, no input.
+    `boreholes` give points to every surface that is not a ready mesh, beside its own, and observations of
+    blocks; `hole_picks` is what each of them met once they are read (Picks.holes): for display, no input.
+    `observations` are further places that lie in a block, a file, an ObservationFile or Observations; once
+    they are read, with those of the boreholes. `names` says what a name in these tables means: {"SST":
+    "Sandstone"}, the name of a block, surface or body, or "" for nothing.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
@@ -140,15 +183,36 @@ class Rock(Entry):
     base_elevation: float | None = None
     constraints: Sequence = ()
     boreholes: Boreholes | None = None
+    observations: str | Path | ObservationFile | Observations | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
     hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False, metadata=NOT_STORED)
+
+    @property
+    def observation_file(self) -> ObservationFile | None:
+        """The table of its observations; None where they are arrays, or there are none."""
+        given = self.observations
+        if isinstance(given, (str, Path)):
+            return ObservationFile(given)
+        return given if isinstance(given, ObservationFile) else None
+
+    @property
+    def observed(self) -> Observations | None:
+        """The observations of a rock mass that is read; None where there are none."""
+        assert self.observation_file is None
+        return self.observations if isinstance(self.observations, Observations) else None
 
     @property
     def region_file(self) -> Path | None:
         """The file of its region; None where there is none."""
         layer = map_layer(self.region)
         return None if layer is None else Path(layer.file)
+
+    def block_names(self) -> list[str]:
+        """The names of the blocks beneath its surfaces, the first that of the block on the base."""
+        oldest = [surface.block or BASE_BLOCK for surface in self.surfaces[:1]]
+        return [*oldest, *(surface.block_name for surface in self.surfaces[1:])]
 
     def rings(self) -> list[np.ndarray]:
         """The rings (N, 2) of a region of arrays, outlines and holes alike; they count even-odd."""
@@ -196,9 +260,12 @@ class Project:
             files += [file for given in rock.constraints for file in layer_files(given)]
             files += files_of_sizes(rock.size)
             files += rock.boreholes.files if rock.boreholes is not None else []
+            files += [Path(rock.observation_file.file)] if rock.observation_file is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
+                if surface.dip_file is not None:
+                    files.append(Path(surface.dip_file.file))
         for entry in (*self.faults, *self.bodies):
             if entry.input_file is not None:
                 files += [entry.input_file, *companions(entry.input_file)]
@@ -206,7 +273,10 @@ class Project:
 
     def stage(self, m: int) -> Project:
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
-        rocks = [Rock(**{**vars(rock), "surfaces": rock.surfaces[: m + 1]}) for rock in self.rocks]
+        rocks = [replace(rock, surfaces=rock.surfaces[: m + 1]) for rock in self.rocks]
+        for rock in rocks:
+            known = names_of_units(self, rock)
+            rock.names = {code: name if name in known else "" for code, name in rock.names.items()}
         return replace(self, rocks=rocks)
 
 
@@ -247,7 +317,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
     if len(rock.constraints) and not rock.interpolates:
         what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
-    _check_boreholes(rock, refuse)
+    check_field_data(project, rock)
     names: set[str] = set()
     for surface in rock.surfaces:
         _check_surface(project, rock, surface)
@@ -257,17 +327,6 @@ def _check_rock(project: Project, rock: Rock) -> None:
             raise surface.refused("another surface has this name", "name", advice, item)
         names.add(surface.name)
     _check_references(rock)
-
-
-def _check_boreholes(rock: Rock, refuse) -> None:
-    if rock.boreholes is None:
-        return
-    with refused_by(refuse, "boreholes", "boreholes: "):
-        rock.boreholes.check()
-    for file in rock.boreholes.files:
-        check_file(file, "boreholes", refuse)
-    if not rock.interpolates:
-        raise refuse("boreholes have no effect, as no surface is interpolated", "boreholes")
 
 
 def _check_mesh(rock: Rock, refuse) -> None:
@@ -295,6 +354,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         raise surface.refused("a surface has no name", "name", item=rock.item)
     refuse = partial(surface.refused, item=surface_item(rock, surface))
     _check_shape(rock, surface, refuse, bool(project.faults))
+    _check_dips(surface, refuse)
     check_values(surface, SURFACE, ("minimum_thickness", "correlation", "rule", "property", "block"), refuse)
     check_property(project.library, surface.property, refuse)
 
@@ -303,7 +363,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
     """Checks the source of the shape. continues: a ready mesh may also have a method, by which it is
     continued to faults."""
     shapes = shapes_given(surface, ("points", "mesh"), refuse)
-    no_points = not shapes and rock.boreholes is None
+    no_points = not shapes and rock.boreholes is None and rock.observations is None
     if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if shapes:
@@ -331,6 +391,20 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
                 "points",
                 f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
             )
+
+
+def _check_dips(surface: Surface, refuse) -> None:
+    if surface.dips is None:
+        return
+    file = surface.dip_file
+    with refused_by(refuse, "dips", "dips: "):
+        if file is not None:
+            file.check()
+    check_file(None if file is None else file.file, "dips", refuse)
+    if not surface.interpolated:
+        raise refuse("'dips' has no effect, as a mesh is not interpolated", "dips")
+    with refused_by(refuse):
+        check_takes_dips(surface.method or DEFAULT_METHOD)
 
 
 def _check_continuation(surface: Surface, refuse) -> None:

@@ -12,9 +12,11 @@ from ..base.finite import is_number
 from ..base.toml_table import Source, Table, TomlDocument
 from ..base.units import METERS, MODEL_UNIT
 from ..settings.boreholes import Boreholes
+from ..settings.dips import DipFile
 from ..settings.map_layer import MapLayer, is_wkt
 from ..settings.method_options import checked
 from ..settings.methods import OPTIONS
+from ..settings.observation_file import ObservationFile
 from ..settings.point_file import MeshFile, PointFile
 from ..settings.schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
 from ..settings.setting import Settings
@@ -71,6 +73,8 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         size=_read_size(table, folder),
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
+        observations=_read_observations(table, folder),
+        names=table.content.get("names", {}),
         source=Source(table.document, table.path),
         **_values(table, ROCK, ("edge_length", "triangles", "mesher", "base_elevation")),
     )
@@ -173,12 +177,29 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
     said = ("columns", "separator", "decimal", "units", "downward_dip")
-    keys.allow_only(("picks", "collars", "survey", *said))
+    files = ("picks", "collars", "survey", "intervals")
+    keys.allow_only((*files, *said))
     values = {name: given[name] for name in said if name in given}
-    for name in ("collars", "survey"):
+    for name in files:
         if (file := keys.text(name)) is not None:
             values[name] = folder / file
-    return Boreholes(folder / keys.text("picks", required=True), **values)
+    return Boreholes(**values)
+
+
+def _read_observations(table: Table, folder: Path) -> ObservationFile | None:
+    given = table.content.get("observations")
+    if given is None:
+        return None
+    if isinstance(given, str):
+        return ObservationFile(folder / table.text("observations", required=True))
+    if not isinstance(given, dict):
+        advice = 'write observations = "outcrops.csv"'
+        raise table.refuse("'observations' must be a file or a table", "observations", advice)
+    keys = _inner(table, "observations", given)
+    said = ("columns", "separator", "decimal", "units")
+    keys.allow_only(("file", *said))
+    values = {name: given[name] for name in said if name in given}
+    return ObservationFile(folder / keys.text("file", required=True), **values)
 
 
 def _inner(table: Table, key: str, content: dict) -> Table:
@@ -210,11 +231,25 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     return Surface(
         name=name,
         method=table.text("method"),
+        dips=_read_dips(table, folder),
         options=options,
         source=Source(table.document, table.path),
         **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness", "correlation")),
         **_shape_files(table, folder),
     )
+
+
+def _read_dips(table: Table, folder: Path) -> DipFile | Path | None:
+    given = table.content.get("dips")
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        return folder / table.text("dips", required=True)
+    keys = _inner(table, "dips", given)
+    said = ("columns", "separator", "decimal", "units")
+    keys.allow_only(("file", *said))
+    values = {name: given[name] for name in said if name in given}
+    return DipFile(folder / keys.text("file", required=True), **values)
 
 
 def _shape_files(table: Table, folder: Path) -> dict:

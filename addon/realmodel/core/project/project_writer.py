@@ -6,6 +6,7 @@ Numbers have as many digits as they need: the project that is read back is the s
 
 from __future__ import annotations
 
+import csv
 import io
 import re
 from collections.abc import Mapping
@@ -18,6 +19,8 @@ from ..base.atomic import Outputs
 from ..base.errors import UsageError
 from ..base.triangles import checked_triangulation
 from ..base.units import MODEL_UNIT
+from ..readers import UnitNames
+from ..settings.dips import Dips
 from ..settings.meshers import DEFAULT_MESHER
 from ..settings.point_file import PointFile
 from ..settings.rules import DEFAULT_RULE
@@ -70,9 +73,14 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             lines.append(f"library = {toml_value(library)}")
         for rock in project.rocks:
             lines += ["", "[[rock]]", *_rock_lines(rock)]
+            if rock.observation_file is not None:
+                raise UsageError(f"rock '{rock.name}': its observations have not been read; build it first")
+            if rock.observed is not None and len(rock.observed):
+                target = beside(rock.name, "observations", ending=".csv")
+                lines.append(f"observations = {toml_value(write(target, observations_text(rock)))}")
             for surface in rock.surfaces:
-                shape = _shape_file(rock, surface, beside, write)
-                lines += ["", "[[rock.surface]]", *_surface_lines(surface, shape)]
+                files = _surface_files(rock, surface, beside, write)
+                lines += ["", "[[rock.surface]]", *_surface_lines(surface, files)]
         for kind, entries in (("fault", project.faults), ("body", project.bodies)):
             for entry in entries:
                 lines += ["", f"[[{kind}]]", *_structure_lines(kind, entry, beside, write)]
@@ -137,24 +145,27 @@ def _point_text(point: list[float]) -> str:
     return "[" + ", ".join(repr(value) for value in point if value == value) + "]"
 
 
-def _shape_file(rock: Rock, surface: Surface, beside, write) -> tuple[str, str] | None:
-    if surface.input_file is not None:
+def _surface_files(rock: Rock, surface: Surface, beside, write) -> dict[str, str]:
+    """The names of the files of a surface, by their keys."""
+    if surface.input_file is not None or surface.dip_file is not None:
         raise UsageError(f"surface '{surface.name}': its file has not been read; build the model first")
     if surface.interpolated:
-        points = surface.point_array()
-        if not len(points):
-            return None
-        target = beside(rock.name, surface.name, ending=".csv")
-        return "points", write(target, points_text(points))
+        points = surface.own_points()  # its contacts follow from the observations again
+        dips, files = surface.known_dips(), {}
+        if points is not None and len(points):
+            target = beside(rock.name, surface.name, ending=".csv")
+            files["points"] = write(target, points_text(points))
+        if dips is not None and len(dips):
+            target = beside(rock.name, surface.name, "dips", ending=".csv")
+            files["dips"] = write(target, dips_text(dips))
+        return files
     target = beside(rock.name, surface.name, ending=".off")
-    return "mesh", write(target, off_text(surface.vertices, surface.triangles))
+    return {"mesh": write(target, off_text(surface.vertices, surface.triangles))}
 
 
-def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]:
+def _surface_lines(surface: Surface, files: Mapping[str, str]) -> list[str]:
     given = surface
-    values: dict[str, object] = {"name": given.name}
-    if shape is not None:
-        values[shape[0]] = shape[1]
+    values: dict[str, object] = {"name": given.name, **files}
     # for a ready mesh the method is only for its continuation to faults
     values |= {"method": given.method, **given.options}
     values |= {
@@ -219,6 +230,38 @@ def _text(value: str) -> str:
 def points_text(points) -> bytes:
     """Points (P, 3) as CSV."""
     return b"x,y,z\n" + _rows(np.asarray(points, np.float64), ",")
+
+
+def dips_text(dips: Dips) -> bytes:
+    """Dips as CSV: their slopes, of which angles would not give back each bit."""
+    columns, names = [dips.positions, dips.gradients], "x,y,slope_x,slope_y"
+    if dips.z is not None and np.isfinite(dips.z).all():
+        columns, names = [*columns, dips.z[:, None]], f"{names},z"
+    return f"{names}\n".encode() + _rows(np.hstack(columns), ",")
+
+
+def observations_text(rock: Rock) -> bytes:
+    """The observations of a rock mass as CSV, each block by a name that means it when the table is read."""
+    given = rock.observed
+    assert given is not None
+    surfaces = [surface.name for surface in rock.surfaces]
+    units = UnitNames(surfaces, rock.block_names())
+    written = {
+        name: next((each for each in (name, block) if units.block(each) == name), name)
+        for name, block in zip(surfaces, rock.block_names(), strict=True)
+    }
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(("x", "y", "z", "block", "hole", "depth"))
+    for place, block, hole, depth in zip(
+        given.places.tolist(),
+        given.blocks.tolist(),
+        given.holes.tolist(),
+        given.depths.tolist(),
+        strict=True,
+    ):
+        table.writerow((*place, written.get(block, block), hole, "" if np.isnan(depth) else depth))
+    return text.getvalue().encode()
 
 
 def off_text(vertices, triangles) -> bytes:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of input files.
 
-Comes in: a path and its reading options. Goes out: points, triangulated surfaces, shapes in plan, picks of
-boreholes, in meters, as arrays in memory or in files; damaged files are refused with their line.
+Comes in: a path and its reading options. Goes out: points, dips, triangulated surfaces, shapes in plan, picks
+of boreholes, blocks at places, in meters, as arrays in memory or in files; damaged files are refused with
+their line.
 """
 
 from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
@@ -10,8 +11,11 @@ from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
 from .meshes.off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .tables.boreholes import Picks, read_boreholes
+from .tables.dips import gradient_of, read_dips
+from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
 from .tables.table_preview import TablePreview, preview_table
+from .tables.unit_names import UnitNames
 
 __all__ = [
     "MAP_ENDINGS",
@@ -20,10 +24,14 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
+    "UnitNames",
+    "gradient_of",
     "is_mesh_file",
     "preview_table",
     "read_boreholes",
+    "read_dips",
     "read_mesh",
+    "read_observed_places",
     "read_off",
     "read_point_file",
     "read_points",

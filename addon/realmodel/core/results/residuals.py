@@ -38,8 +38,9 @@ class Residuals:
         return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
 
 
-def _heights(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
-    """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
+def heights_of_points(model: ModelData, number: int, at: int, rock: int, points: np.ndarray) -> np.ndarray:
+    """(P,) the heights of a surface at points (P, 3); with faults those of its sheet in each point's
+    compartment. number: of the surface in the model, at: in its rock mass, rock: of that."""
     if not model.structures.is_divided:
         return at_places(*model.surface(number), points[:, :2], model.threads)
     entry = model.rock_inputs[rock]
@@ -67,7 +68,7 @@ def residuals(model: ModelData) -> list[Residuals]:
         for at, surface in enumerate(rock.surfaces):
             points = surface.point_array()
             if len(points) and number < len(model.surface_names):
-                there = _heights(model, number, at, r, points)
+                there = heights_of_points(model, number, at, r, points)
                 known = np.isfinite(there)
                 values = points[known, 2] - there[known]
                 found.append(Residuals(rock.name, surface.name, points[known], values, int((~known).sum())))

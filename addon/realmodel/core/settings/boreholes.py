@@ -3,34 +3,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from .method_options import OptionRefused
 from .point_file import check_units
 
-COLUMNS = ("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination")
+COLUMNS = (
+    *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
+    *("from", "to", "block"),
+)
 DOWNWARD_DIPS = ("negative", "positive")
 
 
 @dataclass(frozen=True)
 class Boreholes:
-    """Tables of boreholes, which give points for all surfaces of a rock mass at once.
+    """Tables of boreholes, which give points and bounds for all surfaces of a rock mass at once.
 
-    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the collar
-    (along the hole), or its elevation. collars: a table with a row for each hole: hole, x, y, z, and azimuth
-    and dip or inclination where it is straight but not vertical; None where the rows of picks have x, y and z
-    themselves. survey: a table with a row for each place where the direction of a hole was measured: hole,
-    depth along it, azimuth in degrees clockwise from north (+y), and either the inclination in degrees from
-    the vertical or the dip from the horizontal; None: holes go as the collars say, or straight down.
-    downward_dip: "negative" or "positive", which dips go down; None: all of a table go the same way, down.
-    columns: {"hole": "BHID", ...}, names or numbers from 1 of columns that are called
-    otherwise, in whichever tables have them. separator, decimal: as of a PointFile, of all tables. units: of
-    all, "ft", or {"xy": "m", "z": "ft"} (depths are in the unit of z); None: those of the model.
+    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the
+    collar (along the hole), or its elevation. intervals: a table with a row for each logged interval:
+    hole, from, to (along the hole) and block. One of the two, or both. collars: a table with a row for
+    each hole: hole, x, y, z, and azimuth and dip or inclination where it is straight but not vertical;
+    None where the rows of picks and intervals have x, y and z themselves. survey: a table with a row for
+    each place where the direction of a hole was measured: hole, depth along it, azimuth in degrees
+    clockwise from north (+y), and either the inclination in degrees from the vertical or the dip from the
+    horizontal; None: holes go as the collars say, or straight down. downward_dip: "negative" or
+    "positive", which dips go down; None: all of a table go the same way, down. columns: {"hole": "BHID",
+    ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them.
+    separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
+    (depths are in the unit of z); None: those of the model.
     """
 
-    picks: str | Path
+    picks: str | Path | None = None
     collars: str | Path | None = None
     columns: Mapping = field(default_factory=dict)
     separator: str | None = None
@@ -38,26 +43,36 @@ class Boreholes:
     units: str | Mapping | None = None
     survey: str | Path | None = None
     downward_dip: str | None = None
+    intervals: str | Path | None = None
 
     @property
     def files(self) -> list[Path]:
         """The tables that there are."""
-        return [Path(file) for file in (self.collars, self.survey, self.picks) if file is not None]
+        given = (self.collars, self.survey, self.picks, self.intervals)
+        return [Path(file) for file in given if file is not None]
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if not isinstance(self.columns, Mapping):
-            what = f"'columns' must be a table of column names, not {self.columns!r}"
-            raise OptionRefused(what, "columns", 'write columns = { hole = "BHID" }')
-        for name, column in self.columns.items():
-            if name not in COLUMNS:
-                what = f"'columns' has an unknown column '{name}'"
-                raise OptionRefused(what, "columns", f"there are {', '.join(COLUMNS)}")
-            is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
-            if not is_number and not (isinstance(column, str) and column.strip()):
-                what = f"column '{name}' must be a name or a number from 1, not {column!r}"
-                raise OptionRefused(what, "columns")
+        if self.picks is None and self.intervals is None:
+            what = "there are neither picks nor intervals"
+            raise OptionRefused(what, "picks", "give the table of picks = ... or intervals = ...")
+        check_column_names(self.columns, COLUMNS)
         if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
             what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
             raise OptionRefused(what, "downward_dip")
         check_units(self.units)
+
+
+def check_column_names(columns, known: Sequence[str]) -> None:
+    """Refuses columns that are no table of names or numbers by known meanings. Raises OptionRefused."""
+    if not isinstance(columns, Mapping):
+        what = f"'columns' must be a table of column names, not {columns!r}"
+        raise OptionRefused(what, "columns", f'write columns = {{ {known[0]} = "BHID" }}')
+    for name, column in columns.items():
+        if name not in known:
+            what = f"'columns' has an unknown column '{name}'"
+            raise OptionRefused(what, "columns", f"there are {', '.join(known)}")
+        is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
+        if not is_number and not (isinstance(column, str) and column.strip()):
+            what = f"column '{name}' must be a name or a number from 1, not {column!r}"
+            raise OptionRefused(what, "columns")

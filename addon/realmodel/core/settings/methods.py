@@ -32,8 +32,9 @@ class Method:
     instead_of_points: the option that takes the place of points, if any. on_mesh: it needs the triangles of
     the nodes. leaves_one_out: it estimates each point from the others in one run. is_local: its heights at a
     node do not depend on the other nodes, and it is cheap. is_triangulated: it works on the triangulation of
-    the points. spreads_thickness: `parallel` may use it. has_shape: one or two points are too few for its
-    surface. tamed_by: the advice where its heights go far beyond those of the points.
+    the points. spreads_thickness: `parallel` may use it. takes_dips: it uses dips. has_shape: one or two
+    points are too few for its surface. tamed_by: the advice where its heights go far beyond those of the
+    points.
     """
 
     label: str
@@ -46,6 +47,7 @@ class Method:
     is_local: bool = False
     is_triangulated: bool = False
     spreads_thickness: bool = False
+    takes_dips: bool = False
     has_shape: bool = True
     tamed_by: str | None = None
 
@@ -205,6 +207,7 @@ METHODS: dict[str, Method] = {
         leaves_one_out=True,
         is_local=True,
         spreads_thickness=True,
+        takes_dips=True,
     ),
     "universal_kriging": Method(
         "Universal Kriging",
@@ -225,6 +228,7 @@ METHODS: dict[str, Method] = {
         },
         leaves_one_out=True,
         is_local=True,
+        takes_dips=True,
         tamed_by='its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
     ),
     "idw": Method(
@@ -263,6 +267,7 @@ METHODS: dict[str, Method] = {
             **_EXTRAPOLATE,
         },
         is_local=True,
+        takes_dips=True,
         tamed_by='use smoothing, or extrapolate = "nearest"',
     ),
     "dsi": Method(
@@ -286,6 +291,7 @@ METHODS: dict[str, Method] = {
             **_EXTRAPOLATE,
         },
         on_mesh=True,
+        takes_dips=True,
         tamed_by="points that differ much within a triangle make it steep: give points a weight",
     ),
     "natural_neighbour": Method(
@@ -380,7 +386,11 @@ METHODS: dict[str, Method] = {
         has_shape=False,
     ),
     "auto": Method(
-        "Automatic", "Chooses the method with the smallest cross-validation error", None, _EXTRAPOLATE
+        "Automatic",
+        "Chooses the method with the smallest cross-validation error",
+        None,
+        _EXTRAPOLATE,
+        takes_dips=True,
     ),
 }
 
@@ -416,6 +426,15 @@ def check_method(method: str) -> None:
     near = difflib.get_close_matches(str(method), METHODS, n=1)
     advice = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(METHODS)}"
     raise OptionRefused(f"unknown method '{method}'", option="method", advice=advice)
+
+
+def check_takes_dips(method: str) -> None:
+    """Refuses a method that dips have no effect on."""
+    check_method(method)
+    if METHODS[method].takes_dips:
+        return
+    able = ", ".join(name for name, each in METHODS.items() if each.takes_dips)
+    raise OptionRefused(f"method '{method}' does not use dips", option="dips", advice=f"{able} use them")
 
 
 def checked_options(method: str, options: Mapping) -> dict:

@@ -77,6 +77,8 @@ ROCK = {
     ),
     "constraints": _OTHER,
     "boreholes": _OTHER,
+    "observations": _OTHER,
+    "names": _OTHER,
 }
 
 SIZE = {
@@ -169,6 +171,7 @@ SURFACE = {
     "points": _OTHER,
     **READING,
     "mesh": _OTHER,
+    "dips": _OTHER,
     "method": Setting(
         DEFAULT_METHOD,
         kind="word",

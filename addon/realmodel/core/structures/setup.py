@@ -17,12 +17,14 @@ from ..base.sheet import Sheet
 from ..base.work import Work, native_module
 from ..project.project import Project, Rock
 from ..project.structure_entries import Fault
+from ..surfaces.field_data import left_out_warnings
 from ..surfaces.prepare import interpolate_rock, mesh_rock, read_rocks, settle_methods
 from ..surfaces.rock_input import RockInput
 from ..surfaces.rock_structure import joined
 from ..surfaces.sides import FaultShape, fault_sides
 from ..surfaces.surface_input import Reader, read_each
 from .gaps import close_gaps, tops_of_faults
+from .observed_places import apply_in_compartments
 from .parts.parts import Structures, add_compartments, box_around, divide, structures_of
 from .parts.refusals import refused_structure
 from .shapes.reading import read_structures
@@ -116,6 +118,7 @@ def make_structures(
     is_closed = False
     for _ in range(_ROUNDS):
         add_compartments(structures, inputs)
+        apply_in_compartments(work, structures, inputs)
         tops = [tops_of_faults(structures, number, entry.rock) for number, entry in enumerate(inputs)]
         middle = first + (end - first) * sum(map(len, tops)) / sum(len(entry.surfaces) for entry in inputs)
         _make_all(work, inputs, tops, first, middle, stage, keep)
@@ -125,6 +128,7 @@ def make_structures(
             if closed is not structures:
                 structures = divide(work, closed, box)
                 add_compartments(structures, inputs)
+                apply_in_compartments(work, structures, inputs)
                 _make_all(work, inputs, tops, first, middle, stage, keep)
         _make_all(work, inputs, None, middle, end, stage, keep)
         for entry in inputs:
@@ -144,6 +148,8 @@ def make_structures(
             "the faults divide space in new parts each time that the surfaces are made in these; "
             "give points of the surfaces in all compartments, or extend the faults"
         )
+    for entry in inputs:
+        entry.warnings += left_out_warnings(entry)
     if joins:
         for entry in inputs:
             structure = entry.divided()

@@ -219,8 +219,7 @@ class _Reach:
         return outside
 
     def _name(self, number: int) -> str:
-        surface = self.entry.rock.surfaces[number]
-        return f"'{surface.block_name if number else surface.block or 'base block'}'"
+        return f"'{self.entry.rock.block_names()[number]}'"
 
 
 class _Blocks:

@@ -188,7 +188,7 @@ def local_surfaces(rock: Rock) -> set[int]:
 
 def is_local(surface: Surface) -> bool:
     """Whether the heights of a surface at some nodes do not depend on others."""
-    if not surface.interpolated:
+    if not surface.interpolated or surface.dips is not None:  # dips are few: they are not divided
         return False
     method, settings = surface.method_options()
     if METHODS[method].needs_points(settings) and not len(surface.point_array()):

@@ -11,17 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, naming, number_list
+from ..base.errors import InputRefused, number_list
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from ..project.project import Project, Rock
-from ..readers import Picks, read_boreholes
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
+from .field_data import FieldData, apply_observations, left_out_warnings, read_field_data
 from .planar_mesh import MeshOptions, mesh_rings, triangulate_rings
 from .rock_input import RockInput
 from .surface_heights import give_heights, interpolation_order, settle_method
@@ -41,20 +41,19 @@ _EDGE_LENGTH_KINDS = (
 def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None. reader: how surfaces are read."""
-    rocks, all_warnings, asked = [], [], []
+    rocks, all_warnings, all_left_out, asked = [], [], [], []
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
         rock = _read_constraints(rock, project.units)
-        picks = _read_picks(rock, project.units)
-        warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
-        for surface in rock.surfaces:
-            met = picks.points.pop(surface.name, None) if surface.interpolated else None
-            asked.append(SurfaceInput.of(rock, surface, met, project.units))
-        rocks.append(replace(rock, boreholes=None, hole_picks=picks.holes or rock.hole_picks))
-        all_warnings.append((warnings, _unnamed(rock, picks)))
+        field = read_field_data(project, rock)
+        warnings += [BuildWarning(text, "points", rock.name) for text in field.picks.warnings]
+        asked += [SurfaceInput.of(rock, *each, project.units) for each in field.surfaces]
+        rocks.append(field.rock)
+        all_warnings.append((warnings, _unnamed(rock, field)))
+        all_left_out.append(field.left_out)
     found = dict(reader(work, asked))
     inputs, first = [], 0
-    for rock, (warnings, of_picks) in zip(rocks, all_warnings, strict=True):
+    for rock, (warnings, of_picks), left_out in zip(rocks, all_warnings, all_left_out, strict=True):
         own = [found[number] for number in range(first, first + len(rock.surfaces))]
         first += len(own)
         warnings += [
@@ -64,23 +63,28 @@ def read_rocks(work: Work, project: Project, reader: Reader = read_each) -> list
         ]
         warnings += of_picks
         rock = replace(rock, surfaces=[each.surface for each in own])
-        require_points_near(rock, project.units)
         shapes, faces = [each.shape for each in own], [each.faces for each in own]
-        inputs.append(RockInput(rock, shapes, None, [None] * len(own), faces, warnings))
+        entry = RockInput(rock, shapes, None, [None] * len(own), faces, warnings, left_out=left_out)
+        if rock.observed is not None:
+            apply_observations(work, entry)
+            if not (project.faults or project.bodies):  # else once it is known where these are
+                entry.warnings += left_out_warnings(entry)
+        require_points_near(entry.rock, project.units)
+        inputs.append(entry)
     return inputs
 
 
-def _unnamed(rock: Rock, picks: Picks) -> list[BuildWarning]:
+def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
     """The warning about picks of names that no surface has."""
-    if not picks.points:
+    if not field.unnamed:
         return []
-    what = f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
+    what = f"boreholes have picks of {number_list(field.unnamed)}, which no surface from points is named"
     return [BuildWarning(what, "points", rock.name)]
 
 
 def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
-    or of text and boreholes, which are read into arrays. Raises InputRefused."""
+    or of text, boreholes and observations, which are read into arrays. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
@@ -91,14 +95,13 @@ def with_arrays(project: Project) -> Project:
             if not is_plain(rock.region):
                 rock, _ = _read_region(work, rock, project.units)
             rock = _read_constraints(rock, project.units)
-            picks = _read_picks(rock, project.units)
+            field = read_field_data(project, rock)
             surfaces = []
-            for surface in rock.surfaces:
-                met = picks.points.get(surface.name) if surface.interpolated else None
+            for surface, met in field.surfaces:
                 if met is not None:
                     surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
                 surfaces.append(surface)
-            rocks.append(replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes))
+            rocks.append(replace(field.rock, surfaces=surfaces))
         return rocks
 
     return replace(project, rocks=run(task))
@@ -130,14 +133,6 @@ def _read_constraints(rock: Rock, units: str) -> Rock:
     except InputRefused as error:
         file, line = rock.place_of(key)
         raise error.within(rock.item, file=file, line=line) from error
-
-
-def _read_picks(rock: Rock, units: str) -> Picks:
-    """The picks of the boreholes of a rock mass."""
-    if rock.boreholes is None:
-        return Picks()
-    with naming(rock.item):
-        return read_boreholes(rock.boreholes, units)
 
 
 def mesh_rock(work: Work, entry: RockInput) -> None:

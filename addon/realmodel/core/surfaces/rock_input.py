@@ -14,6 +14,7 @@ from ..base.stored_objects import NOT_STORED
 from ..heights import Interpolation
 from ..heights.draws import Draw
 from ..project.project import Rock
+from ..readers.tables.observations import LeftOut
 from ..settings.methods import SURFACE_OPTIONS
 from .rock_structure import RockStructure
 from .sides import RockFaults
@@ -23,14 +24,14 @@ from .sides import RockFaults
 class RockInput:
     """A rock mass, read and interpolated.
 
-    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its
-    triangulation in plan, or None. interpolations:
-    the result for each surface, None for ready meshes. file_faces: for each surface None, or the face of its
-    file that each triangle belongs to. attributes: of the vertices of each interpolated surface, by its
-    number (`variance`, `distance`). warnings: of reading and interpolating. structure: the compartments
-    of a rock mass with faults, and their sheets; a surface is all its sheets. overlapping: by number, the
-    error of a surface whose triangles overlap in a sheet because of a fault. draws: how each surface is drawn
-    in a realization of an ensemble; else None.
+    rock: as given, with arrays in the place of files. surfaces: oldest first. region: its triangulation
+    in plan, or None. interpolations: the result for each surface, None for ready meshes. file_faces: for
+    each surface None, or the face of its file that each triangle belongs to. attributes: of the vertices
+    of each interpolated surface, by its number (`variance`, `distance`). warnings: of reading and
+    interpolating. structure: the compartments of a rock mass with faults, and their sheets; a surface is
+    all its sheets. overlapping: by number, the error of a surface whose triangles overlap in a sheet
+    because of a fault. draws: how each surface is drawn in a realization of an ensemble; else None.
+    left_out: the observations that are not used. used: of Rock.observations (N,) bool, those that are.
     """
 
     rock: Rock
@@ -43,6 +44,8 @@ class RockInput:
     structure: RockStructure | None = None
     overlapping: dict[int, InputRefused] = field(default_factory=dict)
     draws: list[Draw] | None = field(default=None, metadata=NOT_STORED)
+    left_out: list[LeftOut] = field(default_factory=list)
+    used: np.ndarray | None = None
 
     def surface(self, number: int) -> Sheet:
         """The triangulation of a surface that is a ready mesh or interpolated already."""
@@ -103,6 +106,8 @@ class RockInput:
             {number: each for number, each in self.attributes.items() if number <= m},
             None if self.structure is None else self.structure.stage(m),
             self.overlapping,
+            left_out=self.left_out,
+            used=self.used,
         )
 
 

@@ -98,7 +98,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
         else:
             give = heights if entry.draws is None else entry.draws[number].heights
             task = Task(work, surface.point_array(), nodes, settings, triangles, surfaces=others)
-            result = give(method, task)
+            result = give(method, replace(task, dips=surface.known_dips()))
         shape = where_known(nodes, triangles, result.z)
         if trend is not None and not len(surface.point_array()):
             attributes = trend.attributes
@@ -118,6 +118,7 @@ def give_heights(work: Work, entry: RockInput, number: int, trend: Trend | None 
 def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: dict) -> Interpolation:
     """The heights of a surface of a RockInput on a trend, within the bounds of its method."""
     surface, (nodes, triangles) = entry.rock.surfaces[number], entry.planar_mesh()
+    dips = surface.known_dips()
     points, mis_ties = without_mis_ties(surface.point_array())
     away = points.copy()
     away[:, 2] -= heights_at(work, trend.sheet, points[:, :2])
@@ -135,6 +136,11 @@ def _on_trend(work: Work, entry: RockInput, number: int, trend: Trend, others: d
         given = heights_of(task, task.settings["border"], nodes, "border")
         border = np.where(np.isfinite(given), given, border)
     warnings = [*([mis_ties] if mis_ties else []), *elsewhere(points, nodes)]
+    if dips is not None and len(dips):
+        warnings.append(
+            f"its {len(dips)} dips have no effect where its points are few: there it follows the surface "
+            "beyond a fault"
+        )
     return replace(result, z=within_bounds(task, result.z, border), warnings=tuple(warnings))
 
 
@@ -154,7 +160,7 @@ def settle_method(work: Work, entry: RockInput, number: int) -> None:
     if method != "auto":
         return
     with naming(surface_item(rock, surface), surface.shape_source):
-        method, options = chosen(work, surface.points, settings)
+        method, options = chosen(work, surface.points, settings, surface.known_dips())
     rock.surfaces[number] = replace(surface, method=method, options=options)
 
 

@@ -18,7 +18,8 @@ from ..base.triangles import checked_triangulation
 from ..base.work import Work
 from ..heights.interpolate import checked_points
 from ..project.project import Rock, Surface, surface_item
-from ..readers import read_mesh, read_point_file
+from ..readers import read_dips, read_mesh, read_point_file
+from ..settings.dips import Dips
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ class ReadSurface:
 @dataclass(frozen=True)
 class SurfaceInput:
     """A surface before it is read, with all that reading it needs: another process may read it. rock: the
-    name of its rock mass; boreholes: the last file of boreholes, if any; met: the points where they meet
-    it."""
+    name of its rock mass; boreholes: the last file of boreholes or observations, if any; met: the points
+    where they meet it."""
 
     rock: str
     surface: Surface
@@ -59,6 +60,8 @@ class SurfaceInput:
     @classmethod
     def of(cls, rock: Rock, surface: Surface, met: np.ndarray | None, units: str) -> SurfaceInput:
         boreholes = None if rock.boreholes is None else rock.boreholes.files[-1]
+        if boreholes is None and rock.observation_file is not None:
+            boreholes = Path(rock.observation_file.file)
         return cls(rock.name, surface, boreholes, met, units)
 
     def read(self, step: Step = no_step, arrays: MappedArrays | None = None) -> ReadSurface:
@@ -71,7 +74,8 @@ class SurfaceInput:
         with naming(surface_item(Rock(self.rock, []), surface)):
             if surface.interpolated:
                 points, warnings = self._points(file, step, in_memory if arrays is None else arrays.gather)
-                return ReadSurface(replace(surface, points=points, shape_file=file), None, None, warnings)
+                read = replace(surface, points=points, dips=self._dips(step), shape_file=file)
+                return ReadSurface(read, None, None, warnings)
             vertices, triangles, faces, warnings = self._mesh(step, arrays)
         surface = replace(surface, vertices=vertices, triangles=triangles, mesh=None, shape_file=file)
         return ReadSurface(surface, Sheet(vertices, triangles), faces, warnings)
@@ -86,13 +90,19 @@ class SurfaceInput:
             own = np.empty((0, 3)) if points is None else checked_points(points)
             points = gather((*in_pieces(own), self.met), np.empty((0, 3)))
         if points is None and surface.needs_points:
-            raise InputRefused("it has no points, and no borehole has a pick of it", file=file)
+            raise InputRefused("it has no points, and no borehole or observation tells of it", file=file)
         if points is None or (isinstance(points, Sized) and not len(points) and not surface.needs_points):
             return np.empty((0, 3)), warnings
         checked = checked_points(points)
         # checked_points may return another array with the same values
         is_kept = surface.point_file is not None or self.met is not None
         return points if is_kept and isinstance(points, np.ndarray) else checked, warnings
+
+    def _dips(self, step: Step) -> Dips | None:
+        if (file := self.surface.dip_file) is not None:
+            return read_dips(file, self.units, step)
+        dips = self.surface.known_dips()
+        return None if dips is None else dips.checked()
 
     def _mesh(self, step: Step, arrays: MappedArrays | None):
         surface = self.surface

@@ -7,24 +7,28 @@
 #include <vector>
 
 #include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/dips.hpp"
 
 namespace realmodel::interpolation {
 
-/// Constraints of the heights of a mesh's nodes, beside the points. Empty: none; NaN: none at this
+/// Constraints of a mesh's heights beside the points. Of nodes, empty: none; NaN: none at this
 /// node.
-struct NodeConstraints {
+struct DsiConstraints {
     std::span<const double> equal;  ///< heights that nodes have, such as a fixed border
     std::span<const double> least;  ///< lower bounds
     std::span<const double> most;   ///< upper bounds
+    Dips dips{};  ///< slopes that triangles have; met as points are. The baseline is not used
 };
 
 struct DsiHeights {
-    std::vector<double> z;     ///< of each node
-    std::int64_t outside = 0;  ///< points that lie in no triangle and were left out
-    std::int64_t missed = 0;   ///< points that should be met exactly and are not
-    double misfit = 0;         ///< the largest of theirs
-    int iterations = 0;        ///< of conjugate gradients, in all
-    bool converged = true;     ///< whether the heights are as smooth as possible, to 1e-9
+    std::vector<double> z;          ///< of each node
+    std::int64_t outside = 0;       ///< points that lie in no triangle and were left out
+    std::int64_t missed = 0;        ///< points that should be met exactly and are not
+    double misfit = 0;              ///< the largest of theirs
+    std::int64_t dips_outside = 0;  ///< as of points
+    std::int64_t dips_missed = 0;
+    int iterations = 0;     ///< of conjugate gradients, in all
+    bool converged = true;  ///< whether the heights are as smooth as possible, to 1e-9
 };
 
 /// Discrete smooth interpolation (Mallet 1989, 1992; with the roughness of Frank, Tertois and
@@ -50,6 +54,6 @@ struct DsiHeights {
 DsiHeights dsi(std::span<const std::array<double, 3>> points,
                std::span<const std::array<double, 2>> nodes,
                std::span<const std::array<std::int32_t, 3>> triangles,
-               const NodeConstraints& constraints, double weight, const Execution& execution = {});
+               const DsiConstraints& constraints, double weight, const Execution& execution = {});
 
 }  // namespace realmodel::interpolation

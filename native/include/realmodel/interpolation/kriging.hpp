@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/dips.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/neighborhood.hpp"
 #include "realmodel/interpolation/variogram.hpp"
@@ -16,6 +17,7 @@ namespace realmodel::interpolation {
 struct KrigingOptions {
     Neighborhood neighborhood;  ///< all points are factored once
     Drift drift = Drift::kConstant;
+    Dips dips{};
 };
 
 struct Kriged {

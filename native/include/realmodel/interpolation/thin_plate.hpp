@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "realmodel/base/execution.hpp"
+#include "realmodel/interpolation/dips.hpp"
 #include "realmodel/interpolation/neighborhood.hpp"
 
 namespace realmodel::interpolation {
@@ -18,6 +19,7 @@ struct ThinPlateOptions {
     /// The unit of distances; 0: the points' mean spacing. A part of the points gives heights of
     /// the whole with that of the whole.
     double spacing = 0;
+    Dips dips{};
 };
 
 /// The side of a square as large as each point's share of the box of all; 1 where this is none.
@@ -29,6 +31,8 @@ double mean_spacing(std::span<const std::array<double, 3>> points, bool are_apar
 /// section 2.4): sum w_i r_i^2 log r_i + a + b x + c y, the surface that bends least through the
 /// points or, with smoothing, near them. A node on a point gets its value where there is no
 /// smoothing. Points in one line have no slope across it.
+/// Dips are met as closely as the ends of their baselines say, whatever the smoothing: differences
+/// of heights are functionals like these (Wahba 1990, section 1.3).
 ///
 /// @param points  x, y, z; repeated points count once
 /// @param nodes   x, y

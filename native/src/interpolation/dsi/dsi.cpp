@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "interpolation/drift_basis.hpp"
 #include "interpolation/dsi/ordered_mesh.hpp"
 #include "interpolation/dsi/smooth_system.hpp"
+#include "interpolation/linear_data.hpp"
 #include "realmodel/base/errors.hpp"
 #include "spatial/mesh_locator.hpp"
 
@@ -25,6 +25,11 @@ using Kind = Constraint::Kind;
 // Strength of constraints that are met exactly, in units of the mesh's stiffness: a larger one
 // needs fewer rounds of multipliers, and makes each round slower.
 constexpr double kExactStrength = 8;
+// The same of rises, which bend a triangle against its neighbors alone: these are stiffer.
+constexpr double kExactRiseStrength = 32;
+// A round of multipliers that leaves more than this of what was missing ends them: points
+// contradict each other on the mesh. With dips, which are met more slowly, it has to leave more.
+constexpr double kStalled = 0.5, kStalledWithDips = 0.9;
 constexpr double kMet = 1e-8;  // of the range of heights
 constexpr int kMostRounds = 30;
 constexpr double kFirstTolerance = 1e-4, kLastTolerance = 1e-9, kWeightedTolerance = 1e-9;
@@ -45,7 +50,7 @@ void check_node_heights(std::span<const double> heights, std::size_t nodes, cons
     }
 }
 
-void check_constraints(const NodeConstraints& c, std::size_t nodes) {
+void check_constraints(const DsiConstraints& c, std::size_t nodes) {
     check_node_heights(c.equal, nodes, "the fixed height");
     check_node_heights(c.least, nodes, "the lower bound");
     check_node_heights(c.most, nodes, "the upper bound");
@@ -70,7 +75,7 @@ class Interpolation {
 public:
     Interpolation(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
                   std::span<const Triangle> triangles, const spatial::MeshLocator& locator,
-                  const NodeConstraints& constraints, double weight, const Execution& execution)
+                  const DsiConstraints& constraints, double weight, const Execution& execution)
         : weight_(weight), progress_(execution.progress), mesh_(ordered_mesh(nodes, triangles)) {
         report(0.01, "triangles and their neighbors");
         check();
@@ -81,6 +86,11 @@ public:
         report(0.1, "points on the mesh");
         add_points(points, locator, triangles);
         add_nodes(constraints.equal, Kind::kEqual);
+        if (constraints_.empty()) {
+            throw InputError("no_points",
+                             "no point lies on the mesh and no node has a given height");
+        }
+        add_dips(constraints.dips, locator, triangles, nodes);
         subtract_plane();
         add_nodes(constraints.least, Kind::kLeast);
         add_nodes(constraints.most, Kind::kMost);
@@ -96,11 +106,16 @@ public:
         for (std::size_t i = 0; i < z.size(); ++i)
             out.z[mesh_.old_number[i]] = z[i] + plane_at(mesh_.nodes[i]);
         out.outside = outside_;
+        out.dips_outside = dips_outside_;
         out.iterations = iterations_;
         out.converged = system_->converged();
         for (const Constraint& c : constraints_) {
             const bool exact_point = c.kind == Kind::kEqual && !c.of_node;
             if (!exact_point || c.violation(z) <= 1e3 * kMet * range_) continue;
+            if (c.is_rise()) {
+                ++out.dips_missed;
+                continue;
+            }
             ++out.missed;
             out.misfit = std::max(out.misfit, c.violation(z));
         }
@@ -137,6 +152,47 @@ private:
         }
     }
 
+    /// The rises of the dips' triangles along x and along y, over about an edge.
+    void add_dips(const Dips& dips, const spatial::MeshLocator& locator,
+                  std::span<const Triangle> triangles, std::span<const Position> nodes) {
+        for (std::size_t i = 0; i < dips.positions.size(); ++i) {
+            const auto found = locator.find(dips.positions[i]);
+            if (!found) {
+                ++dips_outside_;
+                continue;
+            }
+            const Triangle& triangle = triangles[found->triangle];
+            Triangle ordered{};
+            for (std::size_t k = 0; k < 3; ++k)
+                ordered[k] = mesh_.new_number[triangle[k]];
+            const double strength =
+                (weight_ > 0 ? weight_ : kExactRiseStrength) * system_->stiffness(ordered);
+            const double twice = twice_area(mesh_.nodes, ordered);
+            const double length = std::sqrt(std::abs(twice));
+            const double given = std::sqrt(std::abs(twice_area(nodes, triangle)));
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                Constraint c{ordered,
+                             {},
+                             strength,
+                             weight_ > 0 ? Kind::kWeighted : Kind::kEqual,
+                             given * dips.slopes[i][axis]};
+                c.along[axis] = length;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Position& a = mesh_.nodes[ordered[(k + 1) % 3]];
+                    const Position& b = mesh_.nodes[ordered[(k + 2) % 3]];
+                    const double part = axis == 0 ? a[1] - b[1] : b[0] - a[0];
+                    c.weights[k] = length * part / twice;
+                }
+                constraints_.push_back(c);
+            }
+        }
+    }
+
+    static double twice_area(std::span<const Position> of, const Triangle& triangle) {
+        const Position &a = of[triangle[0]], &b = of[triangle[1]], &c = of[triangle[2]];
+        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    }
+
     double stiffness(std::size_t node) const {
         const auto number = static_cast<std::int32_t>(node);
         return system_->stiffness({number, number, number});
@@ -155,19 +211,18 @@ private:
 
     /// The solution is heights above the plane that fits best: a plane comes out exactly.
     void subtract_plane() {
-        if (constraints_.empty()) {
-            throw InputError("no_points",
-                             "no point lies on the mesh and no node has a given height");
-        }
         std::vector<Position> positions;
         for (const Constraint& c : constraints_)
             positions.push_back(c.position(mesh_.nodes));
         frame_.emplace(positions, Drift::kLinear);
-        const Eigen::MatrixXd terms = frame_->terms(std::span<const Position>(positions));
+        Eigen::MatrixXd terms = frame_->terms(std::span<const Position>(positions));
         Eigen::VectorXd heights(terms.rows());
         base_ = constraints_[0].height;
-        for (Eigen::Index k = 0; k < heights.size(); ++k)
-            heights(k) = constraints_[k].height - base_;
+        for (Eigen::Index k = 0; k < heights.size(); ++k) {
+            const Constraint& c = constraints_[k];
+            heights(k) = c.is_rise() ? c.height : c.height - base_;
+            if (c.is_rise()) terms.row(k) = rise_of_terms(c);
+        }
         plane_.make(terms, terms);
         fitted_ = plane_.project(heights);
         const auto [low, high] = subtract_from_heights(positions);
@@ -175,19 +230,32 @@ private:
         if (!(range_ > 0)) range_ = 1;
     }
 
+    DriftFrame::Terms rise_of_terms(const Constraint& c) const {
+        DriftFrame::Terms sum = DriftFrame::Terms::Zero(drift_terms(Drift::kLinear));
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += c.weights[k] * frame_->terms(mesh_.nodes[c.nodes[k]]);
+        sum(0) = 0;
+        return sum;
+    }
+
     /// @return the least and the greatest height before
     std::pair<double, double> subtract_from_heights(std::span<const Position> positions) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
+        double low = std::numeric_limits<double>::infinity(), high = -low, rise = 0;
         for (std::size_t k = 0; k < positions.size(); ++k) {
             double& height = constraints_[k].height;
-            low = std::min(low, height);
-            high = std::max(high, height);
-            height -= plane_at(positions[k]);
+            if (constraints_[k].is_rise()) {
+                rise = std::max(rise, std::abs(height));
+                height -= plane_.solve(rise_of_terms(constraints_[k])).dot(fitted_);
+            } else {
+                low = std::min(low, height);
+                high = std::max(high, height);
+                height -= plane_at(positions[k]);
+            }
             // Rounding is no roughness: a plane stays one to the last digit but one.
             if (std::abs(height) <= 1e-15 * (std::abs(base_) + std::abs(low) + std::abs(high)))
                 height = 0;
         }
-        return {low, high};
+        return {low, std::max(high, low + rise)};
     }
 
     double plane_at(const Position& position) const {
@@ -214,9 +282,11 @@ private:
     /// Rounds of multipliers: each adds to the force on a constraint what the round before missed.
     void solve(Vector& z) {
         bool exact = false, bounded = false;
+        double stalled = kStalled;
         double largest = 0;
         for (Constraint& c : constraints_) {
             exact = exact || c.kind != Kind::kWeighted;
+            if (c.is_rise()) stalled = kStalledWithDips;
             bounded = bounded || c.kind == Kind::kLeast || c.kind == Kind::kMost;
             c.active =
                 c.kind == Kind::kWeighted || c.kind == Kind::kEqual || c.next_multiplier(z) != 0;
@@ -239,7 +309,7 @@ private:
             std::tie(missing, changed) = update_multipliers(z);
             if (missing <= kMet * range_ && !changed) return;
             // Points that contradict each other on this mesh are met as well as possible.
-            if (!changed && !bounded && round > 2 && missing > 0.5 * before) return;
+            if (!changed && !bounded && round > 2 && missing > stalled * before) return;
             before = missing;
             tolerance = std::max(kLastTolerance, std::min(0.1 * tolerance, missing / range_));
         }
@@ -291,14 +361,14 @@ private:
     DriftBasis::Coefficients fitted_;
     double base_ = 0;
     double range_ = 1;  // of the given heights
-    std::int64_t outside_ = 0;
+    std::int64_t outside_ = 0, dips_outside_ = 0;
     int iterations_ = 0;
 };
 
 }  // namespace
 
 DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
-               std::span<const Triangle> triangles, const NodeConstraints& constraints,
+               std::span<const Triangle> triangles, const DsiConstraints& constraints,
                double weight, const Execution& execution) {
     if (!(weight >= 0) || !std::isfinite(weight)) {
         throw InputError("option",
@@ -306,6 +376,7 @@ DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Po
     }
     require_finite_nodes(nodes);
     check_constraints(constraints, nodes.size());
+    check_dips(constraints.dips);
     if (nodes.empty() || triangles.empty()) {
         throw InputError("option",
                          "there is no mesh: discrete smooth interpolation needs triangles");

@@ -52,7 +52,7 @@ void SmoothSystem::set_constraints(std::span<const Constraint> constraints) {
             for (std::size_t b = 0; b < c.corners(); ++b)
                 rows_.add(c.nodes[a], c.nodes[b], strength * c.weights[b]);
         }
-        positions.push_back({c.position(nodes_), c.strength});
+        positions.push_back({c.position(nodes_), c.strength, c.along});
     }
     Vector inverse_diagonal(nodes_.size()), ratio(nodes_.size());
     in_pieces(nodes_.size(), threads_, [&](std::size_t begin, std::size_t end) {

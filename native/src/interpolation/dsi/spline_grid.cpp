@@ -45,6 +45,18 @@ SplineGrid::Weights SplineGrid::values(const Position& position, std::size_t cel
     return product(x, y, 1);
 }
 
+SplineGrid::Weights SplineGrid::rises(const Position& position, std::size_t cell,
+                                      const Position& along_vector) const {
+    const double u = (position[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
+    const double v = (position[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
+    const Weights x = product(slope(u), along(v), along_vector[0] / cell_);
+    const Weights y = product(along(u), slope(v), along_vector[1] / cell_);
+    Weights out{};
+    for (std::size_t k = 0; k < kReach; ++k)
+        out[k] = x[k] + y[k];
+    return out;
+}
+
 SplineGrid::Weights SplineGrid::bends(const Position& position, std::size_t cell,
                                       const std::array<double, 3>& bending) const {
     const double u = (position[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);

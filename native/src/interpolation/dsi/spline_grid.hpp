@@ -46,6 +46,8 @@ public:
         return {along((position[0] - low_[0]) * inverse_cell_ - static_cast<double>(column)),
                 along((position[1] - low_[1]) * inverse_cell_ - static_cast<double>(row))};
     }
+    /// Of the rise along a vector, at the slope of the position.
+    Weights rises(const Position& position, std::size_t cell, const Position& along_vector) const;
     /// Of a surface with these coefficients: bending . (its second derivatives xx, xy, yy).
     Weights bends(const Position& position, std::size_t cell,
                   const std::array<double, 3>& bending) const;

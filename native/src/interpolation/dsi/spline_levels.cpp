@@ -143,7 +143,11 @@ void SplineLevels::set_constraints(std::span<const WeightedPosition> constraints
     }
     for (const WeightedPosition& c : constraints) {
         const std::size_t cell = finest.cell_of(c.position);
-        add_square(elements[cell], finest.values(c.position, cell), c.strength);
+        const bool is_rise = c.along != Position{};
+        add_square(
+            elements[cell],
+            is_rise ? finest.rises(c.position, cell, c.along) : finest.values(c.position, cell),
+            c.strength);
     }
     const double least =
         whole > 0 ? kHeldSpline * whole / static_cast<double>(finest.coefficients()) : 1.0;

@@ -15,10 +15,12 @@
 
 namespace realmodel::interpolation {
 
-/// A constraint of a surface at a position: `strength` times the squared height there is added.
+/// A constraint of a surface at a position: `strength` times the square of the height there, or of
+/// the rise along a vector, is added.
 struct WeightedPosition {
     Position position;
     double strength;
+    Position along{};  ///< zero: the height
 };
 
 /// Multigrid on grids of quadratic B-splines, the coarse part of a preconditioner: solves roughness

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "interpolation/kriging/estimate.hpp"
 #include "realmodel/base/elementary.hpp"
 
 namespace realmodel::interpolation {
@@ -21,6 +22,15 @@ Covariance::Covariance(const Variogram& variogram) {
     add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy);
     for (const NestedStructure& nested : variogram.further)
         add(nested.model, nested.range, nested.sill, nested.anisotropy);
+}
+
+std::array<double, 2> Covariance::scales_over(double baseline) const {
+    const auto scale = [&](const Position& to) {
+        const Position from{};
+        const double variance = 2 * ((*this)(from, from) - (*this)(to, from));
+        return variance > kRedundantVariance ? 1 / std::sqrt(variance) : 0;
+    };
+    return {scale({baseline, 0}), scale({0, baseline})};
 }
 
 }  // namespace realmodel::interpolation

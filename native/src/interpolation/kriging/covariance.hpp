@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -63,6 +64,11 @@ public:
             sum += covariance_of(parts_[part], dx, dy, root);
         return sum;
     }
+
+    /// Scales of the differences of dips, along x and along y: each gets the variance 1. They are
+    /// differences of the surface without its nugget, which is about points; 0 where nothing else
+    /// is left.
+    std::array<double, 2> scales_over(double baseline) const;
 
     /// At least one.
     const std::vector<CovariancePart>& parts() const { return parts_; }

@@ -20,30 +20,31 @@ constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some
 
 /// One system after another: neighbors in octants or within a radius, or more than the lanes take.
 void krige_one_by_one(const KrigingTask& task) {
-    const std::size_t points = task.data.local.size();
+    const std::size_t points = task.data.point_count();
     const auto wanted = static_cast<std::size_t>(task.options.neighborhood.neighbors);
-    const auto n = static_cast<double>(wanted > 0 ? std::min(wanted, points) : points);
+    const auto n = static_cast<double>((wanted > 0 ? std::min(wanted, points) : points) +
+                                       2 * task.data.dips_at_node());
     require_memory(thread_count(task.execution.threads) * n * (n + 8) * sizeof(double), n,
                    "kriging each node from its nearest", 16);
     struct Scratch {
         NeighborKriging kriging;
-        NeighborSearch search;
+        DataSearch search;
         std::vector<spatial::Neighbor> near;
     };
     std::atomic<std::int64_t> alone{0};
     NodeLoop{task.count(), 256, task.execution, "kriging"}.over_nodes(
         [&] {
             return Scratch{NeighborKriging(task.data, task.covariance, task.options.drift),
-                           NeighborSearch(task.data, task.tree, task.options.neighborhood),
+                           DataSearch(task.data, task.tree, task.options.neighborhood),
                            {}};
         },
         [&](Scratch& own, std::size_t i) {
             const Position node = task.node(i);
             if (!own.search.find(node, own.near, task.left_out(i))) ++alone;
             if (own.near.empty()) {
-                task.set(i, unknown(task.data.values[i]));
+                task.set(i, unknown(task.data.points().values[i]));
             } else if (own.near[0].squared_distance == 0) {
-                task.set(i, {task.data.values[own.near[0].point], 0});
+                task.set(i, {task.data.points().values[own.near[0].point], 0});
             } else {
                 task.set(i, own.kriging.at(node, own.near, task.execution.progress));
             }
@@ -60,13 +61,14 @@ std::size_t nodes_in_chunk(std::size_t neighbors) {
 /// The nearest of all directions and distances, few enough: several systems at once. Those that are
 /// not well posed - points in one line and a drift across it - one by one.
 void krige_in_lanes(const KrigingTask& task) {
-    const auto neighbors = static_cast<std::size_t>(task.options.neighborhood.neighbors);
-    const std::size_t count = task.count();
+    const std::size_t points = task.data.point_count() - (task.leaves_out ? 1 : 0);
+    const auto wanted = static_cast<std::size_t>(task.options.neighborhood.neighbors);
+    const std::size_t neighbors = std::min(wanted, points), count = task.count();
     struct Scratch {
         std::vector<LaneKriging::Node> nodes;
         LaneKriging lanes;
         NeighborKriging single;
-        NeighborSearch search;
+        DataSearch search;
         std::vector<spatial::Neighbor> near;
     };
     const auto make = [&] {
@@ -74,7 +76,7 @@ void krige_in_lanes(const KrigingTask& task) {
                        LaneKriging(task.data, task.tree, task.covariance, neighbors,
                                    task.leaves_out, lane_kernels().front(), task.options.drift),
                        NeighborKriging(task.data, task.covariance, task.options.drift),
-                       NeighborSearch(task.data, task.tree, task.options.neighborhood),
+                       DataSearch(task.data, task.tree, task.options.neighborhood),
                        {}};
     };
     std::vector<Position> positions;
@@ -87,8 +89,9 @@ void krige_in_lanes(const KrigingTask& task) {
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };
-        NodeLoop{here,         nodes_in_chunk(neighbors), task.execution, "kriging",
-                 share(first), share(first + here)}
+        NodeLoop{here,           nodes_in_chunk(neighbors + 2 * task.data.dips_at_node()),
+                 task.execution, "kriging",
+                 share(first),   share(first + here)}
             .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
                 own.nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
@@ -108,7 +111,7 @@ void krige_in_lanes(const KrigingTask& task) {
 }
 
 void krige_from_all(const KrigingTask& task) {
-    const auto n = static_cast<double>(task.data.local.size());
+    const auto n = static_cast<double>(task.data.size());
     const double solved_at_once = thread_count(task.execution.threads) * kNodesAtOnce;
     require_memory(TiledCholesky::bytes(n) + solved_at_once * n * sizeof(double), n,
                    "kriging from all of", 16);
@@ -128,20 +131,24 @@ void krige_from_all(const KrigingTask& task) {
 }
 
 /// @param leaves_out  the points instead of nodes
-Kriged krige_nodes(const DataPoints& data, std::span<const Position> nodes, bool leaves_out,
+Kriged krige_nodes(const DataPoints& points, std::span<const Position> nodes, bool leaves_out,
                    const Variogram& variogram, const KrigingOptions& options,
                    const Execution& execution) {
-    const spatial::NearestPoints tree(data.local);
+    const spatial::NearestPoints tree(points.local);
     const Covariance covariance(variogram);
+    const LinearData data(points, options.dips, covariance.scales_over(options.dips.baseline));
     Kriged out;
     const KrigingTask task{data,       tree,           covariance, options, nodes,
                            leaves_out, variogram.sill, execution,  out};
     out.z.resize(task.count());
     out.variance.resize(task.count());
     const auto neighbors = static_cast<std::size_t>(options.neighborhood.neighbors);
-    if (task.options.neighborhood.plain() && (neighbors == 0 || neighbors >= data.local.size())) {
+    const bool plain = options.neighborhood.plain();
+    const bool all = neighbors >= data.point_count() && data.uses_all_dips();
+    if (plain && (neighbors == 0 || all)) {
         krige_from_all(task);
-    } else if (task.options.neighborhood.plain() && neighbors <= LaneKriging::kMostNeighbors) {
+    } else if (plain && neighbors + 2 * data.dips_at_node() <= LaneKriging::kMostNeighbors &&
+               data.point_count() > 1) {
         krige_in_lanes(task);
     } else {
         krige_one_by_one(task);

@@ -6,14 +6,14 @@
 
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
-#include "interpolation/neighbors/neighbor_search.hpp"
+#include "interpolation/neighbors/data_search.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 
 namespace realmodel::interpolation {
 
 /// What all ways of kriging need: the data, the nodes and room for the estimates.
 struct KrigingTask {
-    const DataPoints& data;
+    const LinearData& data;
     const spatial::NearestPoints& tree;
     const Covariance& covariance;
     const KrigingOptions& options;
@@ -23,10 +23,11 @@ struct KrigingTask {
     const Execution& execution;
     Kriged& out;
 
-    std::size_t count() const { return leaves_out ? data.local.size() : nodes.size(); }
+    std::size_t count() const { return leaves_out ? data.point_count() : nodes.size(); }
     /// In local coordinates.
     Position node(std::size_t i) const {
-        return leaves_out ? data.local[i] : data.to_local(nodes[i]);
+        return leaves_out ? data.position(static_cast<std::int32_t>(i))
+                          : data.points().to_local(nodes[i]);
     }
     std::int32_t left_out(std::size_t i) const {
         return leaves_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
 #include "interpolation/kriging/lane_kernels.hpp"
+#include "interpolation/linear_data.hpp"
 #include "realmodel/interpolation/drift.hpp"
 #include "spatial/block_neighbors.hpp"
 
@@ -27,7 +29,7 @@ private:
     std::vector<double> numbers_;
 };
 
-/// Kriging of many nodes from a few points each: takes nodes that lie close together, block by
+/// Kriging of many nodes from a few data each: takes nodes that lie close together, block by
 /// block, and solves their systems side by side. One for each thread. Without a drift the estimates
 /// are, to the last bit, those of NeighborKriging; with one, systems that are not well posed are
 /// left to it.
@@ -42,9 +44,10 @@ public:
     };
     static constexpr std::int32_t kNobody = -1;
 
-    /// @param neighbors   points of each system, 1 .. kMostNeighbors
+    /// @param neighbors   points of each system, from 1; with two slopes of each dip at a node at
+    ///                    most kMostNeighbors
     /// @param leaves_out  nodes may leave out a point: there is one more in the data
-    LaneKriging(const DataPoints& data, const spatial::NearestPoints& tree,
+    LaneKriging(const LinearData& data, const spatial::NearestPoints& tree,
                 const Covariance& covariance, std::size_t neighbors, bool leaves_out,
                 const LaneKernels& kernels, Drift drift = Drift::kConstant);
 
@@ -60,27 +63,37 @@ public:
 private:
     static constexpr std::size_t kMostInBlock = 64;
 
+    bool prepare(std::span<const Position> nodes);
+    void find_candidates();
     void prepare_covariances();
-    bool add(const Node& node, std::span<const std::int32_t> nearest);
+    bool add(const Node& node);
+    void covariances_with_nodes(double* covariances);
     void set_drift(double* terms);
     void solve();
     template <class Set, class Leave>
     void flush(Set&& set, Leave&& leave);
 
-    const DataPoints& data_;
+    const LinearData& data_;
     Covariance covariance_;
     const LaneKernels& kernels_;
-    std::size_t neighbors_;
+    std::size_t points_, slopes_, count_;  // of a system; data in all
+    std::size_t ends_;                     // positions whose heights these are
     spatial::BlockNeighbors block_;
+    std::optional<spatial::BlockNeighbors> dip_block_;
     std::size_t run_ = kMostInBlock;  // nodes tried as a block next
     std::vector<Position> positions_;
+    std::vector<std::int32_t> candidates_;  // data: points, then slopes
+    std::size_t point_candidates_ = 0;
+    std::vector<Position> ends_of_candidates_;
     std::vector<double> table_;  // covariances of all candidates with each other
     std::size_t pair_count_ = 0;
     AlignedNumbers pair_x_, pair_y_, pair_covariance_;
     Drift drift_;
     std::size_t terms_;
-    AlignedNumbers rows_, node_x_, node_y_, estimates_, variances_, well_posed_;
-    std::size_t filled_ = 0;  // kLanes
+    AlignedNumbers rows_, node_x_, node_y_, with_ends_, estimates_, variances_, well_posed_;
+    std::vector<double> scales_;             // of the slopes of a system, in all lanes
+    std::span<const std::int32_t> nearest_;  // points of the node at hand
+    std::size_t filled_ = 0;                 // kLanes
     std::uint32_t number_[kLanes] = {};
     double base_[kLanes] = {};
 };
@@ -92,16 +105,16 @@ void LaneKriging::krige(std::span<const Node> nodes, Set&& set, Leave&& leave) {
         positions_.clear();
         for (std::size_t i = 0; i < count; ++i)
             positions_.push_back(nodes[i].position);
-        while (!block_.prepare({positions_.data(), count}))
+        while (!prepare({positions_.data(), count}))
             count /= 2;
         run_ = std::min(2 * count, kMostInBlock);
         prepare_covariances();
         for (const Node& node : nodes.first(count)) {
-            const auto nearest = block_.nearest(node.position);
+            nearest_ = block_.nearest(node.position);
             if (node.left_out == kNobody && block_.squared_distance(0) == 0) {
-                const std::int32_t point = block_.candidates()[nearest[0]];
-                set(node.number, Estimate{data_.values[point], 0});
-            } else if (add(node, nearest)) {
+                const std::int32_t point = block_.candidates()[nearest_[0]];
+                set(node.number, Estimate{data_.points().values[point], 0});
+            } else if (add(node)) {
                 flush(set, leave);
             }
         }

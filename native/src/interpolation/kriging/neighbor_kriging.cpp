@@ -23,16 +23,17 @@ void NeighborKriging::assemble(const Position& node, std::span<const spatial::Ne
     rows_ = count_ + 2 + static_cast<std::size_t>(terms);
     matrix_.resize(count_ * rows_);
     plain_.resize(static_cast<Eigen::Index>(count_), terms);
-    const double base = data_.values[neighbors[0].point];
+    const double base = data_.points().values[neighbors[0].point];
     for (std::size_t k = 0; k < count_; ++k) {
+        const std::int32_t datum = neighbors[k].point;
         double* const to = column(k);
         to[k] = 1;
         for (std::size_t i = k + 1; i < count_; ++i)
-            to[i] = covariance_(positions_[i], positions_[k]);
-        to[count_] = covariance_(node, positions_[k]);
-        to[count_ + 1] = data_.values[neighbors[k].point] - base;
+            to[i] = data_.between(neighbors[i].point, datum, covariance_);
+        to[count_] = data_.with_height(node, datum, covariance_);
+        to[count_ + 1] = data_.value(datum, base);
         const auto row = static_cast<Eigen::Index>(k);
-        plain_.row(row) = frame.terms(positions_[k]);
+        plain_.row(row) = data_.terms(datum, frame);
         for (Eigen::Index term = 0; term < terms; ++term)
             to[count_ + 2 + term] = plain_(row, term);
     }
@@ -68,11 +69,11 @@ Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neig
     count_ = neighbors.size();
     positions_.clear();
     for (const spatial::Neighbor& neighbor : neighbors)
-        positions_.push_back(data_.local[neighbor.point]);
+        positions_.push_back(data_.position(neighbor.point));
     const DriftFrame frame(positions_, drift_);
     assemble(node, neighbors, frame);
     if (!eliminate(progress)) return {};
-    const double base = data_.values[neighbors[0].point];
+    const double base = data_.points().values[neighbors[0].point];
     if (drift_ == Drift::kConstant) {
         double uu = 0, us = 0, ut = 0, ss = 0, st = 0;
         for (std::size_t k = 0; k < count_; ++k) {

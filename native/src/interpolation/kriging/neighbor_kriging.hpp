@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "interpolation/drift_basis.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
+#include "interpolation/linear_data.hpp"
 #include "realmodel/base/progress.hpp"
 #include "spatial/nearest_points.hpp"
 
@@ -20,15 +20,15 @@ Estimate universal_kriging(double base, double uu, double ut, const DriftBasis& 
                            const DriftFrame::Terms& terms, const DriftBasis::Coefficients& qu,
                            const DriftBasis::Coefficients& qt);
 
-/// Kriging from a few points, one small system at a time, with any drift. Keeps its memory between
+/// Kriging from a few data, one small system at a time, with any drift. Keeps its memory between
 /// nodes; one for each thread.
 class NeighborKriging {
 public:
-    NeighborKriging(const DataPoints& data, const Covariance& covariance, Drift drift)
+    NeighborKriging(const LinearData& data, const Covariance& covariance, Drift drift)
         : data_(data), covariance_(covariance), drift_(drift) {}
 
     /// @param node       in local coordinates
-    /// @param neighbors  nearest first; none is at the node itself
+    /// @param neighbors  numbers of data; the nearest point first, and none at the node itself
     /// @return           means nothing once the caller has cancelled
     Estimate at(const Position& node, std::span<const spatial::Neighbor> neighbors,
                 Progress* progress = nullptr);
@@ -39,7 +39,7 @@ private:
                   const DriftFrame& frame);
     bool eliminate(Progress* progress);
 
-    const DataPoints& data_;
+    const LinearData& data_;
     Covariance covariance_;
     Drift drift_;
     std::vector<Position> positions_;

@@ -9,25 +9,36 @@ namespace {
 
 constexpr int kMostOthers = 200;  // from which a point is estimated that the factor cannot estimate
 
+std::vector<Position> positions_of(const LinearData& data) {
+    std::vector<Position> positions;
+    for (std::size_t i = 0; i < data.size(); ++i)
+        positions.push_back(data.position(static_cast<std::int32_t>(i)));
+    return positions;
+}
+
+std::int32_t number(Eigen::Index datum) {
+    return static_cast<std::int32_t>(datum);
+}
+
 }  // namespace
 
 UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_share)
     : task_(task),
-      count_(static_cast<Eigen::Index>(task.data.local.size())),
-      base_(task.data.values[0]),
-      frame_(task.data.local, task.options.drift),
+      count_(static_cast<Eigen::Index>(task.data.size())),
+      base_(task.data.points().values[0]),
+      frame_(positions_of(task.data), task.options.drift),
       factor_(
           count_,
           [&](Eigen::Index i, Eigen::Index j) {
-              return i == j ? 1.0 : task.covariance(position(i), position(j));
+              return i == j ? 1.0 : task.data.between(number(i), number(j), task.covariance);
           },
           kRedundantVariance, task.execution, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
-    Eigen::MatrixXd plain = frame_.terms(std::span<const Position>(task.data.local));
-    Eigen::MatrixXd given(count_, terms + 1);
-    given.leftCols(terms) = plain;
+    Eigen::MatrixXd plain(count_, terms), given(count_, terms + 1);
     for (Eigen::Index p = 0; p < count_; ++p) {
-        given(p, terms) = task.data.values[p] - base_;
+        plain.row(p) = task.data.terms(number(p), frame_);
+        given.row(p).head(terms) = plain.row(p);
+        given(p, terms) = task.data.value(number(p), base_);
         if (factor_.left_out(p)) plain.row(p).setZero();
     }
     factor_.solve(given, task.execution.progress);
@@ -45,7 +56,7 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
         const Position node = task_.node(i);
         const auto column = static_cast<Eigen::Index>(i - begin);
         for (Eigen::Index p = 0; p < count_; ++p)
-            u(p, column) = task_.covariance(node, position(p));
+            u(p, column) = task_.data.with_height(node, number(p), task_.covariance);
         if (cancelled(task_.execution.progress)) return;
     }
     factor_.solve(u, task_.execution.progress);
@@ -54,7 +65,7 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
         task_.tree.find(node, 1, scratch.near);
         const spatial::Neighbor& nearest = scratch.near[0];
         if (nearest.squared_distance == 0) {
-            task_.set(i, {task_.data.values[nearest.point], 0});
+            task_.set(i, {task_.data.points().values[nearest.point], 0});
             continue;
         }
         Eigen::VectorXd& column = scratch.column;
@@ -76,13 +87,13 @@ void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end, Scratch& 
         const auto column = u.col(static_cast<Eigen::Index>(i - begin));
         const DriftBasis::Coefficients qu = basis_.project(column);
         const double whole = column.squaredNorm(), b = whole - qu.squaredNorm();
-        const double value = task_.data.values[i];
+        const double value = task_.data.points().values[i];
         if (b > 1e-9 * whole) {
             task_.set(i, {value - (column.dot(t_) - qu.dot(qt_)) / b, 1 / b});
             continue;
         }
         // The point alone determines a term of the drift, or others determine the point.
-        NeighborSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
+        DataSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
         search.find(task_.node(i), scratch.near, task_.left_out(i));
         task_.set(i, scratch.near.empty() ? unknown(value)
                                           : scratch.others.at(task_.node(i), scratch.near,

@@ -10,7 +10,7 @@
 
 namespace realmodel::interpolation {
 
-/// Kriging of every node from all points, whose covariances are factored once.
+/// Kriging of every node from all data, whose covariances are factored once.
 class UniqueNeighborhood {
 public:
     /// @param task          must outlive this
@@ -39,8 +39,6 @@ public:
     void leave_out(std::size_t begin, std::size_t end, Scratch& scratch) const;
 
 private:
-    const Position& position(Eigen::Index p) const { return task_.data.local[p]; }
-
     const KrigingTask& task_;
     Eigen::Index count_;
     double base_;

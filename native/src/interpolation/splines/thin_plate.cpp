@@ -4,11 +4,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "base/vectors.hpp"
 #include "interpolation/drift_basis.hpp"
-#include "interpolation/neighbors/neighbor_search.hpp"
+#include "interpolation/neighbors/data_search.hpp"
 #include "interpolation/node_loop.hpp"
 #include "realmodel/base/elementary.hpp"
 #include "realmodel/base/errors.hpp"
@@ -34,54 +35,70 @@ double mean_spacing_of(std::span<const Position> positions) {
     return spacing_in(spatial::box_around(positions), positions.size());
 }
 
-/// A spline through some points. Keeps its memory; one for each thread.
+/// A spline through some data. Keeps its memory; one for each thread.
 class Spline {
 public:
-    Spline(double spacing, double smoothing) : unit_(spacing), smoothing_(smoothing) {}
+    Spline(const LinearData& data, double spacing, double smoothing)
+        : data_(data), kernel_{spacing}, smoothing_(smoothing) {}
 
-    /// Of these positions (local coordinates) and values.
-    void make(std::span<const Position> positions, std::span<const double> values) {
-        positions_.assign(positions.begin(), positions.end());
+    /// Of the data of these numbers, a point first.
+    void make(std::span<const std::int32_t> numbers) {
+        numbers_.assign(numbers.begin(), numbers.end());
+        positions_.clear();
+        for (const std::int32_t number : numbers_)
+            positions_.push_back(data_.position(number));
         frame_.emplace(positions_, Drift::kLinear);
-        const auto n = static_cast<Eigen::Index>(positions_.size());
-        terms_ = frame_->terms(std::span<const Position>(positions_));
+        const auto n = static_cast<Eigen::Index>(numbers_.size());
+        terms_.resize(n, drift_terms(Drift::kLinear));
+        for (Eigen::Index i = 0; i < n; ++i)
+            terms_.row(i) = data_.terms(numbers_[i], *frame_);
         basis_.make(terms_, terms_);
         const Eigen::Index terms = basis_.size();
-        base_ = values[0];
+        base_ = data_.value(numbers_[0], 0);
         matrix_.setZero(n + terms, n + terms);
         right_.setZero(n + terms);
         for (Eigen::Index i = 0; i < n; ++i) {
-            const Position& a = positions_[i];
             for (Eigen::Index j = 0; j < i; ++j) {
-                matrix_(i, j) = kernel(squared_distance(a, positions_[j]) / (unit_ * unit_));
+                matrix_(i, j) = data_.between(numbers_[i], numbers_[j], kernel_);
                 matrix_(j, i) = matrix_(i, j);
             }
-            matrix_(i, i) = smoothing_;
+            const bool is_point = data_.is_point(numbers_[i]);
+            matrix_(i, i) =
+                is_point ? smoothing_ : data_.between(numbers_[i], numbers_[i], kernel_);
             for (Eigen::Index k = 0; k < terms; ++k) {
                 matrix_(i, n + k) = basis_.orthonormal(i, k);
                 matrix_(n + k, i) = matrix_(i, n + k);
             }
-            right_(i) = values[i] - base_;
+            right_(i) = data_.value(numbers_[i], base_);
         }
         weights_ = matrix_.partialPivLu().solve(right_);
     }
 
     double at(const Position& position) const {
-        const auto n = static_cast<Eigen::Index>(positions_.size());
+        const auto n = static_cast<Eigen::Index>(numbers_.size());
         const DriftBasis::Coefficients terms = basis_.solve(frame_->terms(position));
         double sum = 0;
         for (Eigen::Index k = 0; k < terms.size(); ++k)
             sum += weights_(n + k) * terms(k);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            sum +=
-                weights_(i) * kernel(squared_distance(position, positions_[i]) / (unit_ * unit_));
-        }
+        for (Eigen::Index i = 0; i < n; ++i)
+            sum += weights_(i) * data_.with_height(position, numbers_[i], kernel_);
         return base_ + sum;
     }
 
 private:
-    double unit_, smoothing_;
+    /// Of two positions.
+    struct Kernel {
+        double unit;
+        double operator()(const Position& a, const Position& b) const {
+            return kernel(squared_distance(a, b) / (unit * unit));
+        }
+    };
+
+    const LinearData& data_;
+    Kernel kernel_;
+    double smoothing_;
     double base_ = 0;
+    std::vector<std::int32_t> numbers_;
     std::vector<Position> positions_;
     std::optional<DriftFrame> frame_;
     DriftBasis basis_;
@@ -115,50 +132,52 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                const ThinPlateOptions& options, const Execution& execution) {
     check_options(options);
     require_finite_nodes(nodes);
-    const DataPoints data = prepare_points(points);
-    const spatial::NearestPoints tree(data.local);
+    const DataPoints distinct = prepare_points(points);
+    const spatial::NearestPoints tree(distinct.local);
     const Neighborhood& neighborhood = options.neighborhood;
-    const double spacing = options.spacing > 0 ? options.spacing : mean_spacing_of(data.local);
+    const double spacing = options.spacing > 0 ? options.spacing : mean_spacing_of(distinct.local);
+    // In units of the spacing a slope is a difference of heights, too.
+    const double scale = options.dips.baseline > 0 ? spacing / options.dips.baseline : 1;
+    const LinearData data(distinct, options.dips, {scale, scale});
     const std::size_t points_used = static_cast<std::size_t>(neighborhood.neighbors);
-    const bool all = neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
-    Spline whole(spacing, options.smoothing);
+    const bool has_all = points_used >= data.point_count() && data.uses_all_dips();
+    const bool all = neighborhood.plain() && (points_used == 0 || has_all);
+    Spline whole(data, spacing, options.smoothing);
     if (all) {
-        const auto order = static_cast<double>(data.local.size() + 3);
+        const auto order = static_cast<double>(data.size() + 3);
         require_memory(3 * order * order * sizeof(double), order - 3, "a spline through all of",
                        32);
         if (execution.progress != nullptr) execution.progress->check();
-        whole.make(data.local, data.values);
+        std::vector<std::int32_t> numbers(data.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        whole.make(numbers);
     }
     std::vector<double> z(nodes.size());
     struct Scratch {
         Spline spline;
-        NeighborSearch search;
+        DataSearch search;
         std::vector<spatial::Neighbor> near;
-        std::vector<Position> positions;
-        std::vector<double> values;
+        std::vector<std::int32_t> numbers;
     };
     const NodeLoop loop{nodes.size(), 256, execution, "thin plate spline"};
     loop.over_nodes(
         [&] {
-            return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}};
+            return Scratch{whole, DataSearch(data, tree, neighborhood), {}, {}};
         },
         [&](Scratch& own, std::size_t i) {
-            const Position node = data.to_local(nodes[i]);
+            const Position node = distinct.to_local(nodes[i]);
             tree.find(node, 1, own.near);
-            const double nearest = data.values[own.near[0].point];
+            const double nearest = distinct.values[own.near[0].point];
             if (own.near[0].squared_distance == 0 && options.smoothing == 0) {
                 z[i] = nearest;
                 return;
             }
             if (!all) {
                 own.search.find(node, own.near);
-                own.positions.clear();
-                own.values.clear();
-                for (const spatial::Neighbor& n : own.near) {
-                    own.positions.push_back(data.local[n.point]);
-                    own.values.push_back(data.values[n.point]);
-                }
-                own.spline.make(own.positions, own.values);
+                own.numbers.clear();
+                for (const spatial::Neighbor& n : own.near)
+                    own.numbers.push_back(n.point);
+                own.spline.make(own.numbers);
             }
             z[i] = own.spline.at(node);
             // Points so near each other that their system is singular to the last digit.

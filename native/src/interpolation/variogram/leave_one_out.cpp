@@ -132,10 +132,11 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
         NeighborKriging kriging;
         std::vector<spatial::Neighbor> near;
     };
+    const LinearData points(data_);
     const NodeLoop loop{count, kChunk, execution_, nullptr, 0, 0};
     loop.over_nodes(
         [&] {
-            return Scratch{NeighborKriging(data_, covariance, drift),
+            return Scratch{NeighborKriging(points, covariance, drift),
                            std::vector<spatial::Neighbor>(neighbors_)};
         },
         [&](Scratch& own, std::size_t k) {

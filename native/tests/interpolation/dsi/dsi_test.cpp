@@ -103,7 +103,7 @@ TEST(Dsi, SameBytesForAnyNumberOfThreads) {
 TEST(Dsi, RefusesAndStops) {
     const Lattice mesh = lattice(5, 5);
     const Points points{{1, 1, 0}, {2, 3, 1}};
-    const auto kind = [&](const Points& of, const NodeConstraints& c, double weight) {
+    const auto kind = [&](const Points& of, const DsiConstraints& c, double weight) {
         try {
             dsi(of, mesh.nodes, mesh.triangles, c, weight);
         } catch (const InputError& error) {

@@ -9,7 +9,7 @@
 namespace realmodel::interpolation {
 namespace {
 
-TEST(SplineGrid, SumsToOneAndBendsAsItsSecondDerivatives) {
+TEST(SplineGrid, SumsToOneRisesAndBendsAsItsDerivatives) {
     const SplineGrid grid({10, 20}, 0.5, 7, 5);
     for (const Position& position :
          {Position{10, 20}, {11.3, 21.1}, {13.49, 22.49}, {13.5, 22.5}}) {
@@ -23,12 +23,16 @@ TEST(SplineGrid, SumsToOneAndBendsAsItsSecondDerivatives) {
         const auto at = [&](double dx, double dy) {
             return grid.values({position[0] + dx, position[1] + dy}, cell);
         };
+        const auto rises = grid.rises(position, cell, {3, -2});
         const auto bends = grid.bends(position, cell, {2, -1, 3});
         for (std::size_t k = 0; k < SplineGrid::kReach; ++k) {
             const double xx = (at(h, 0)[k] - 2 * values[k] + at(-h, 0)[k]) / (h * h);
             const double yy = (at(0, h)[k] - 2 * values[k] + at(0, -h)[k]) / (h * h);
             const double xy =
                 (at(h, h)[k] - at(-h, h)[k] - at(h, -h)[k] + at(-h, -h)[k]) / (4 * h * h);
+            const double x = (at(h, 0)[k] - at(-h, 0)[k]) / (2 * h);
+            const double y = (at(0, h)[k] - at(0, -h)[k]) / (2 * h);
+            EXPECT_NEAR(rises[k], 3 * x - 2 * y, 1e-6);
             EXPECT_NEAR(bends[k], 2 * xx - xy + 3 * yy, 1e-5);
         }
     }

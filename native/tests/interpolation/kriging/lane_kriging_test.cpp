@@ -9,7 +9,7 @@
 
 #include "../dense_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
-#include "interpolation/neighbors/neighbor_search.hpp"
+#include "interpolation/neighbors/data_search.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -38,36 +38,56 @@ Nodes some_nodes(int side) {
     return nodes;
 }
 
-std::vector<Estimate> one_by_one(const DataPoints& data, const Covariance& covariance,
+/// Slopes here and there, the first at a point.
+struct SomeDips {
+    Nodes positions, slopes;
+    Dips with(double baseline, int neighbors) const {
+        return {positions, slopes, baseline, neighbors};
+    }
+};
+
+SomeDips some_dips(const Points& points, std::size_t count) {
+    SomeDips dips;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& [x, y, z] = points[7 * i % points.size()];
+        const double away = i == 0 ? 0 : 13;
+        dips.positions.push_back({x + away, y - 2 * away});
+        dips.slopes.push_back({0.1 * std::sin(x / 50), 0.1 * std::cos(z)});
+    }
+    return dips;
+}
+
+std::vector<Estimate> one_by_one(const LinearData& data, const Covariance& covariance,
                                  std::span<const LaneKriging::Node> nodes, int neighbors) {
-    const spatial::NearestPoints tree(data.local);
-    NeighborSearch search(data, tree, {neighbors, 0, 0});
+    const spatial::NearestPoints tree(data.points().local);
+    DataSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging kriging(data, covariance, Drift::kConstant);
     std::vector<spatial::Neighbor> near;
     std::vector<Estimate> out;
     for (const LaneKriging::Node& node : nodes) {
         search.find(node.position, near, node.left_out);
         const bool on_point = node.left_out < 0 && near[0].squared_distance == 0;
-        out.push_back(on_point ? Estimate{data.values[static_cast<std::size_t>(near[0].point)], 0}
+        out.push_back(on_point ? Estimate{data.value(near[0].point, 0), 0}
                                : kriging.at(node.position, near));
     }
     return out;
 }
 
 void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram& variogram,
-                       int neighbors, bool leave_out) {
-    const DataPoints data = prepare_points(points);
+                       int neighbors, bool leave_out, const Dips& dips = {}) {
+    const DataPoints distinct = prepare_points(points);
     const Covariance covariance(variogram);
+    const LinearData data(distinct, dips, covariance.scales_over(dips.baseline));
     std::vector<LaneKriging::Node> all;
     if (leave_out) {
-        for (std::uint32_t i = 0; i < data.local.size(); ++i)
-            all.push_back({data.local[i], i, static_cast<std::int32_t>(i)});
+        for (std::uint32_t i = 0; i < distinct.local.size(); ++i)
+            all.push_back({distinct.local[i], i, static_cast<std::int32_t>(i)});
     } else {
         for (std::uint32_t i = 0; i < nodes.size(); ++i)
-            all.push_back({data.to_local(nodes[i]), i});
+            all.push_back({distinct.to_local(nodes[i]), i});
     }
     const std::vector<Estimate> expected = one_by_one(data, covariance, all, neighbors);
-    const spatial::NearestPoints tree(data.local);
+    const spatial::NearestPoints tree(distinct.local);
     for (const LaneKernels& kernels : lane_kernels()) {
         SCOPED_TRACE(kernels.name);
         LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbors), leave_out,
@@ -125,16 +145,17 @@ TEST(LaneKriging, NodesFarApartAndOnPoints) {
 /// All kernels the same bytes, and what NeighborKriging says of each node; how many were left to
 /// it.
 std::size_t left_to_others(const Points& points, const Nodes& nodes, const Variogram& variogram,
-                           int neighbors, Drift drift) {
-    const DataPoints data = prepare_points(points);
+                           int neighbors, Drift drift, const Dips& dips = {}) {
+    const DataPoints distinct = prepare_points(points);
     const Covariance covariance(variogram);
-    const spatial::NearestPoints tree(data.local);
-    NeighborSearch search(data, tree, {neighbors, 0, 0});
+    const LinearData data(distinct, dips, covariance.scales_over(dips.baseline));
+    const spatial::NearestPoints tree(distinct.local);
+    DataSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging plain(data, covariance, drift);
     std::vector<spatial::Neighbor> near;
     std::vector<LaneKriging::Node> all;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
-        all.push_back({data.to_local(nodes[i]), i});
+        all.push_back({distinct.to_local(nodes[i]), i});
     std::vector<Estimate> first;
     std::size_t left = 0;
     for (const LaneKernels& kernels : lane_kernels()) {
@@ -168,6 +189,32 @@ TEST(LaneKriging, AboutADriftWhatOneSystemAtATimeSays) {
             const Points scattered = some_points("scattered", 400);
             EXPECT_LT(left_to_others(scattered, some_nodes(21), v, 16, drift), 20U);
             EXPECT_EQ(left_to_others(scattered, some_nodes(9), v, 64, drift), 0U);
+        }
+    }
+}
+
+TEST(LaneKriging, WithDipsTheBytesOfOneSystemAtATime) {
+    for (const std::string kind : {"scattered", "clusters", "grid"}) {
+        const Points points = some_points(kind, 200), few = some_points(kind, 60);
+        const SomeDips dips = some_dips(points, 30);
+        for (const VariogramModel model : kAllVariogramModels) {
+            SCOPED_TRACE(kind + " " + std::string(name_of(model)));
+            const Variogram v{model, 400, 9, 0.01, {2, 30}, {}};
+            expect_same_bytes(points, some_nodes(13), v, 16, false, dips.with(8, 3));
+            expect_same_bytes(few, {}, v, 5, true, dips.with(40, 1));
+            expect_same_bytes(few, some_nodes(5), v, 60, false, dips.with(8, 29));
+        }
+    }
+}
+
+TEST(LaneKriging, WithDipsAboutADriftWhatOneSystemAtATimeSays) {
+    const Points points = some_points("scattered", 200);
+    const SomeDips dips = some_dips(points, 30);
+    for (const Drift drift : {Drift::kLinear, Drift::kQuadratic}) {
+        for (const VariogramModel model : kAllVariogramModels) {
+            SCOPED_TRACE(std::string(name_of(model)));
+            const Variogram v{model, 400, 9, 0.01, {2, 30}, {}};
+            EXPECT_LT(left_to_others(points, some_nodes(15), v, 16, drift, dips.with(8, 3)), 20U);
         }
     }
 }

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows of tables of boreholes, with columns found by their usual names."""
+"""The rows of tables of boreholes and of dips, with columns found by their usual names."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from ...base.errors import InputRefused
 from ...base.text import Step
-from ...settings.boreholes import Boreholes
 from .points import Table, open_table
 from .table_layout import Expected, fields, is_number, plain_name
 
@@ -37,11 +37,61 @@ SURVEY = {
     **DIRECTIONS,
 }
 COLLARS = {**PICKS, **DIRECTIONS}
+_BLOCK = (
+    *(
+        "block",
+        "unit",
+        "lithology",
+        "litho",
+        "lith",
+        "lith_code",
+        "lithcode",
+        "rock",
+        "rock_type",
+        "rocktype",
+    ),
+    *("formation", "strat", "stratigraphy", "geology", "geol", "code", "layer"),
+)
+INTERVALS = {
+    "hole": _HOLE,
+    **{axis: PICKS[axis] for axis in "xyz"},
+    "from": (
+        *("from", "depth_from", "from_depth", "depthfrom", "from_m", "start", "begin", "top", "top_depth"),
+        *("depth_top", "md", "tvd"),
+    ),
+    "to": (
+        *("to", "depth_to", "to_depth", "depthto", "to_m", "end", "bottom", "base", "bottom_depth"),
+        *("depth_bottom", "base_depth"),
+    ),
+    "block": _BLOCK,
+    **DIRECTIONS,
+}
+OBSERVED = {
+    "x": PICKS["x"],
+    "y": PICKS["y"],
+    "z": ("z", "elevation", "elev", "altitude", "rl", "height"),
+    "block": _BLOCK,
+    "hole": _HOLE,
+    "depth": ("depth", "md"),
+}
 # What stands in a column where there is no value; in small letters.
 NO_VALUE = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
 _STEP = 5000  # rows
 
 Columns = Mapping[str, Sequence[str]]  # possible names of a column, by its meaning
+
+
+class Reading(Protocol):
+    """How tables are read: of Boreholes, of an ObservationFile, or of a DipFile."""
+
+    @property
+    def columns(self) -> Mapping: ...
+
+    @property
+    def separator(self) -> str | None: ...
+
+    @property
+    def decimal(self) -> str | None: ...
 
 
 @dataclass(frozen=True)
@@ -81,7 +131,7 @@ class Row:
         return value
 
 
-def rows(given: Boreholes, file: Path, known: Columns, needed: Sequence[str], step: Step):
+def rows(given: Reading, file: Path, known: Columns, needed: Sequence[str], step: Step):
     """The rows of a table, with those of the known columns that it has. Raises InputRefused where it lacks
     one that is needed."""
     names = {column.lower() for column in given.columns.values() if isinstance(column, str)}
@@ -117,7 +167,7 @@ def _parts(body: str, separator: str):
         yield from fields(line, separator)
 
 
-def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
+def _columns(given: Reading, table: Table, known: Columns, needed: Sequence[str]) -> dict[str, int]:
     """The numbers of the columns of a table, by their meaning."""
     names = [plain_name(name) for name in table.layout.names or ()]
     as_written = [name.strip().lower() for name in table.layout.names or ()]

@@ -31,7 +31,7 @@ from .table_layout import (
 
 TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
 _MOST_THREADS = 8
-_AXES = {
+AXES = {
     "x": (
         *("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm", "point_x"),
         *("rechtswert", "este"),
@@ -45,7 +45,7 @@ _AXES = {
         *("höhe", "hoehe", "cota", "rl"),
     ),
 }
-KNOWN = frozenset(name for names in _AXES.values() for name in names)
+KNOWN = frozenset(name for names in AXES.values() for name in names)
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[in
         return [table.column(column) for column in columns]
     names = [plain_name(name) for name in table.layout.names or ()]
     found = {
-        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in _AXES.items()
+        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in AXES.items()
     }
     if not any(found.values()):
         return [0, 1, 2]

@@ -18,6 +18,7 @@ from ...heights import Interpolation
 from ...heights.mis_ties import contradictions, mean_heights
 from ...heights.on_mesh import BOUNDS
 from ...heights.run import few_points, runs_away
+from ...settings.dips import Dips
 from ...settings.methods import METHODS
 from ...surfaces.local_heights import is_local
 from ...surfaces.rock_input import RockInput
@@ -31,6 +32,7 @@ from .few_points import are_few, of_residuals
 from .lips import Lip, beyond_lips
 from .near_rows import near_rows
 from .points_at_faults import placed_warning, point_sides
+from .sided_dips import at_height, sided_dips
 from .throws import Sheets
 from .tips import shared, trace_of, with_equal_ends
 from .within import Within
@@ -57,6 +59,7 @@ class InterpolatedSurface:
         self._leave_out_contradictions()
         self.counts = self._that_count()
         self.keys = keys_of(entry.divided(), number, self.placed.sides)
+        self.dips, self.dip_sides = sided_dips(work, self.surface, entry)
         # of a sheet its interpolation, and the diagnostics of its vertices
         self.made: dict[Sheet, tuple[Interpolation, dict[str, np.ndarray]]] = {}
         self.most = (-1, None)
@@ -108,9 +111,18 @@ class InterpolatedSurface:
         if not self.surface.needs_points:
             return False
         points = self.points[self._certain(family)]
-        return len(points) == 0 or are_few(
-            self.surface, points, self.entry.planar_mesh().vertices, self._within(family)
-        )
+        if not len(points):
+            return True
+        dips = self._own_dips(family)
+        shown = points if dips is None else np.concatenate([points, at_height(dips, points[0, 2])])
+        return are_few(self.surface, shown, self.entry.planar_mesh().vertices, self._within(family))
+
+    def _own_dips(self, family: Family, hidden: np.ndarray | None = None) -> Dips | None:
+        """The dips in its compartments. hidden: (D,) bool, those that do not count."""
+        if self.dips is None:
+            return None
+        own = self._within(family).has(self.dip_sides)
+        return self.dips.some(own if hidden is None else own & ~hidden)
 
     def _certain(self, family: Family) -> np.ndarray:
         """(P,) bool: the points that count and lie in its compartments themselves: few do not say which
@@ -168,7 +180,8 @@ class InterpolatedSurface:
             return self._within_bounds(family, trends)
         first = next(iter(family.members.values()))
         trend = None if trends is None else trends[first]
-        common = self._interpolated(family, first, own, trend=trend)
+        with_dips = replace(self.surface, dips=self._own_dips(family))
+        common = self._interpolated(family, first, own, with_dips, trend)
         if not own.any() and not needed_surfaces(self.entry.rock, self.number):
             return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.divided().faults.shapes[fault] for fault in family.dying]
@@ -190,7 +203,7 @@ class InterpolatedSurface:
             for side in (-1, 1)
         }
         of_members = {tuple(row[number] for number in met): row for row in family.members.values()}
-        settled = _settled(self.surface, self.made[common][0])
+        settled = _settled(with_dips, self.made[common][0])
         counts_by_node = trends is None and self._counts_by_node(settled) and known.all()
         whole_of: dict[tuple[int, ...], np.ndarray] = {}
 
@@ -201,19 +214,26 @@ class InterpolatedSurface:
                     away |= hidden[number, side]
             visible = own & ~away
             visible = visible if (visible & self.counts).any() else own
+            surface = settled
+            if self.dips is not None:
+                beyond = np.zeros(len(self.dips), bool)
+                for number, side in zip(met, sides, strict=True):
+                    other = self.dip_sides[:, family.dying[number]] == -side
+                    beyond |= other & traces[number].beside(self.dips.positions) & (side != 0)
+                surface = replace(settled, dips=self._own_dips(family, beyond))
             lips = [
                 Lip(faults[number], side, traces[number].beside(self.points[visible, :2]))
                 for number, side in zip(met, sides, strict=True)
                 if side
             ]
             if counts_by_node:
-                return self._values_at(family, self._points(family, visible, lips), settled, nodes[some])
+                return self._values_at(family, self._points(family, visible, lips), surface, nodes[some])
             if sides not in whole_of:
                 whole = list(first)
                 for number, side in zip(met, sides, strict=True):
                     whole[number] = side
                 trend = None if trends is None else trends[of_members[sides]]
-                sheet = self._interpolated(family, tuple(whole), visible, settled, trend, lips)
+                sheet = self._interpolated(family, tuple(whole), visible, surface, trend, lips)
                 whole_of[sides] = self._values_on_nodes(sheet)
             return whole_of[sides][some]
 

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The collars and the paths of boreholes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused, number_list
+from ...base.text import no_step
+from ...settings.boreholes import Boreholes
+from .hole_directions import HoleDirections, is_inclined
+from .hole_tables import COLLARS, Row, rows
+from .well_trajectory import WellTrajectory
+
+
+class Holes:
+    """The collars and the paths of holes."""
+
+    def __init__(self, given: Boreholes):
+        self.given = given
+        self._inclined: dict[str, None] = {}  # holes that are not vertical, by an angle alone
+        self._without_survey: dict[str, None] = {}
+        self._paths: dict[str, WellTrajectory] = {}
+        self._warnings: list[str] = []
+        self._collars = None if given.collars is None else self._read_collars()
+        self._unused = set(self._collars or ())
+        self._surveyed: set[str] = set()
+        if given.survey is not None:
+            directions = HoleDirections.of_survey(given)
+            surveyed = directions.paths()
+            self._warnings += directions.warnings
+            self._surveyed = set(surveyed)
+            self._paths |= surveyed
+
+    def _read_collars(self) -> dict[str, tuple[float, float, float]]:
+        collars: dict[str, tuple[float, float, float]] = {}
+        directions = HoleDirections(self.given)
+        assert self.given.collars is not None
+        for row in rows(self.given, Path(self.given.collars), COLLARS, ("hole", "x", "y", "z"), no_step):
+            hole = row.text("hole")
+            place = (row.number("x"), row.number("y"), row.number("z"))
+            known = hole in collars
+            if collars.setdefault(hole, place) != place:
+                raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
+            if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
+                directions.add(row, 0.0)
+            elif is_inclined(row) and not known:
+                self._inclined[hole] = None
+        if not collars:
+            raise InputRefused("there are no holes in it", file=self.given.collars)
+        self._paths |= directions.paths()
+        return collars
+
+    def begin_of(self, row: Row) -> np.ndarray:
+        """(3,) the collar of a row's hole, in the units of the tables; its height is NaN where it is not
+        known."""
+        hole = row.text("hole")
+        self._unused.discard(hole)
+        if self._collars is not None:
+            if hole not in self._collars:
+                what = f"hole '{hole}' has no collar in {self.given.collars}"
+                raise row.refuse(what, "check how it is written")
+            return np.array(self._collars[hole])
+        for column in ("x", "y"):
+            if column not in row.columns:
+                advice = "give the table of collars = ..., or the columns of x and y"
+                raise row.refuse(f"the table has no column {column}", advice)
+        has_depth = any(row.has(column) for column in ("depth", "from", "to"))
+        z = row.number("z") if "z" in row.columns and has_depth else float("nan")
+        if np.isnan(z) and has_depth:
+            raise row.refuse("a depth needs the collar's height", "give a column z, or a table of collars")
+        return np.array((row.number("x"), row.number("y"), z))
+
+    def way_to(self, row: Row, depth: float) -> np.ndarray:
+        """(3,) how far to the east, to the north and down from the collar a depth in a row's hole is."""
+        hole = row.text("hole")
+        path = self._paths.get(hole)
+        if path is None:
+            if self.given.survey is not None:
+                self._without_survey[hole] = None
+            elif is_inclined(row):
+                self._inclined[hole] = None
+            return np.array((0.0, 0.0, depth))
+        column = "depth" if "depth" in row.columns else "from"
+        if row.called(column) == "tvd" and not path.is_vertical:
+            what = f"hole '{hole}' is not vertical, and TVD is a vertical depth"
+            raise row.refuse(what, "give the depth along the hole (MD)")
+        return path.offset(depth)
+
+    def refuse_deviated(self, row: Row) -> None:
+        """Refuses an elevation that does not determine the position in the hole."""
+        path = self._paths.get(row.text("hole"))
+        if self._collars is not None and path is not None and not path.is_vertical:
+            what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"
+            raise row.refuse(
+                what, "give the depth along the hole, or x, y and elevation of each pick and no collars"
+            )
+
+    def warnings(self) -> list[str]:
+        warnings = list(self._warnings)
+        inclined = [hole for hole in self._inclined if hole not in self._paths]
+        if inclined:
+            warnings.append(
+                f"{self.given.collars or self.given.files[-1]}: {number_list(inclined)} are not vertical, "
+                "but are taken as vertical: add the azimuth, a survey, or x, y and elevation of each pick"
+            )
+        if self._without_survey:
+            names = number_list(self._without_survey)
+            warnings.append(f"{self.given.survey}: no direction for {names}: taken as vertical")
+        if self._unused:
+            what = "picks" if self.given.intervals is None else "picks or intervals"
+            what = "intervals" if self.given.picks is None else what
+            warnings.append(f"{self.given.collars}: no {what} for {number_list(sorted(self._unused))}")
+        if self._collars is not None and (strangers := sorted(self._surveyed - set(self._collars))):
+            warnings.append(
+                f"{self.given.survey}: {number_list(strangers)} have no collar in {self.given.collars}"
+            )
+        return warnings

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Logged intervals of boreholes: which block is where along a hole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ...base.algebra import norm
+from ...base.errors import InputRefused
+from ...base.text import Step
+from .hole_tables import INTERVALS, Row, rows
+from .holes import Holes
+from .observations import LeftOut, Observations
+from .unit_names import UnitNames
+
+_ALIKE = 1e-6  # of the largest depth in a hole: depths that are nearer are one, which digits have parted
+_MOST_BETWEEN = 100  # places between the ends of an interval of an inclined hole
+_STEPS = 200  # in which the area of all holes is crossed, where no other step is given
+
+
+@dataclass
+class _Hole:
+    """A hole: a row of it, its collar, and (from, to, block) of its intervals as they are in the table."""
+
+    row: Row
+    begin: np.ndarray
+    intervals: list[tuple[float, float, str]] = field(default_factory=list)
+
+
+@dataclass
+class Intervals:
+    """observations: the ends of the intervals, and places between them where holes are inclined. holes: as of
+    Picks, the tops of the intervals. left_out: intervals that are not used."""
+
+    observations: Observations
+    holes: dict[str, tuple[np.ndarray, list[tuple[str, np.ndarray]]]]
+    left_out: list[LeftOut]
+
+
+def read_intervals(
+    holes: Holes, units: UnitNames, scale: np.ndarray, plan_step: float | None, step: Step
+) -> Intervals:
+    """The intervals of the table of some boreholes.
+
+    scale: (3,) from the units of the tables to that of the model. plan_step: how far places along inclined
+    intervals are apart in plan at most, model units; None: by the area of the holes. Depths that differ by
+    rounding are one; intervals of one block that meet are one. Raises InputRefused naming file and line.
+    """
+    given = holes.given
+    assert given.intervals is not None
+    found: dict[str, _Hole] = {}
+    left_out: list[LeftOut] = []
+    for row in rows(given, Path(given.intervals), INTERVALS, ("hole", "from", "to", "block"), step):
+        name, code = row.text("hole"), row.text("block")
+        if not name:
+            raise row.refuse("the hole has no name")
+        hole = found.get(name)
+        if hole is None:
+            hole = found[name] = _Hole(row, holes.begin_of(row))
+        interval = _interval(row, name, code, units, left_out)
+        if interval is not None:
+            hole.intervals.append(interval)
+    if not found:
+        raise InputRefused("there are no intervals in it", file=given.intervals)
+    if plan_step is None:
+        plan = np.array([hole.begin[:2] for hole in found.values()]) * scale[:2]
+        plan_step = float(np.ptp(plan, axis=0).max()) / _STEPS
+    parts, tops = [], {}
+    for name, hole in found.items():
+        parts.append(_observed(holes, hole, name, scale, plan_step, left_out))
+        tops[name] = hole.begin * scale, _tops(parts[-1])
+    return Intervals(Observations.joined(parts), tops, left_out)
+
+
+def _interval(
+    row: Row, hole: str, code: str, units: UnitNames, left_out: list[LeftOut]
+) -> tuple[float, float, str] | None:
+    """(from, to, block) of a row; None where it says nothing."""
+    if units.says_nothing(code):
+        return None
+    lacking = [name for name in ("from", "to") if not row.has(name)]
+    depth = next((row.number(name) for name in ("from", "to") if name not in lacking), None)
+    at = "" if depth is None else f" at {depth:.9g}"
+    where = f"line {row.line}, hole '{hole}'{at}, '{code}'"
+    if lacking:
+        left_out.append(LeftOut("no_depth", f"{where}: '{lacking[0]}' has no value", code, hole, depth))
+        return None
+    begin, end = row.number("from"), row.number("to")
+    if begin > end:
+        text = f"{where}: from {begin:.9g} is below to {end:.9g}"
+        left_out.append(LeftOut("from_to", text, code, hole, begin))
+        return None
+    block = units.block(code)
+    if block is None:
+        text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
+        left_out.append(LeftOut("unknown_block", text, code, hole, begin))
+        return None
+    return (begin, end, block) if begin < end else None  # of no thickness: the unit is absent
+
+
+def _observed(
+    holes: Holes, hole: _Hole, name: str, scale: np.ndarray, plan_step: float, left_out: list[LeftOut]
+) -> Observations:
+    """What the intervals of one hole say, from above downward."""
+    places: list[np.ndarray] = []
+    depths: list[float] = []
+    blocks: list[str] = []
+
+    def place(depth: float) -> np.ndarray:
+        # Depths, and horizontal offsets along a hole, are in the unit of z.
+        way = holes.way_to(hole.row, depth) * (1.0, 1.0, -1.0) * (scale[2] / scale)
+        return (hole.begin + way) * scale
+
+    for begin, end, block in _divided(hole.intervals, name, left_out):
+        across = norm((place(end) - place(begin))[:2])
+        count = 1 if plan_step <= 0 else min(int(np.ceil(across / plan_step)), _MOST_BETWEEN + 1)
+        for depth in [begin, *np.linspace(begin, end, max(count, 1) + 1)[1:-1].tolist(), end]:
+            places.append(place(depth))
+            depths.append(depth)
+            blocks.append(block)
+    return Observations(
+        np.array(places).reshape(-1, 3), np.array(blocks, str), np.full(len(places), name), np.array(depths)
+    )
+
+
+def _divided(
+    intervals: Iterable[tuple[float, float, str]], hole: str, left_out: list[LeftOut]
+) -> list[tuple[float, float, str]]:
+    """Intervals that do not overlap, downward; what several blocks claim is left out."""
+    given = list(intervals)
+    alike = _alike([depth for begin, end, _ in given for depth in (begin, end)])
+    given = [(alike[begin], alike[end], block) for begin, end, block in given]
+    found: list[tuple[float, float, str]] = []
+    for begin, end in pairwise(sorted(set(alike.values()))):
+        claimed = {block: None for low, high, block in given if low <= begin and end <= high}
+        if len(claimed) > 1:
+            names = " and ".join(f"'{block}'" for block in claimed)
+            text = f"hole '{hole}' from {begin:.9g} to {end:.9g}: intervals of {names} overlap"
+            left_out.append(LeftOut("overlap", text, next(iter(claimed)), hole, begin))
+            continue
+        for block in claimed:
+            if found and found[-1][1:] == (begin, block):
+                found[-1] = (found[-1][0], end, block)
+            else:
+                found.append((begin, end, block))
+    return found
+
+
+def _alike(depths: list[float]) -> dict[float, float]:
+    """For each depth the one that it counts as: the least of those that only rounding parts."""
+    near = _ALIKE * max(map(abs, depths), default=0.0)
+    found: dict[float, float] = {}
+    last = -np.inf
+    for depth in sorted(set(depths)):
+        if depth - last > near:
+            last = depth
+        found[depth] = last
+    return found
+
+
+def _tops(observations: Observations) -> list[tuple[str, np.ndarray]]:
+    """(surface, place) where the blocks of a hole begin."""
+    blocks = observations.blocks
+    first = [row for row in range(len(blocks)) if row == 0 or blocks[row] != blocks[row - 1]]
+    return [(str(blocks[row]), observations.places[row]) for row in first]

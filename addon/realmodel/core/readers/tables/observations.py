@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Observations of blocks at places, and what of them was left out; bounds of surfaces that follow from
+them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...base.errors import InputRefused, place_text
+from ...notebook import ShortRepr
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Observations(ShortRepr):
+    """Places that are known to lie in a block, or on its boundary.
+
+    places: (N, 3) float64, model units. blocks: (N,) texts, each the name of the surface that the block lies
+    beneath, of the block, or of a body. holes: (N,) texts, the borehole of each, "" for none; the places of a
+    hole follow one another downward along it. depths: (N,) float64 along the hole, NaN where there is none.
+    An interval is at least two places, its ends: a place that two intervals share is on the boundary of both.
+
+    Raises InputRefused for arrays that do not fit together.
+
+    >>> Observations([[0, 0, 5], [0, 0, 2]], ["sand", "clay"]).holes.tolist()
+    ['', '']
+    """
+
+    places: np.ndarray
+    blocks: np.ndarray
+    holes: np.ndarray = field(default_factory=lambda: np.empty(0, str))
+    depths: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    def __post_init__(self) -> None:
+        try:
+            places = np.ascontiguousarray(self.places, np.float64).reshape(-1, 3)
+            depths = np.asarray(self.depths, np.float64).reshape(-1)
+        except (TypeError, ValueError) as error:
+            raise InputRefused(
+                f"not an array of numbers: {error}", item="observations", advice="places are x, y, z"
+            ) from error
+        count = len(places)
+        blocks, holes = (np.asarray(each, str).reshape(-1) for each in (self.blocks, self.holes))
+        holes = holes if len(holes) else np.full(count, "")
+        depths = depths if len(depths) else np.full(count, np.nan)
+        if not np.isfinite(places).all():
+            bad = int(np.flatnonzero(~np.isfinite(places).all(axis=1))[0])
+            raise InputRefused(f"place {bad} is {place_text(places[bad])}, not finite", item="observations")
+        if not len(blocks) == len(holes) == len(depths) == count:
+            what = f"{count} places have {len(blocks)} blocks, {len(holes)} holes and {len(depths)} depths"
+            raise InputRefused(what, item="observations", advice="give each place one of each")
+        for name, value in zip(
+            ("places", "blocks", "holes", "depths"), (places, blocks, holes, depths), strict=True
+        ):
+            object.__setattr__(self, name, value)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def some(self, chosen: np.ndarray) -> Observations:
+        """Some of them. chosen: (N,) bool, or numbers of rows."""
+        return Observations(self.places[chosen], self.blocks[chosen], self.holes[chosen], self.depths[chosen])
+
+    def source(self, row: int) -> str:
+        """Where one of them comes from, for messages."""
+        return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
+
+    @classmethod
+    def joined(cls, parts: Sequence[Observations]) -> Observations:
+        """Several, `parts`, one after another."""
+        if not parts:
+            return cls(np.empty((0, 3)), np.empty(0, str))
+        names = ("places", "blocks", "holes", "depths")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def source_text(hole: str, depth: float, place) -> str:
+    """The hole with the depth, or the place where there is none: hole 'B1' at 12.5; else the place alone."""
+    at = place_text(np.asarray(place).tolist())
+    if not hole:
+        return at
+    return f"hole '{hole}' at {at if np.isnan(depth) else format(depth, '.9g')}"
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """An observation that is not used. kind: a word of KINDS. text: what and why. block: its name. hole: its
+    name, "" for none. depth: along it, None where there is none. place: (x, y, z) in model units, None where
+    it is not known."""
+
+    kind: str
+    text: str
+    block: str = ""
+    hole: str = ""
+    depth: float | None = None
+    place: tuple[float, ...] | None = None
+
+
+# Why observations are not used, by the kind of their warning: found in their tables, or from their places.
+IN_TABLES = {
+    "overlap": "intervals of different blocks overlap, and what both claim is not used",
+    "from_to": "intervals end above where they begin, and are not used",
+    "no_depth": "intervals have no depth, and are not used",
+    "unknown_block": "intervals and observations are of no known block, and say nothing",
+}
+KINDS = {
+    **IN_TABLES,
+    "wrong_order": "observations have an older block above a younger one, or a block twice, and are not used",
+    "in_body": "observations contradict a body, and are not used",
+    "no_surface": "observations are of blocks that cannot be there, and are not used",
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Bounds(ShortRepr):
+    """Heights that a surface lies at or above, or at or below.
+
+    places: (N, 3) float64, model units; with faults a bound counts in the compartment of its place. is_lower:
+    (N,) bool, True where the surface lies at the place or above it, False at it or below. holes, depths: (N,)
+    where each comes from, as Observations has them.
+    """
+
+    places: np.ndarray
+    is_lower: np.ndarray
+    holes: np.ndarray
+    depths: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    @property
+    def lower(self) -> np.ndarray:
+        """(L, 3) the places at or above which the surface lies."""
+        return self.places[self.is_lower]
+
+    @property
+    def upper(self) -> np.ndarray:
+        """(U, 3) the places at or below which the surface lies."""
+        return self.places[~self.is_lower]
+
+    def some(self, chosen: np.ndarray) -> Bounds:
+        """Some of them. chosen: (N,) bool, or numbers of rows."""
+        return Bounds(self.places[chosen], self.is_lower[chosen], self.holes[chosen], self.depths[chosen])
+
+    def source(self, row: int) -> str:
+        """Where one of them comes from, for messages."""
+        return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])
+
+    def beyond(self, z: np.ndarray) -> np.ndarray:
+        """(N,) how far a surface with heights z (N,) at the places violates each; 0 where it does not."""
+        off = np.where(self.is_lower, self.places[:, 2] - z, z - self.places[:, 2])
+        return np.where(off > 0, off, 0.0)  # NaN where the surface has no height: not violated

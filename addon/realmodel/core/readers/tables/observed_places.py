@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of places that are known to lie in a block: outcrops, samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.text import Step, no_step
+from ...base.units import MODEL_UNIT, factor
+from ...settings.observation_file import ObservationFile
+from .hole_tables import OBSERVED, rows
+from .observations import LeftOut, Observations
+from .unit_names import UnitNames
+
+
+def read_observed_places(
+    given: ObservationFile, units: UnitNames, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> tuple[Observations, list[LeftOut]]:
+    """The places of a table, in the model's unit and in its order, and those that are not used. Raises
+    InputRefused naming file and line."""
+    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
+    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
+    places, blocks, holes, depths = [], [], [], []
+    left_out: list[LeftOut] = []
+    count = 0
+    for row in rows(given, Path(given.file), OBSERVED, ("x", "y", "z", "block"), step):
+        count += 1
+        code = row.text("block")
+        if units.says_nothing(code):
+            continue
+        hole = row.text("hole") if row.has("hole") else ""
+        depth = row.number("depth") if row.has("depth") else float("nan")
+        block = units.block(code)
+        where = f"line {row.line}, '{code}'"
+        if not row.has("z"):
+            left_out.append(LeftOut("no_depth", f"{where}: 'z' has no value", code, hole))
+            continue
+        place = np.array([row.number(axis) for axis in "xyz"]) * scale
+        if block is None:
+            text = f"{where}: this is no block, surface or body, or several blocks; give its meaning in names"
+            at = tuple(place.tolist())
+            left_out.append(LeftOut("unknown_block", text, code, hole, None, at))
+            continue
+        places.append(place)
+        blocks.append(block)
+        holes.append(hole)
+        depths.append(depth)
+    if not count:
+        raise InputRefused("there are no observations in it", file=given.file)
+    return (
+        Observations(
+            np.array(places).reshape(-1, 3), np.array(blocks, str), np.array(holes, str), np.array(depths)
+        ),
+        left_out,
+    )

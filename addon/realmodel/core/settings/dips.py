@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dips of a surface: arrays, or a table with its import options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..base.errors import InputRefused, place_text
+from .boreholes import check_column_names
+from .point_file import check_units
+
+COLUMNS = ("x", "y", "z", "dip", "dip_direction", "strike", "polarity", "slope_x", "slope_y")
+
+
+@dataclass(frozen=True)
+class DipFile:
+    """file: a table of dips of a surface: x, y, z (optional), dip, and dip_direction or strike, in degrees.
+
+    dip: below the horizontal. dip_direction: clockwise from north (+y). strike: by the right-hand rule, the
+    dip direction is 90 degrees clockwise from it. polarity: optional, 1; -1, overturned, is refused.
+    slope_x and slope_y, how much the surface rises along x and along y, may take the place of angles.
+    columns: {"dip": "INCL", ...}, names or numbers from 1 of columns that are called otherwise. separator,
+    decimal: as of a PointFile. units: of x, y and z, "ft", or {"xy": "m", "z": "ft"}; None: those of the
+    model.
+    """
+
+    file: str | Path
+    columns: Mapping = field(default_factory=dict)
+    separator: str | None = None
+    decimal: str | None = None
+    units: str | Mapping | None = None
+
+    def check(self) -> None:
+        """Raises OptionRefused for a key that makes no sense."""
+        check_column_names(self.columns, COLUMNS)
+        check_units(self.units)
+
+
+@dataclass(frozen=True, eq=False)
+class Dips:
+    """Dips of a surface. positions: (D, 2) float64 x, y. gradients: (D, 2) float64, its slope along x and
+    along y. z: (D,) float64 heights of the positions, NaN where they are not known, or None: a height only
+    says on which side of a fault a dip is."""
+
+    positions: np.ndarray
+    gradients: np.ndarray
+    z: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def some(self, kept: np.ndarray) -> Dips:
+        """Some of them. kept: (D,) bool, or their numbers."""
+        z = None if self.z is None else self.z[kept]
+        return Dips(self.positions[kept], self.gradients[kept], z)
+
+    def checked(self) -> Dips:
+        """The same as arrays of float64. Raises InputRefused."""
+        positions, gradients = (
+            _floats(values, (len(self.positions), 2), f"{name} of dips")
+            for name, values in (("positions", self.positions), ("gradients", self.gradients))
+        )
+        z = None if self.z is None else _floats(self.z, (len(positions),), "z of dips")
+        bad = np.flatnonzero(~np.isfinite(np.column_stack([positions, gradients])).all(axis=1))
+        if len(bad):
+            raise InputRefused(f"dip {bad[0]} is not finite", item="dips")
+        return Dips(positions, gradients, z)
+
+    def merged(self) -> tuple[Dips, str | None]:
+        """One dip at each position, the mean of those there, and a warning where they differ."""
+        places, place = np.unique(self.positions + 0.0, axis=0, return_inverse=True)
+        if len(places) == len(self):
+            return self, None
+        place = place.reshape(-1)
+        first = np.full(len(places), len(self))
+        np.minimum.at(first, place, np.arange(len(self)))
+        count = np.bincount(place)
+        means = np.column_stack([np.bincount(place, weights=axis) / count for axis in self.gradients.T])
+        apart = np.abs(self.gradients - means[place]).max(axis=1)
+        differ = np.unique(place[apart > 1e-12 * (1 + np.abs(means[place]).max(axis=1))])
+        order = np.argsort(first)
+        kept = self.some(first[order])
+        kept = Dips(kept.positions, np.ascontiguousarray(means[order]), kept.z)
+        if not len(differ):
+            return kept, None
+        where = place_text(tuple(places[differ[0]].tolist()))
+        many = "1 position has" if len(differ) == 1 else f"{len(differ)} positions have"
+        return kept, f"{many} several dips, one at {where}: their mean slope is used"
+
+
+def _floats(values, shape: tuple[int, ...], item: str) -> np.ndarray:
+    try:
+        array = np.ascontiguousarray(values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("not an array of numbers", item=item) from error
+    if array.shape != shape:
+        raise InputRefused(f"must be an array {shape}, not {array.shape}", item=item)
+    return array

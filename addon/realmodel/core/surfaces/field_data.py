@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What boreholes and observations tell of the surfaces of a rock mass: read, and applied to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.build_warning import BuildWarning
+from ..base.errors import naming, number_list
+from ..base.work import Work
+from ..project.project import Project, Rock, Surface
+from ..project.structure_history import body_times
+from ..readers import Picks, UnitNames, read_boreholes, read_observed_places
+from ..readers.tables.observations import IN_TABLES, KINDS, LeftOut, Observations
+from .observed.derived import Derived, Situation, along_bounds, contacts_for, derive, with_contacts
+from .rock_input import RockInput
+from .wrong_sides import heights_at
+
+_LISTED = 12  # observations that a warning names; the report has all
+
+
+@dataclass
+class FieldData:
+    """Of one rock mass. rock: with arrays in the place of boreholes and observations. picks: of its
+    boreholes. surfaces: of each surface, as it was before it is read, without contacts of earlier readings,
+    the points to be added to it, or None. unnamed: names of picks that no surface from points has. left_out:
+    rows of tables that are not used."""
+
+    rock: Rock
+    picks: Picks
+    surfaces: list[tuple[Surface, np.ndarray | None]]
+    unnamed: list[str]
+    left_out: list[LeftOut]
+
+
+def read_field_data(project: Project, rock: Rock) -> FieldData:
+    """Reads the boreholes and observations of a rock mass. Contacts are those of surfaces that reach
+    everywhere, without faults and bodies: apply_observations finds them anew. Raises InputRefused."""
+    bodies = [body.name for body in project.bodies]
+    names = [surface.name for surface in rock.surfaces]
+    units = UnitNames(names, rock.block_names(), bodies, rock.names)
+    picks, found = Picks(), [rock.observations] if isinstance(rock.observations, Observations) else []
+    with naming(rock.item):
+        if rock.boreholes is not None:
+            step = rock.edge_length if isinstance(rock.edge_length, (int, float)) else None
+            picks = read_boreholes(rock.boreholes, project.units, units=units, plan_step=step)
+            found += picks.observations
+        left_out = list(picks.left_out)
+        if rock.observation_file is not None:
+            observed, not_used = read_observed_places(rock.observation_file, units, project.units)
+            found.append(observed)
+            left_out += not_used
+    observations = Observations.joined(found) if found else None
+    derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
+    surfaces = [
+        _with_points(surface, number, picks.points.pop(surface.name, None), derived)
+        if surface.interpolated
+        else (surface, None)
+        for number, surface in enumerate(rock.surfaces)
+    ]
+    read = replace(
+        rock,
+        boreholes=None,
+        observations=observations,
+        names={},
+        hole_picks=picks.holes or rock.hole_picks,
+    )
+    return FieldData(read, picks, surfaces, list(picks.points), left_out)
+
+
+def _of_bodies(project: Project, rock: Rock) -> Situation:
+    """The bodies that there may be in a rock mass, before their shapes are known."""
+    number = [each.name for each in project.rocks].index(rock.name)
+    there = [(body, body_times(project, body)) for body in project.bodies]
+    own = [(body, times[number]) for body, times in there if number in times]
+    return Situation(
+        after=[after for _, after in own],
+        bodies=[body.name for body, _ in own],
+        voids=[body.void for body, _ in own],
+    )
+
+
+def _with_points(
+    surface: Surface, number: int, met: np.ndarray | None, derived: Derived | None
+) -> tuple[Surface, np.ndarray | None]:
+    if derived is None:
+        return surface, met
+    if surface.point_file is None:
+        surface = replace(surface, points=surface.own_points())
+    is_alone = surface.points is None and met is None and surface.needs_points
+    contacts = contacts_for(derived, number, is_alone)
+    surface = replace(surface, contacts=contacts if len(contacts) else None)
+    known = [each for each in (met, contacts) if each is not None and len(each)]
+    return surface, np.concatenate(known) if known else None
+
+
+def apply_observations(
+    work: Work,
+    entry: RockInput,
+    situation: Situation | None = None,
+    places: np.ndarray | None = None,
+) -> None:
+    """Gives the surfaces of a RockInput that is read the contacts and bounds that follow from its
+    observations, in the place of those that they have. situation: where these lie, but for where surfaces
+    reach. places: (N, 3) for their own places."""
+    rock, observations = entry.rock, entry.rock.observed
+    assert observations is not None
+    if places is not None:
+        observations = replace(observations, places=places)
+    situation = replace(situation or Situation(), covered=_covered(work, entry, observations.places))
+    derived = derive(rock, observations, situation)
+    entry.rock = with_contacts(rock, derived)
+    entry.used = derived.used
+    of_tables = [each for each in entry.left_out if each.kind in IN_TABLES]
+    entry.left_out = [*of_tables, *derived.left_out]
+
+
+def _covered(work: Work, entry: RockInput, places: np.ndarray) -> np.ndarray | None:
+    """(N, S) bool: over or under which surfaces places (N, 3) lie; None where all surfaces are interpolated
+    and reach everywhere."""
+    if all(surface.interpolated for surface in entry.rock.surfaces):
+        return None
+    plan = np.ascontiguousarray(places[:, :2])
+    covered = np.ones((len(places), len(entry.rock.surfaces)), bool)
+    for number, surface in enumerate(entry.rock.surfaces):
+        shape = entry.surfaces[number]
+        if not surface.interpolated and shape is not None:
+            covered[:, number] = np.isfinite(heights_at(work, shape, plan))
+    return covered
+
+
+def left_out_warnings(entry: RockInput) -> list[BuildWarning]:
+    """A warning for each reason why observations of a RockInput are left out, and for each surface that none
+    of them is on."""
+    found = []
+    for surface in entry.rock.surfaces:
+        contacts, bounds = surface.contact_array(), surface.bounds
+        if len(contacts) and bounds is not None and np.array_equal(contacts, along_bounds(bounds)):
+            text = (
+                f"it has no points, and no observation is on it: it goes through the {len(contacts)} places "
+                "nearest to which observations allow it"
+            )
+            found.append(BuildWarning(text, "no_contact", entry.rock.name, surface.name))
+    for kind, says in KINDS.items():
+        listed: Sequence[LeftOut] = [each for each in entry.left_out if each.kind == kind]
+        if listed:
+            text = f"{len(listed)} {says}: {number_list([each.text for each in listed], _LISTED)}"
+            found.append(BuildWarning(text, kind, entry.rock.name))
+    return found

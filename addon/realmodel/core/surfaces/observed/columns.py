@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The order of blocks along boreholes and columns of observations: younger blocks lie above older ones."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...readers.tables.observations import Observations
+
+
+@dataclass
+class _Run:
+    """Rows of one block that follow one another in a column."""
+
+    block: int
+    rows: list[int]
+    weight: float  # its length along the hole; of places without one their number
+
+
+def in_wrong_order(observations: Observations, blocks: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """(N,) bool: the observations that are left out so that no older block lies above a younger one.
+
+    blocks: (N,) the numbers of the blocks, oldest first; -1 for what has no order. parts: (N,) the number of
+    the part of space that each lies in, such as a compartment: across its border there is no order. Of each
+    hole, or of the places over one another, the longest part remains that has an order. Where a hole is
+    flatter than 45 degrees it may cross a surface upward, and says nothing of the order.
+    """
+    wrong = np.zeros(len(observations), bool)
+    for rows in _columns(observations, blocks, parts):
+        runs = _runs(observations, blocks, rows[blocks[rows] >= 0])
+        for run in runs:
+            wrong[run.rows] = True
+        for number in _longest(observations.places, runs):
+            wrong[runs[number].rows] = False
+    return wrong
+
+
+def _columns(observations: Observations, blocks: np.ndarray, parts: np.ndarray) -> Iterator[np.ndarray]:
+    """The rows of each hole, or of the places without a hole over one another, from above downward; those in
+    different parts of space by themselves."""
+    places, holes = observations.places, observations.holes
+    _, plan = np.unique(places[:, :2], axis=0, return_inverse=True)
+    _, named = np.unique(holes, return_inverse=True)
+    has_hole = holes != ""
+    key = np.where(has_hole, named.ravel() + plan.max(initial=0) + 1, plan.ravel())
+    # rows of a hole keep their order: they follow one another along it
+    down = np.where(has_hole, np.arange(len(places)), -places[:, 2])
+    order = np.lexsort((np.where(has_hole, 0, -blocks), down, parts, key))
+    new = np.flatnonzero((np.diff(key[order]) != 0) | (np.diff(parts[order]) != 0)) + 1
+    yield from np.split(order, new)
+
+
+def _runs(observations: Observations, blocks: np.ndarray, rows: np.ndarray) -> list[_Run]:
+    runs: list[_Run] = []
+    for row in rows.tolist():
+        if runs and runs[-1].block == blocks[row]:
+            runs[-1].rows.append(row)
+        else:
+            runs.append(_Run(int(blocks[row]), [row], 0.0))
+    for run in runs:
+        depths = observations.depths[run.rows]
+        has_depths = observations.holes[run.rows[0]] != "" and np.isfinite(depths).all()
+        run.weight = float(np.ptp(depths)) if has_depths else float(len(run.rows))
+    return runs
+
+
+def _longest(places: np.ndarray, runs: list[_Run]) -> list[int]:
+    """The numbers of the runs that remain: of those in order the ones of the largest weight."""
+    if all(_agree(places, first, second) for first, second in itertools.pairwise(runs)):
+        return list(range(len(runs)))
+    best = [(run.weight, -1) for run in runs]
+    for number, run in enumerate(runs):
+        for before in range(number):
+            weight = best[before][0] + run.weight
+            # of equal weights the one with more runs
+            if weight >= best[number][0] and _agree(places, runs[before], run):
+                best[number] = (weight, before)
+    at = max(range(len(runs)), key=lambda number: best[number][0], default=-1)
+    found = []
+    while at >= 0:
+        found.append(at)
+        at = best[at][1]
+    return found
+
+
+def _agree(places: np.ndarray, above: _Run, below: _Run) -> bool:
+    """Whether two runs, one after another along a hole, may be in this order."""
+    x, y, z = places[below.rows[0]] - places[above.rows[-1]]
+    if z * z < x * x + y * y:
+        return True
+    if above.rows[-1] == below.rows[0] or (x == y == z == 0.0):  # they meet: by the way into the lower one
+        x, y, z = places[below.rows[-1]] - places[above.rows[0]]
+        if z * z < x * x + y * y:
+            return True
+    return above.block >= below.block if z <= 0.0 else above.block <= below.block

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Contacts and bounds of surfaces from observations of blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...project.project import Rock
+from ...readers.tables.observations import Bounds, LeftOut, Observations
+from .columns import in_wrong_order
+from .succession import Succession
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Where the places of observations (N) lie, as far as it is known. covered: (N, S) bool, over or under
+    which surfaces of the rock mass. sides: (N, F) int8, of the faults that act in it. inside: (N, B) bool, in
+    which bodies; after: of each body, the surface after which it came; bodies: their names; voids: which of
+    them are voids. None and empty: everywhere covered, without faults and bodies."""
+
+    covered: np.ndarray | None = None
+    sides: np.ndarray | None = None
+    inside: np.ndarray | None = None
+    after: Sequence[int] = ()
+    bodies: Sequence[str] = ()
+    voids: Sequence[bool] = ()
+
+
+@dataclass
+class Derived:
+    """What observations say of each surface of a rock mass. contacts: (C, 3) places on it. bounds: heights
+    that it lies at or above, or at or below, at other places. used: (N,) bool, the observations that these
+    follow from; left_out: those that are not used."""
+
+    contacts: list[np.ndarray]
+    bounds: list[Bounds]
+    used: np.ndarray
+    left_out: list[LeftOut]
+
+
+class BlockNumbers:
+    """The numbers of blocks by their names: of the surface that each lies beneath, of the block, of a body;
+    in this order. A name that several blocks have is none of them."""
+
+    def __init__(self, rock: Rock, bodies: Sequence[str] = ()):
+        count = len(rock.surfaces)
+        self._numbers: dict[str, int] = {}
+        blocks = rock.block_names()
+        for number, name in enumerate(bodies):
+            self._numbers[name] = count + number
+        for number, name in enumerate(blocks):
+            if blocks.count(name) == 1:
+                self._numbers[name] = number
+        for number, surface in enumerate(rock.surfaces):
+            self._numbers[surface.name] = number
+
+    def of(self, names: np.ndarray) -> np.ndarray:
+        """(N,) int64 the numbers of blocks by their names (N,); -1 where there is no such block."""
+        found, row = np.unique(names, return_inverse=True)
+        numbers = np.array([self._numbers.get(name, -1) for name in found.tolist()], np.int64)
+        return numbers[row.ravel()] if len(numbers) else np.empty(0, np.int64)
+
+
+def derive(rock: Rock, observations: Observations, situation: Situation | None = None) -> Derived:
+    """Contacts and bounds of the surfaces of a rock mass from observations of its blocks."""
+    situation = situation or Situation()
+    blocks = BlockNumbers(rock, situation.bodies).of(observations.blocks)
+    left_out = _Listed(observations)
+    left_out.add(blocks < 0, "no_surface", "no block, surface or body of the rock mass has this name")
+    used = blocks >= 0
+    used &= ~_without_surface(rock, situation, blocks, left_out)
+    used &= ~_against_bodies(rock, situation, blocks, left_out)
+    rows = np.flatnonzero(used)
+    own = blocks[rows]
+    ordered = np.where(own < len(rock.surfaces), own, -1)
+    _, parts = _numbered(_sides(situation, len(observations))[rows])
+    wrong = rows[in_wrong_order(observations.some(rows), ordered, parts)]
+    is_wrong = np.isin(np.arange(len(observations)), wrong)
+    left_out.add(is_wrong, "wrong_order", "an older block lies above a younger one here, or a block twice")
+    used &= ~is_wrong
+    contacts, bounds = _of_used(rock, observations, situation, blocks, np.flatnonzero(used))
+    return Derived(contacts, bounds, used, left_out.entries)
+
+
+class _Listed:
+    """The observations that are left out, those of one interval as one entry."""
+
+    def __init__(self, observations: Observations):
+        self._given = observations
+        self.entries: list[LeftOut] = []
+
+    def add(self, chosen: np.ndarray, kind: str, text: str) -> None:
+        given = self._given
+        before: int | None = None
+        for row in np.flatnonzero(chosen).tolist():
+            follows = (
+                before == row - 1 and given.holes[row] != "" and given.holes[row] == given.holes[row - 1]
+            )
+            if not (follows and given.blocks[row] == given.blocks[row - 1]):
+                depth = float(given.depths[row])
+                entry = LeftOut(
+                    kind,
+                    f"{given.source(row)}, '{given.blocks[row]}': {text}",
+                    str(given.blocks[row]),
+                    str(given.holes[row]),
+                    None if np.isnan(depth) else depth,
+                    tuple(given.places[row].tolist()),
+                )
+                self.entries.append(entry)
+            before = row
+
+
+def _sides(situation: Situation, count: int) -> np.ndarray:
+    return np.zeros((count, 0), np.int8) if situation.sides is None else situation.sides
+
+
+def _numbered(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The first of equal rows (N, K), and (N,) the number of each among the different ones."""
+    if not rows.shape[1]:
+        return np.arange(min(len(rows), 1)), np.zeros(len(rows), np.int64)
+    _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return first, number.ravel()
+
+
+def _without_surface(rock: Rock, situation: Situation, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
+    """(N,) bool: where the surface over the block does not exist."""
+    missing = np.zeros(len(blocks), bool)
+    if situation.covered is not None:
+        layers = np.flatnonzero((blocks >= 0) & (blocks < len(rock.surfaces)))
+        own = blocks[layers]
+        # the first surface that exists somewhere forms no block there, unless it is the oldest of all
+        older = np.cumsum(situation.covered[layers], axis=1)[np.arange(len(layers)), own] > 1
+        missing[layers] = ~situation.covered[layers, own] | ((own > 0) & ~older)
+        left_out.add(missing, "no_surface", "the surface over this block, or every older one, is not here")
+    return missing
+
+
+def _against_bodies(rock: Rock, situation: Situation, blocks: np.ndarray, left_out: _Listed) -> np.ndarray:
+    """(N,) bool: places in a body that are observed to be in something else, and the other way round. A void
+    says nothing against a block: rock is seen before it is dug, and what fills it later."""
+    against = np.zeros(len(blocks), bool)
+    if situation.inside is None:
+        return against
+    count = len(rock.surfaces)
+    succession = Succession([surface.rule for surface in rock.surfaces])
+    for number, (after, is_void) in enumerate(zip(situation.after, situation.voids, strict=True)):
+        if is_void:
+            continue
+        removed = np.array([succession.removes(block, after) for block in range(count)], bool)
+        layer = (blocks >= 0) & (blocks < count)
+        stays = ~removed[np.where(layer, blocks, 0)]
+        against |= situation.inside[:, number] & layer & stays
+        against |= ~situation.inside[:, number] & (blocks == count + number)
+    left_out.add(against, "in_body", "a body lies here, or the body that was seen does not")
+    return against
+
+
+def _of_used(
+    rock: Rock,
+    observations: Observations,
+    situation: Situation,
+    blocks: np.ndarray,
+    used: np.ndarray,
+) -> tuple[list[np.ndarray], list[Bounds]]:
+    """The contacts and bounds of each surface from the observations that are used, their rows."""
+    places, sides = observations.places[used] + 0.0, _sides(situation, len(observations))[used]
+    above, below = _statements(rock, situation, blocks, used)
+    first, place = _numbered(np.column_stack([places, sides]))
+    first_rows = np.full(len(first), len(used))
+    np.minimum.at(first_rows, place, np.arange(len(used)))
+    at_place = [np.zeros((len(first), len(rock.surfaces)), bool) for _ in range(2)]
+    for found, said in zip(at_place, (above, below), strict=True):
+        np.logical_or.at(found, place, said)
+    meets = at_place[0] & at_place[1]
+    _, column = _numbered(np.column_stack([places[:, :2], sides]))
+    contacts, bounds = [], []
+    for number in range(len(rock.surfaces)):
+        on = np.sort(first_rows[meets[:, number]])
+        contacts.append(places[on])
+        kept = [
+            _tightest(places, column, np.flatnonzero(said[:, number] & ~meets[place, number]), on, sign)
+            for said, sign in ((above, 1.0), (below, -1.0))
+        ]
+        rows = used[np.concatenate(kept)]
+        bounds.append(
+            Bounds(
+                observations.places[rows],
+                np.repeat([True, False], [len(each) for each in kept]),
+                observations.holes[rows],
+                observations.depths[rows],
+            )
+        )
+    return contacts, bounds
+
+
+def _statements(
+    rock: Rock, situation: Situation, blocks: np.ndarray, used: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(U, S) bool twice: which surfaces lie at or above, and at or below, the places that are used."""
+    count = len(rock.surfaces)
+    rules = [surface.rule for surface in rock.surfaces]
+    above, below = np.zeros((len(used), count), bool), np.zeros((len(used), count), bool)
+    covered = np.ones((len(used), count), bool)
+    if situation.covered is not None:
+        covered = situation.covered[used]
+    first, pattern = _numbered(covered)
+    for number, row in enumerate(first):
+        there = np.flatnonzero(covered[row])
+        # a surface that does not exist here changes nothing here
+        at = np.searchsorted(there, np.arange(count), side="right") - 1
+        after = [int(at[each]) for each in situation.after]
+        succession = Succession([rules[each] for each in there], after)
+        new = np.full(count + len(after), -1)
+        new[there] = np.arange(len(there))
+        new[count:] = len(there) + np.arange(len(after))
+        rows = np.flatnonzero(pattern == number)
+        own = new[blocks[used[rows]]]
+        above[np.ix_(rows, there)] = succession.at_or_above[own]
+        below[np.ix_(rows, there)] = succession.at_or_below[own]
+    if situation.inside is not None:
+        for body, dug in enumerate(situation.after):
+            if situation.voids[body]:  # what fills a void lies below surfaces that it was dug through
+                fills = situation.inside[used, body] & (blocks[used] > dug) & (blocks[used] < count)
+                below[fills, : dug + 1] = False
+    return above, below
+
+
+def _tightest(
+    places: np.ndarray, column: np.ndarray, rows: np.ndarray, contacts: np.ndarray, sign: float
+) -> np.ndarray:
+    """Of rows that bound a surface, those that no other over or under the place, and no contact, implies.
+    sign: 1 for bounds from below, of which the highest counts, -1 for those from above."""
+    if not len(rows):
+        return rows
+    every = np.concatenate([contacts, rows])
+    height = sign * places[every, 2]
+    is_bound = np.arange(len(every)) >= len(contacts)
+    # the highest of each column first; of equal ones a contact
+    order = np.lexsort((is_bound, -height, column[every]))
+    new = np.ones(len(order), bool)
+    new[1:] = np.diff(column[every[order]]) != 0
+    best = order[new]
+    return np.sort(every[best[is_bound[best]]])
+
+
+def along_bounds(bounds: Bounds) -> np.ndarray:
+    """(P, 3) a place for each position in plan with bounds, on the bound or between the two: points for a
+    surface that no observation is on."""
+    if not len(bounds):
+        return np.empty((0, 3))
+    plan, column = np.unique(bounds.places[:, :2] + 0.0, axis=0, return_inverse=True)
+    low, high = np.full(len(plan), -np.inf), np.full(len(plan), np.inf)
+    z, lower = bounds.places[:, 2], bounds.is_lower
+    np.maximum.at(low, column.ravel()[lower], z[lower])
+    np.minimum.at(high, column.ravel()[~lower], z[~lower])
+    low, high = np.where(np.isinf(low), high, low), np.where(np.isinf(high), low, high)
+    return np.column_stack([plan, 0.5 * (low + high)])
+
+
+def contacts_for(derived: Derived, number: int, is_alone: bool) -> np.ndarray:
+    """(C, 3) the contacts of a surface. is_alone: it has no other points, and needs some: where there is no
+    contact either, places on its bounds."""
+    contacts = derived.contacts[number]
+    return along_bounds(derived.bounds[number]) if is_alone and not len(contacts) else contacts
+
+
+def with_contacts(rock: Rock, derived: Derived) -> Rock:
+    """A rock mass whose points are arrays, with these contacts in the place of those that its surfaces had
+    from observations, and with the bounds."""
+    surfaces = list(rock.surfaces)
+    for number, surface in enumerate(surfaces):
+        surfaces[number] = replace(surface, bounds=derived.bounds[number])
+        if not surface.interpolated:
+            continue
+        own = surface.own_points()
+        contacts = contacts_for(derived, number, own is None and surface.needs_points)
+        if not np.array_equal(contacts, surface.contact_array()):
+            known = contacts if own is None else np.concatenate([own, contacts])
+            surfaces[number] = replace(surfaces[number], points=known, contacts=contacts)
+    return replace(rock, surfaces=surfaces)

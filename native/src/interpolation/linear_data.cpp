@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/linear_data.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::interpolation {
+
+void check_dips(const Dips& dips) {
+    const std::size_t count = dips.positions.size();
+    if (dips.slopes.size() != count) {
+        throw InputError("option", "there are " + std::to_string(count) +
+                                       " positions of dips and " +
+                                       std::to_string(dips.slopes.size()) + " slopes");
+    }
+    if (count == 0) return;
+    require_countable(2 * count, "slopes");
+    if (!(dips.baseline > 0) || !std::isfinite(dips.baseline))
+        throw InputError("option", "the baseline of dips is not a positive, finite length");
+    if (dips.neighbors < 0)
+        throw InputError("option", "the number of dips at a node is negative; 0 means all");
+    for (std::size_t i = 0; i < count; ++i) {
+        for (const double number :
+             {dips.positions[i][0], dips.positions[i][1], dips.slopes[i][0], dips.slopes[i][1]}) {
+            if (usable(number)) continue;
+            throw InputError("not_finite",
+                             "dip " + std::to_string(i) + " is not a finite number below 1e150", -1,
+                             {static_cast<std::int64_t>(i)});
+        }
+    }
+}
+
+LinearData::LinearData(const DataPoints& points, const Dips& dips,
+                       const std::array<double, 2>& scales)
+    : points_(points) {
+    check_dips(dips);
+    require_countable(points.local.size() + 2 * dips.positions.size(), "points and slopes");
+    const double half = dips.baseline / 2;
+    for (std::size_t i = 0; i < dips.positions.size(); ++i) {
+        const Position at = points.to_local(dips.positions[i]);
+        dips_.push_back(at);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            Difference d{at, at, scales[axis], scales[axis] * dips.baseline * dips.slopes[i][axis]};
+            d.to[axis] += half;
+            d.from[axis] -= half;
+            differences_.push_back(d);
+        }
+    }
+    if (dips_.empty()) return;
+    const auto wanted = static_cast<std::size_t>(dips.neighbors);
+    dips_at_node_ = wanted == 0 ? dips_.size() : std::min(wanted, dips_.size());
+    dip_tree_.emplace(dips_);
+}
+
+}  // namespace realmodel::interpolation
