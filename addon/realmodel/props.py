@@ -22,6 +22,7 @@ from bpy.props import (
 from . import preferences, props_ensemble, props_rock, props_stage, props_structure, props_surface, props_view
 from .bl import changes, data_objects, display, library_rows, looks, quality, results, units
 from .core.base.units import MODEL_UNIT
+from .core.settings.schema import PROJECT
 from .registration import classes
 
 
@@ -138,6 +139,12 @@ class RealModelSettings(bpy.types.PropertyGroup):
         items=units.ITEMS,
         default=MODEL_UNIT,
         update=changes.model_unit,
+        options=set(),
+    )
+    crs: StringProperty(
+        name=PROJECT["crs"].label,
+        description=PROJECT["crs"].tip,
+        update=changes.setting,
         options=set(),
     )
     origin: FloatVectorProperty(

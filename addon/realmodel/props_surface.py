@@ -117,4 +117,5 @@ class RealModelSurface(
     )
     structures: CollectionProperty(type=RealModelStructure)
     stored: StringProperty(options={"HIDDEN"})
+    dips: StringProperty(options={"HIDDEN"})  # arrays of realmodel.core.Dips
     other_options: StringProperty(options={"HIDDEN"})  # JSON: heights given in a project file

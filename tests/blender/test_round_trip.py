@@ -19,6 +19,7 @@ EVERY_KEY = """
 format = 1
 name = "every key"
 units = "ft"
+crs = "EPSG:25832"
 library = "library.toml"
 
 [[rock]]
@@ -60,6 +61,7 @@ block = "Bottom"
 [[rock.surface]]
 name = "trend"
 points = "plain.csv"
+dips = "dips.csv"
 method = "universal_kriging"
 drift = "quadratic"
 variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
@@ -239,6 +241,7 @@ def write_files(folder: Path):
     (folder / "picks.csv").write_text("BHID,surface,depth\n" + picks)
     log = "".join(f"B{n},{top},{bottom},{block}\n" for n in (1, 2, 3) for top, bottom, block in LOG)
     (folder / "log.csv").write_text("BHID,from,to,block\n" + log)
+    (folder / "dips.csv").write_text("x,y,dip,strike\n20,20,10,0\n70,20.5,20.25,100\n")
     (folder / "seen.csv").write_text("x,y,z,block\n20,60,55,in holes only\n60,60,2,B\n")
     (folder / "river.geojson").write_text('{"type": "LineString", "coordinates": [[90, 5], [95, 60]]}')
     squares = ",".join(
@@ -277,6 +280,7 @@ def said(project):
     return {
         "name": project.name,
         "units": project.units,
+        "crs": project.crs,
         "library": [vars(entry) for entry in project.library or ()],
         "rocks": [_rock(rock) for rock in rocks],
         "structures": [_structure(entry) for entry in (*faults, *bodies)],
@@ -312,6 +316,7 @@ def _surface(surface):
             for array in (surface.points, surface.vertices, surface.triangles)
         ],
         "contacts": surface.contact_array().tolist(),
+        "dips": surface.dips and [surface.dips.positions.tolist(), surface.dips.gradients.tolist()],
         "method": surface.method_options() if surface.interpolated else None,
         **{
             key: getattr(surface, key)

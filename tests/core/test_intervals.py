@@ -258,6 +258,22 @@ def test_arrays_that_do_not_fit():
         Observations([["x", 0, 1]], ["a"])
 
 
+def test_places_of_a_hole_in_any_order():
+    rows = [
+        (0, 5, "b", 5),
+        (9, 1, "", np.nan),
+        (0, 9, "b", 1),
+        (3, 2, "a", np.nan),
+        (3, 8, "a", 2),
+        (0, 5, "b", 5),
+    ]
+    given = Observations(
+        [[x, 0, z] for x, z, *_ in rows], list("123456"), [row[2] for row in rows], [row[3] for row in rows]
+    )
+    assert given.along_holes().blocks.tolist() == ["3", "1", "6", "2", "5", "4"]
+    assert not len(Observations(np.empty((0, 3)), []).along_holes())
+
+
 def test_a_model_of_logs_alone(project, tmp_path):
     """B2 and B5 meet no clay: sand lies on the basement, which the surface over the clay is."""
     model = build(load_project(project()))

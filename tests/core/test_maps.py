@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import replace
 from random import Random
 
 import numpy as np
@@ -191,6 +192,20 @@ def read(path, layer=None):
     shapely = pytest.importorskip("shapely", reason=f"shapely is {WHY}")
     properties, _, shapes, fields = pyogrio.raw.read(path, layer=layer)
     return properties, dict(zip(properties["fields"], fields, strict=True)), shapely.from_wkb(shapes)
+
+
+@pytest.mark.parametrize(("crs", "found"), [("EPSG:25832", "EPSG:25832"), ("ESRI:102013", None)])
+def test_the_files_name_the_projects_system(two_layers, crs, found, tmp_path):
+    """GDAL looks codes up: the files have no definitions."""
+    model = Model.of(two_layers)
+    model.project = replace(model.project, crs=crs)
+    for name in ("m.gpkg", "m.geojson"):
+        model.save(tmp_path / name)
+        layer = "contours" if name == "m.gpkg" else None
+        properties, *_ = read(tmp_path / name, layer)
+        assert properties["crs"] == found or (found is None and "25832" not in str(properties["crs"]))
+    head = json.loads((tmp_path / "m.geojson").read_text())["crs"]["properties"]["name"]
+    assert head == "urn:ogc:def:crs:" + crs.replace(":", "::")
 
 
 @pytest.mark.parametrize("ending", [".gpkg", ".geojson"])

@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Project, Rock, Surface, build, load_project
+from realmodel.core import InputRefused, Model, Project, Rock, Surface, build, load_project
+from realmodel.core.project.project_writer import save_project
 
 SURFACES = """\
 [[rock.surface]]
@@ -212,6 +213,10 @@ CASES = {
         "two finite numbers",
     ),
     "region is a number": (ROCK + "region = 3\n" + SURFACES, 5, "text in quotes"),
+    "crs that is no code": (HEAD + 'crs = "25832"\n' + ROCK[len(HEAD) :] + SURFACES, 3, "must be a code"),
+    "crs in degrees": (HEAD + 'crs = "EPSG:4326"\n' + ROCK[len(HEAD) :] + SURFACES, 3, "in degrees"),
+    "crs of EPSG without a number": (HEAD + 'crs = "EPSG:x"\n' + ROCK[len(HEAD) :] + SURFACES, 3, "number"),
+    "crs is a number": (HEAD + "crs = 25832\n" + ROCK[len(HEAD) :] + SURFACES, 3, "must be a code"),
     "broken TOML": (HEAD + "a = = 3\n", 3, "not valid TOML"),
     "unclosed text": (HEAD + 'a = "abc\n', 3, "not valid TOML"),
     "cut off in an array": (HEAD + "a = [1,\n2,", 4, "not valid TOML"),
@@ -306,3 +311,15 @@ def test_regions_are_checked(region, words):
     with pytest.raises(InputRefused, match="rock 'r'") as raised:
         build(project)
     assert words in str(raised.value)
+
+
+def test_the_coordinate_system_comes_back(project, tmp_path):
+    path = project(HEAD + 'crs = "EPSG:25832"\n[[rock]]\nname = "r"\n' + SURFACES)
+    model = build(load_project(path))
+    assert model.project.crs == "EPSG:25832"
+    save_project(model.project, tmp_path / "again.toml")
+    assert load_project(tmp_path / "again.toml").crs == "EPSG:25832"
+    model.save(tmp_path / "m.npz")
+    assert Model.load(tmp_path / "m.npz").project.crs == "EPSG:25832"
+    with pytest.raises(InputRefused, match="crs: 'crs' must be a code"):
+        build(Project(name="x", rocks=from_arrays().rocks, crs="here"))

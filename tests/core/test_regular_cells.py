@@ -2,11 +2,23 @@
 """Block models, and grids of elevation and thickness, against the exact volumes and as others read them."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import Body, Cancelled, PointFile, Project, Rock, Surface, UsageError, build, load_project
+from realmodel.core import (
+    Body,
+    Cancelled,
+    Model,
+    PointFile,
+    Project,
+    Rock,
+    Surface,
+    UsageError,
+    build,
+    load_project,
+)
 from realmodel.core.base.packages import vendored
 from realmodel.core.exporters import save_model
 from realmodel.core.readers import read_point_file
@@ -115,6 +127,20 @@ def test_geotiff_has_a_band_for_each_grid(model, tmp_path):
         assert page.tags[33550].value[:2] == (4.0, 4.0)
         assert page.tags[33922].value[3:5] == grids.north_west
         assert "top of Clay" in page.tags[42112].value
+
+
+def test_geotiff_names_the_projects_system(model, tmp_path):
+    """As GDAL and others have them: GeoTIFF 1.1, keys in ascending order."""
+    tifffile = vendored("tifffile", "tifffile", "this test")
+    for crs, keys in (("EPSG:25832", {1024: 1, 1025: 1, 3072: 25832}), ("ESRI:102013", {1025: 1})):
+        other = Model.of(model)
+        other.project = replace(model.project, crs=crs)
+        other.save(tmp_path / "g.tif", cell_size=4.0)
+        with tifffile.TiffFile(tmp_path / "g.tif") as tiff:
+            head, *found = np.array(tiff.pages[0].tags[34735].value).reshape(-1, 4).tolist()
+            assert head == [1, 1, 0, len(found)]
+            assert {key: value for key, _, _, value in found} == keys
+            assert [key for key, *_ in found] == sorted(keys)
 
 
 def test_ascii_grids_are_files_side_by_side(model, tmp_path):

@@ -125,7 +125,8 @@ OPTIONS = (
     Option(
         "cell-size",
         "X[,Y[,Z]]",
-        "the cells of regular grids by --export and --cut (.csv, .vti, .tif, .asc)",
+        "the cells of regular grids by --export and --cut (.csv, .vti, .tif, .asc, and beside the blocks in "
+        ".omf, .geoh5)",
         _sizes,
     ),
     Option(

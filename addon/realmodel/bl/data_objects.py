@@ -98,7 +98,7 @@ def row_points(scene, row, depsgraph):
         return None
     given = Surface(row.name)
     project_settings.name_file(given, row, path)
-    return read_mesh(path).in_model(given.mesh, scene.realmodel.units)[0]
+    return read_mesh(given.mesh).in_model(given.mesh, scene.realmodel.units)[0]
 
 
 def read_points(scene, row):

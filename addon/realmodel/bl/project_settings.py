@@ -11,7 +11,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core import Dips, InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.base.errors import naming
 from ..core.base.work import run
 from ..core.project.project import surface_item
@@ -98,7 +98,9 @@ def compose(scene, depsgraph, whole=True):
     group = scene.realmodel
     if not len(group.rocks):
         raise InputRefused("there is no rock mass", advice="add one, or open a project file")
-    project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
+    project = Project(
+        group.name, [], library_rows.library_of(scene), units=group.units, crs=group.crs.strip() or None
+    )
     composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     source = _Source(scene, depsgraph, whole)
     for number, row in enumerate(group.rocks):
@@ -135,7 +137,13 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         for key in _OF_INTERPOLATED:
             setattr(surface, key, method_settings.value(row, key, SURFACE))
+        surface.dips = _stored_dips(row)
     return surface
+
+
+def _stored_dips(row):
+    """The realmodel.core.Dips of a surface's row; None where it has none."""
+    return Dips(**stored_arrays.unpack(row.dips)) if row.dips else None
 
 
 def region_rings(row, depsgraph, origin):
@@ -185,7 +193,7 @@ def _shape(source, composed, place, surface, row):
             composed.edited.append(place)
             composed.objects.add(place)
             if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
-                surface.method, surface.options = None, {}
+                surface.method, surface.options, surface.dips = None, {}, None
                 for key in _OF_INTERPOLATED:
                     setattr(surface, key, None)
             base = _made_of(source.scene, place, row)
@@ -369,7 +377,7 @@ def fill(scene, project):
         group.rocks.clear()
         group.results.clear()
         group.active_rock = group.stage = 0
-        group.name, group.units = project.name, project.units
+        group.name, group.units, group.crs = project.name, project.units, project.crs or ""
         group.exists = True
         group.version = settings.VERSION
         group.project_file = str(project.path or "")
@@ -411,6 +419,9 @@ def fill_surface(row, surface):
         row.use_continuation = bool(given) and not surface.interpolated
         method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
         method_settings.set_options(row, method, surface.options)
+        dips = surface.known_dips()
+        given = {} if dips is None else {key: each for key, each in vars(dips).items() if each is not None}
+        row.dips = stored_arrays.pack(**given) if given else ""
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
-from ..core.readers import TABLE_ENDINGS, read_boreholes
+from ..core.readers import OBJECT_ENDINGS, TABLE_ENDINGS, read_boreholes
 from ..core.settings.boreholes import COLUMNS, Boreholes
 from ..core.settings.schema import READING
 from ..props_schema import items
@@ -16,13 +16,18 @@ from .rocks import add_rock
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
-    """Read a table with the depths at which boreholes, vertical or not, met the surfaces; the surfaces get
-    these points beside their own, and are added where they are not there yet"""
+    """Read a table with the depths at which boreholes, vertical or not, met the surfaces, or the drillholes
+    of an OMF or geoh5 file; the surfaces get these points beside their own, and are added where they are not
+    there yet"""
 
     bl_label = "Import Boreholes"
 
     filename_ext = ""
-    filter_glob: file_filter(*TABLE_ENDINGS)
+    filter_glob: file_filter(*TABLE_ENDINGS, *OBJECT_ENDINGS)
+    layer: StringProperty(
+        name="Layer",
+        description="Object of an OMF or geoh5 file with the boreholes; empty: all of its boreholes",
+    )
     collars: StringProperty(
         name="Collars",
         description="Table with hole, x, y and z of each borehole, beside the table of picks or anywhere; "
@@ -67,6 +72,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             units=None if self.units == "NONE" else self.units,
             survey=_beside(picks, self.survey),
             downward_dip=None if self.downward_dip == "TABLE" else self.downward_dip.lower(),
+            layer=self.layer.strip() or None,
         )
         for file in given.files:
             require_file(file)

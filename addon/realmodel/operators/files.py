@@ -138,7 +138,8 @@ class REALMODEL_OT_export(ExportingInBackground, bpy.types.Operator):
     filter_glob: format_filter(_MODELS)
     cell_size: FloatVectorProperty(
         name="Cell Size",
-        description="Of regular grids (block models, GeoTIFF, ESRI ASCII), in model units; 0: automatic",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII; OMF and geoh5), in model units; 0: "
+        "automatic, and no cells in OMF and geoh5",
         size=3,
         min=0.0,
         default=(0.0, 0.0, 0.0),

@@ -24,17 +24,21 @@ from ..bl import (
 )
 from ..core import InputRefused, MeshFile, PointFile
 from ..core.base.errors import HeightsMissing
+from ..core.base.triangles import open_edges
 from ..core.readers import (
     MAP_ENDINGS,
     MESH_ENDINGS,
+    OBJECT_ENDINGS,
     RASTER_ENDINGS,
     TABLE_ENDINGS,
     is_mesh_file,
+    objects_in,
     preview_table,
     read_mesh,
     read_point_file,
 )
 from ..core.readers.contents import column_values
+from ..core.readers.objects.geo_object import LINES, POINTS, SURFACE
 from ..core.settings.method_options import OptionRefused
 from ..core.surfaces.age_order import age_order
 from ..registration import drop_handler
@@ -44,7 +48,7 @@ from .start import invoke
 
 _SHOWN = 8  # columns of a preview
 _PREVIEWED = 3  # files
-_ENDINGS = (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
+_ENDINGS = (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS, *OBJECT_ENDINGS)
 
 
 @dataclass
@@ -223,6 +227,8 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
         require_file(path)
+        if objects := objects_in(path):
+            return self._of_objects(path, objects)
         if is_mesh_file(path):
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}
@@ -247,14 +253,30 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, FilesImportHelper)
             for value in values
         ]
 
+    def _of_objects(self, path, objects):
+        """The surfaces of a file of objects, each by its name: its open surfaces, and sets of points and
+        lines. Closed ones are blocks of another model."""
+        found = []
+        for each in objects:
+            layer = {"layer": each.name}
+            if each.kind in (POINTS, LINES):
+                found.append(_Given(each.name, "POINTS_FILE", path, reading=layer))
+            elif each.kind == SURFACE:
+                mesh = read_mesh(MeshFile(path, **layer))
+                if len(open_edges(mesh.vertices, mesh.triangles)):
+                    found.append(_Given(each.name, "MESH_FILE", path, reading=layer))
+        if not found:
+            raise InputRefused("it has neither open surfaces nor points", file=path)
+        return found
+
 
 def _read(surface, unit):
     """Reads the points or the mesh of a surface, and returns warnings. Raises InputRefused where no import
     options could make the file readable. Missing heights of shapes are no error: their source can be chosen
     once the surface is there."""
     if surface.source == "MESH_FILE":
-        mesh = read_mesh(surface.path)
-        surface.places, warnings = mesh.in_model(MeshFile(surface.path), unit)
+        given = MeshFile(surface.path, **surface.reading)
+        surface.places, warnings = read_mesh(given).in_model(given, unit)
         return warnings
     given = PointFile(surface.path, **surface.reading)
     try:

@@ -10,8 +10,18 @@ from ..bl import built_scene, data_objects, library_rows, live, settings, shapes
 from ..core import InputRefused, MapLayer, MeshFile
 from ..core.base.errors import HeightsMissing
 from ..core.base.triangles import open_edges
-from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, is_mesh_file, read_mesh, read_shapes
+from ..core.readers import (
+    MAP_ENDINGS,
+    MESH_ENDINGS,
+    OBJECT_ENDINGS,
+    TABLE_ENDINGS,
+    is_mesh_file,
+    objects_in,
+    read_mesh,
+    read_shapes,
+)
 from ..core.readers.fault_sticks import read_fault_points
+from ..core.readers.objects.geo_object import SURFACE
 from ..core.settings.point_file import PointFile
 from ..core.structures.shapes.traces import VERTICAL
 from ..registration import drop_handler
@@ -76,6 +86,17 @@ def _add(scene, kind, name, source):
         scene.realmodel.structure_kind = kind.upper()
         setattr(scene.realmodel, f"active_{kind}", len(rows) - 1)
     return row
+
+
+def _shapes_in(path):
+    """A file as a MeshFile, or each of the surfaces in a file of objects. Raises InputRefused."""
+    require_file(path)
+    if not (objects := objects_in(path)):
+        return [MeshFile(path)]
+    surfaces = [each.name for each in objects if each.kind == SURFACE]
+    if not surfaces:
+        raise InputRefused("it has no surfaces", file=path)
+    return [MeshFile(path, layer=name) for name in surfaces]
 
 
 def _kind_of_shape(wanted, vertices, triangles):
@@ -147,7 +168,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
     empty: BoolProperty(
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
-    filter_glob: file_filter(*MESH_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)
+    filter_glob: file_filter(*MESH_ENDINGS, *OBJECT_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)
 
     def invoke(self, context, event):
         if self.empty or self.paths():
@@ -163,22 +184,24 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
             kind = scene.realmodel.structure_kind.lower() if self.kind == "AUTO" else self.kind.lower()
             _add(scene, kind, kind, "MESH_OBJECT")
             return
-        found = [self._looked_at(path, scene.realmodel.units) for path in self.paths()]
+        given = [each for path in self.paths() for each in _shapes_in(path)]
+        found = [self._looked_at(mesh, scene.realmodel.units) for mesh in given]
         if not found:
             raise InputRefused("no file was given", advice="choose a file")
-        for kind, source, path, places in found:
+        for kind, source, mesh, places in found:
             data_objects.begin(scene, places)
-            row = _add(scene, kind, path.stem, source)
+            row = _add(scene, kind, mesh.layer or mesh.file.stem, source)
             with settings.filling():
-                row.filepath = str(path)
+                row.filepath, row.layer = str(mesh.file), mesh.layer or ""
         of_data = ("POINTS_FILE", "TRACE_FILE")
         arrived(context, None, [places for _, source, _, places in found if source in of_data])
         self.report({"INFO"}, f"Added {_counts_text([kind for kind, *_ in found])}")
 
-    def _looked_at(self, path, units):
-        """(kind, source, path, vertices or points) of a file. Raises InputRefused."""
-        require_file(path)
-        if not is_mesh_file(path):
+    def _looked_at(self, given, units):
+        """(kind, source, MeshFile, vertices or points) of a file, or of an object in one. Raises
+        InputRefused."""
+        path = given.file
+        if given.layer is None and not is_mesh_file(path):
             if self.kind == "BODY":
                 raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
             try:
@@ -188,12 +211,12 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, FilesImportHelp
                 if not lines:
                     raise
                 plan = np.concatenate(lines)
-                return "fault", "TRACE_FILE", path, np.column_stack([plan, np.zeros(len(plan))])
+                return "fault", "TRACE_FILE", given, np.column_stack([plan, np.zeros(len(plan))])
             whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
-            return "fault", "POINTS_FILE", path, whole
-        mesh = read_mesh(path)
-        vertices, _ = mesh.in_model(MeshFile(path), units)
-        return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", path, vertices
+            return "fault", "POINTS_FILE", given, whole
+        mesh = read_mesh(given)
+        vertices, _ = mesh.in_model(given, units)
+        return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", given, vertices
 
 
 class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):

@@ -19,7 +19,7 @@ _IMPORT = (
     ("open_project", "RealModel Project or Model (.toml/.npz)", {}),
     ("surface_add", "RealModel Surfaces (points, meshes, grids, maps)", {}),
     ("fault_body_add", "RealModel Faults and Bodies (meshes, fault sticks)", {}),
-    ("boreholes_read", "RealModel Boreholes (.csv/.txt)", {}),
+    ("boreholes_read", "RealModel Boreholes (.csv/.txt/.omf/.geoh5)", {}),
     ("tiles_read", "RealModel Tiles (tiles.toml)", {}),
 )
 

@@ -61,6 +61,7 @@ class REALMODEL_PT_start_origin(OfAModel, FoldedPanel, bpy.types.Panel):
 
     def draw_in(self, layout, _context, group):
         layout.prop(group, "units")
+        layout.prop(group, "crs")
         layout.prop(group, "show_data")
         column = layout.column()
         column.enabled = not len(group.results)

@@ -32,7 +32,7 @@ constexpr int kMostRounds = 40;
 /// nothing meets out of order.
 class Refiner {
 public:
-    Refiner(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution)
+    Refiner(const std::array<TriangleView, 2>& surfaces, const Execution& execution)
         : pieces_(surfaces, execution), execution_(execution) {
         for (std::size_t i = 0; i < pieces_.input_count(); ++i)
             fresh_.push_back(static_cast<std::int32_t>(i));
@@ -342,7 +342,7 @@ Parts Refiner::result() const {
 
 }  // namespace
 
-Parts refine(const std::array<TriangleMesh, 2>& surfaces, const Execution& execution) {
+Parts refine(const std::array<TriangleView, 2>& surfaces, const Execution& execution) {
     return Refiner(surfaces, execution).run();
 }
 

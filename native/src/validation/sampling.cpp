@@ -251,7 +251,7 @@ void require_vertices(const ModelInput& input) {
     };
     int surface = 0;
     for (const strata::StackInput& rock : input.rocks) {
-        for (const strata::SurfaceView& s : rock.surfaces)
+        for (const TriangleView& s : rock.surfaces)
             check(s.triangles, s.vertices.size() / 3, surface++);
         if (rock.region) check(rock.region->triangles, rock.region->vertices.size() / 2, -1);
     }

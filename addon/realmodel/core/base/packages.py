@@ -6,6 +6,11 @@ extras (`realmodel[notebook]`)."""
 from __future__ import annotations
 
 import importlib
+import importlib.util
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
@@ -43,7 +48,31 @@ def extra(module: str, purpose: str, name: str = "notebook") -> Any:
         raise missing(module.partition(".")[0], purpose, name, f" ({error})") from error
 
 
+def omf_library(purpose: str) -> Any:
+    """The package omf. Raises UsageError where it cannot be imported."""
+    with quiet():
+        return extra("omf", purpose, "omf")
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Within it Python says nothing of what it will no longer have, which old packages use."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+
+
+def require_extra(module: str, name: str, purpose: str) -> None:
+    """Raises UsageError where a module of an optional package is not installed; it is not imported."""
+    if importlib.util.find_spec(module) is None:
+        raise missing(module, purpose, name)
+
+
 def missing(package: str, purpose: str, name: str, cause: str = "") -> UsageError:
     """The error that says which extra has a package. cause: of what Python says."""
     text = f"{purpose} needs {package}, which cannot be imported{cause}"
+    if "bpy" in sys.modules:  # the add-on: it was not installed by pip
+        return UsageError(
+            f'{text}; install it for Blender\'s Python: "{sys.executable}" -m pip install {package}'
+        )
     return UsageError(f'{text}; install it: pip install "realmodel[{name}]"')

@@ -14,11 +14,15 @@ from typing import NamedTuple
 
 from ..base.atomic import Outputs, writable_folder, writable_target
 from ..base.errors import UsageError
+from ..base.packages import require_extra
 from ..simulation import PolyhedralMesh
 from .endings import by_ending
 from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
+from .objects.geoh5 import write_geoh5
+from .objects.ifc import write_ifc
+from .objects.omf import write_omf
 from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
 from .shapes.dxf import write_dxf
 from .shapes.gltf import write_glb
@@ -40,7 +44,7 @@ class ModelFormat:
     is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
     too, as of regular_cells.checked_size. has_contours: it is a map, and write takes the interval of its
     contours too, as of contours.checked_interval. has_cells: it has the model's cells, and write takes these,
-    too.
+    too. needs: the library that writes it and the extra that has this, if it is one.
     """
 
     ending: str
@@ -51,6 +55,7 @@ class ModelFormat:
     has_cell_size: bool = False
     has_cells: bool = False
     has_contours: bool = False
+    needs: tuple[str, str] | None = None
 
 
 def _file(write: Callable) -> Callable:
@@ -177,13 +182,39 @@ FORMATS: dict[str, ModelFormat] = {
             write_geojson,
             has_contours=True,
         ),
+        ModelFormat(
+            ".omf",
+            "Open Mining Format",
+            "Closed blocks, surfaces and boreholes (OMF 1), with cells where their size is given",
+            write_omf,
+            has_cell_size=True,
+            needs=("omf", "omf"),
+        ),
+        ModelFormat(
+            ".geoh5",
+            "geoh5",
+            "Closed blocks, surfaces and boreholes, with cells where their size is given (ANALYST)",
+            write_geoh5,
+            has_cell_size=True,
+            needs=("geoh5py", "geoh5"),
+        ),
+        ModelFormat(
+            ".ifc",
+            "IFC 4.3",
+            "A geomodel of closed strata with their shared boundaries, and boreholes, for BIM",
+            write_ifc,
+            needs=("ifcopenshell", "ifc"),
+        ),
     )
 }
 
 
 def format_for(path: str | Path) -> ModelFormat:
-    """The format that this ending says. Raises UsageError."""
-    return by_ending(path, FORMATS, "files ending in {} are not supported")
+    """The format that this ending says. Raises UsageError, where its library is missing, too."""
+    known = by_ending(path, FORMATS, "files ending in {} are not supported")
+    if known.needs is not None:
+        require_extra(*known.needs, f"writing {known.label}")
+    return known
 
 
 def check_tolerance(path: str | Path, tolerance: float | None) -> None:
@@ -204,8 +235,8 @@ def no_step(_share: float) -> None:
 
 
 class ExportOptions(NamedTuple):
-    """What some formats of models take. cell_size: of regular grids; contour_interval: of maps; cells: of
-    formats with the model's cells, in place of the exact ones."""
+    """What some formats of models take. cell_size: of regular grids, and of cells beside objects;
+    contour_interval: of maps; cells: of formats with the model's cells, in place of the exact ones."""
 
     cell_size: float | Sequence[float] | None = None
     contour_interval: float | None = None

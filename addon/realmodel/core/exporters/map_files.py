@@ -2,7 +2,8 @@
 """The geological map and contours as GeoJSON (RFC 7946) and GeoPackage (OGC 12-128r18).
 
 Areas: a feature for each block, in each compartment, where it crops out. Contours: a feature for each line.
-Coordinates are those of the model; a project names no coordinate system, so neither do the files.
+Coordinates are those of the model; the files name its coordinate reference system where the project does:
+GeoJSON as its first edition (2008) has it, since RFC 7946 knows longitudes and latitudes alone.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..base.atomic import Outputs
 from ..base.errors import OutputFailed
 from ..results.contours import contours
 from ..results.geological_map import geological_map, ground_of
+from ..settings.crs import epsg_code
 
 AREAS, CONTOURS = "geology", "contours"
 _TOP = "top of the model"
@@ -42,7 +44,9 @@ def write_geojson(model, path, outputs: Outputs, step: Callable[[float], None], 
     """Writes one collection of the features of all layers; `layer` is the name of the layer of each."""
     layers = _layers(model, step, interval)
     with outputs.file(path) as file:
-        head = {"type": "FeatureCollection", "name": model.project.name or Path(path).stem}
+        head: dict = {"type": "FeatureCollection", "name": model.project.name or Path(path).stem}
+        if model.project.crs is not None:
+            head["crs"] = {"type": "name", "properties": {"name": _urn(model.project.crs)}}
         file.write(json.dumps(head, ensure_ascii=False)[:-1].encode() + b', "features": [')
         first = True
         for layer in layers:
@@ -65,14 +69,21 @@ def _geometry(shape) -> dict:
     return {"type": "MultiPolygon", "coordinates": [[ring.tolist() for ring in rings] for rings in shape]}
 
 
+def _urn(crs: str) -> str:
+    """The name of a system as OGC writes it."""
+    authority, _, code = crs.partition(":")
+    return f"urn:ogc:def:crs:{authority.upper()}::{code}"
+
+
 def write_geopackage(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
     """A table for each layer."""
     layers = _layers(model, step, interval)
     try:
         with outputs.path(path) as target, closing(sqlite3.connect(target)) as base:
             base.executescript(_SCHEMA)
+            srs = _write_system(base, model.project.crs)
             for layer in layers:
-                _write_layer(base, layer)
+                _write_layer(base, layer, srs)
             base.commit()
     except sqlite3.Error as error:
         raise OutputFailed(f"{path}: cannot be written: {error}") from error
@@ -146,7 +157,19 @@ CREATE TABLE gpkg_geometry_columns (
 """
 
 
-def _write_layer(base: sqlite3.Connection, layer: _Layer) -> None:
+def _write_system(base: sqlite3.Connection, crs: str | None) -> int:
+    """The number of the coordinate system in the file. EPSG's get their row: programs know the definition by
+    the code. That of others we do not have."""
+    number = epsg_code(crs)
+    if number is None:
+        return _UNDEFINED
+    base.execute(
+        "INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, 'undefined', NULL)", [crs, number, number]
+    )
+    return number
+
+
+def _write_layer(base: sqlite3.Connection, layer: _Layer, srs: int) -> None:
     kind = "MULTIPOLYGON" if layer.name == AREAS else "LINESTRING"
     columns = ", ".join(f"{name} {form}" for name, form in layer.columns.items())
     base.execute(
@@ -159,16 +182,14 @@ def _write_layer(base: sqlite3.Connection, layer: _Layer) -> None:
     base.execute(
         "INSERT INTO gpkg_contents (table_name, data_type, identifier, min_x, min_y, max_x, max_y, srs_id) "
         "VALUES (?, 'features', ?, ?, ?, ?, ?, ?)",
-        [layer.name, layer.name, *whole, _UNDEFINED],
+        [layer.name, layer.name, *whole, srs],
     )
-    base.execute(
-        "INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 0, 0)", [layer.name, kind, _UNDEFINED]
-    )
+    base.execute("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 0, 0)", [layer.name, kind, srs])
     marks = ", ".join("?" * (len(layer.columns) + 1))
     base.executemany(
         f"INSERT INTO {layer.name} (geom, {', '.join(layer.columns)}) VALUES ({marks})",
         (
-            [_blob(shape, box), *values]
+            [_blob(shape, box, srs), *values]
             for (values, shape), box in zip(layer.rows, boxes.tolist(), strict=True)
         ),
     )
@@ -179,9 +200,9 @@ def _box(shape) -> list[float]:
     return [*places.min(axis=0).tolist(), *places.max(axis=0).tolist()]
 
 
-def _blob(shape, box: list[float]) -> bytes:
+def _blob(shape, box: list[float], srs: int) -> bytes:
     """A header with the bounding box, then well-known binary, little-endian."""
-    head = b"GP\0\3" + struct.pack("<i4d", _UNDEFINED, box[0], box[2], box[1], box[3])
+    head = b"GP\0\3" + struct.pack("<i4d", srs, box[0], box[2], box[1], box[3])
     if isinstance(shape, np.ndarray):
         return head + struct.pack("<BII", 1, _LINE, len(shape)) + shape.astype("<f8").tobytes()
     parts = [head, struct.pack("<BII", 1, _POLYGONS, len(shape))]

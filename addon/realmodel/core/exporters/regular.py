@@ -14,12 +14,14 @@ import numpy as np
 from ..base.atomic import Outputs
 from ..base.packages import vendored
 from ..results.regular_cells import plan_grids, regular_cells
+from ..settings.crs import epsg_code
 from ..simulation.patches import solver_names
 from .encodings.text_rows import write_rows
 from .encodings.vtk_xml import write_image
 from .shapes.parts import distinct_names
 
 _NO_HEIGHT = -9999.0
+_LARGEST_CODE = 32766  # of systems in GeoTIFF
 
 
 def write_block_table(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
@@ -98,7 +100,7 @@ def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], Non
 
 def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
     """A GeoTIFF (OGC 19-008) with a band for each grid, 64-bit numbers, uncompressed, named by GDAL's
-    metadata. It has no coordinate system: a project has none."""
+    metadata. It names the project's coordinate system, where that is one of EPSG's."""
     tifffile = vendored("tifffile", "tifffile", "writing GeoTIFF")
     grids, bands = _grids(model, size)
     step(0.5)
@@ -109,10 +111,14 @@ def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], 
         for k, (name, _) in enumerate(bands)
     )
     metadata = f"<GDALMetadata>{items}</GDALMetadata>".encode()
+    keys = [(1025, 0, 1, 1)]  # heights are of areas
+    if (code := epsg_code(model.project.crs)) is not None and code <= _LARGEST_CODE:
+        keys = [(1024, 0, 1, 1), *keys, (3072, 0, 1, code)]  # a projected system
+    keys = [(1, 1, 0, len(keys)), *keys]
     tags = [  # code, type, count, values
         (33550, "d", 3, (dx, dy, 0.0)),
         (33922, "d", 6, (0.0, 0.0, 0.0, west, north, 0.0)),
-        (34735, "H", 8, (1, 1, 0, 1, 1025, 0, 1, 1)),  # heights are of areas
+        (34735, "H", 4 * len(keys), tuple(number for key in keys for number in key)),
         (42112, "s", len(metadata) + 1, metadata),
         (42113, "s", 4, b"nan"),
     ]

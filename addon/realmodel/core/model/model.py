@@ -59,10 +59,11 @@ class Model(ModelData):
         or not at all.
 
         cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
-        None: a hundredth of the longest side. contour_interval: of maps (.gpkg, .geojson); None: one of about
-        fifteen levels. tolerance: of formats with the model's cells (.vtu, .foam, .exo, .disu): they are
-        cleaned as cleaned_cells does; None: the exact cells. Raises UsageError for an ending that is not
-        known, OutputFailed where it cannot be written.
+        None: a hundredth of the longest side; in .omf and .geoh5 there are cells only where it is given.
+        contour_interval: of maps (.gpkg, .geojson); None: one of about fifteen levels. tolerance: of formats
+        with the model's cells (.vtu, .foam, .exo, .disu): they are cleaned as cleaned_cells does; None: the
+        exact cells. Raises UsageError for an ending that is not known, or whose library is missing,
+        OutputFailed where it cannot be written.
         """
         save_model(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
 

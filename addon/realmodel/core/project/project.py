@@ -18,11 +18,12 @@ from ..base.units import METERS, MODEL_UNIT
 from ..readers.point_input import companions
 from ..readers.tables.observations import Bounds, Observations
 from ..settings.boreholes import Boreholes
+from ..settings.crs import checked_crs
 from ..settings.dips import DipFile, Dips
 from ..settings.map_layer import MapLayer
 from ..settings.mesh_sizes import AUTO, local_lengths
 from ..settings.meshers import DEFAULT_MESHER
-from ..settings.method_options import is_name
+from ..settings.method_options import OptionRefused, is_name
 from ..settings.methods import (
     CONTINUATION,
     CONTINUATION_OPTIONS,
@@ -241,7 +242,8 @@ class Project:
 
     name: of the model. rocks: its rock masses. path: the project file, if it was read from one.
     units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
-    one counts.
+    one counts. crs: the code of its coordinate reference system, "EPSG:25832", which files that have a place
+    for it name.
     """
 
     name: str
@@ -251,6 +253,7 @@ class Project:
     units: str = MODEL_UNIT
     faults: list[Fault] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
+    crs: str | None = None
 
     def input_files(self) -> list[Path]:
         """Every file that this project reads, itself included."""
@@ -292,6 +295,10 @@ def check_project(project: Project) -> None:
     if project.units not in METERS:
         what = f"unknown unit {project.units!r}"
         raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
+    try:
+        checked_crs("crs", project.crs)
+    except OptionRefused as error:
+        raise InputRefused(error.what, file=project.path, item="crs", advice=error.advice) from error
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     for rock in named_once(project.rocks, "rock mass"):

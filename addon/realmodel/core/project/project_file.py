@@ -55,7 +55,8 @@ def load_project(path: str | Path) -> Project:
     units = top.text("units") or MODEL_UNIT
     if units not in METERS:
         raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METERS)}")
-    project = Project(name, rocks, library, path, units, faults, bodies)
+    crs = _values(top, PROJECT, ("crs",)).get("crs")
+    project = Project(name, rocks, library, path, units, faults, bodies, crs)
     check_project(project)
     return project
 
@@ -176,7 +177,7 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     if not isinstance(given, dict):
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
-    said = ("columns", "separator", "decimal", "units", "downward_dip")
+    said = ("columns", "separator", "decimal", "units", "downward_dip", "layer")
     files = ("picks", "collars", "survey", "intervals")
     keys.allow_only((*files, *said))
     values = {name: given[name] for name in said if name in given}

@@ -68,6 +68,8 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
         lines = ["format = 1", f"name = {toml_value(project.name)}"]
         if project.units != MODEL_UNIT:
             lines.append(f"units = {toml_value(project.units)}")
+        if project.crs is not None:
+            lines.append(f"crs = {toml_value(project.crs)}")
         if project.library is not None:
             library = write(beside("library", ending=".toml"), library_text(project.library).encode())
             lines.append(f"library = {toml_value(library)}")

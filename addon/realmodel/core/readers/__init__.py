@@ -6,11 +6,13 @@ of boreholes, blocks at places, in meters, as arrays in memory or in files; dama
 their line.
 """
 
+from .borehole_input import read_boreholes
 from .maps.map_input import MAP_ENDINGS, read_region, read_shapes
 from .meshes.mesh_file import MESH_ENDINGS, is_mesh_file, read_mesh
 from .meshes.off import read_off
+from .objects.object_file import OBJECT_ENDINGS, objects_in
 from .point_input import RASTER_ENDINGS, read_point_file
-from .tables.boreholes import Picks, read_boreholes
+from .tables.boreholes import Picks
 from .tables.dips import gradient_of, read_dips
 from .tables.observed_places import read_observed_places
 from .tables.points import TABLE_ENDINGS, read_points
@@ -20,6 +22,7 @@ from .tables.unit_names import UnitNames
 __all__ = [
     "MAP_ENDINGS",
     "MESH_ENDINGS",
+    "OBJECT_ENDINGS",
     "RASTER_ENDINGS",
     "TABLE_ENDINGS",
     "Picks",
@@ -27,6 +30,7 @@ __all__ = [
     "UnitNames",
     "gradient_of",
     "is_mesh_file",
+    "objects_in",
     "preview_table",
     "read_boreholes",
     "read_dips",

@@ -18,6 +18,8 @@ from ..base.units import MODEL_UNIT, factor
 from ..settings.point_file import PointFile
 from .maps.map_input import is_map_layer, map_companions
 from .maps.map_points import read_map_points
+from .objects.object_file import object_format
+from .objects.object_points import read_object_points
 from .rasters.ascii_grid import is_ascii_grid, read_ascii_grid
 from .rasters.column_grids import is_cps3_grid, is_zmap_grid, read_cps3_grid, read_zmap_grid
 from .rasters.geotiff import is_tiff, read_geotiff, world_file
@@ -88,6 +90,9 @@ def read_point_file(
         chosen = ["where"] if given.where else []
         refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
         points, warnings = _array_points(file, kept), []
+    elif object_format(head) is not None:
+        refuse_keys(file, "has objects", given.only_for_tables)
+        points, warnings = read_object_points(given, kept)
     elif is_map_layer(file, head):
         refuse_keys(file, "has shapes", given.only_for_tables)
         points, warnings = read_map_points(given, step, kept)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .method_options import OptionRefused
-from .point_file import check_units
+from .point_file import check_name, check_units
 
 COLUMNS = (
     *("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination"),
@@ -19,7 +19,7 @@ DOWNWARD_DIPS = ("negative", "positive")
 
 @dataclass(frozen=True)
 class Boreholes:
-    """Tables of boreholes, which give points and bounds for all surfaces of a rock mass at once.
+    """Boreholes, tables or objects of a file, which give points and bounds for all surfaces of a rock mass.
 
     picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the
     collar (along the hole), or its elevation. intervals: a table with a row for each logged interval:
@@ -33,6 +33,9 @@ class Boreholes:
     ...}, names or numbers from 1 of columns that are called otherwise, in whichever tables have them.
     separator, decimal: as of a PointFile, of all tables. units: of all, "ft", or {"xy": "m", "z": "ft"}
     (depths are in the unit of z); None: those of the model.
+    Where `picks` or `intervals` is an OMF or geoh5 file, `layer` is its object with the boreholes (None: all
+    of its boreholes), and columns names its data `surface`, `block` and `hole`; the other keys are for
+    tables.
     """
 
     picks: str | Path | None = None
@@ -44,6 +47,13 @@ class Boreholes:
     survey: str | Path | None = None
     downward_dip: str | None = None
     intervals: str | Path | None = None
+    layer: str | None = None
+
+    @property
+    def only_for_tables(self) -> list[str]:
+        """The keys given that only tables can have."""
+        keys = ("collars", "survey", "separator", "decimal", "downward_dip")
+        return [key for key in keys if getattr(self, key)]
 
     @property
     def files(self) -> list[Path]:
@@ -60,6 +70,7 @@ class Boreholes:
         if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
             what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
             raise OptionRefused(what, "downward_dip")
+        check_name("layer", self.layer)
         check_units(self.units)
 
 

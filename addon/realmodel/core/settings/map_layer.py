@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..base.units import METERS
 from .method_options import OptionRefused
-from .point_file import check_where
+from .point_file import check_name, check_where
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -43,8 +43,7 @@ class MapLayer:
 
     def check(self) -> None:
         """Raises OptionRefused for a key that makes no sense."""
-        if self.layer is not None and not (isinstance(self.layer, str) and self.layer.strip()):
-            raise OptionRefused(f"'layer' must be a name, not {self.layer!r}", "layer")
+        check_name("layer", self.layer)
         check_where(self.where)
         if self.units is not None and self.units not in METERS:
             raise OptionRefused(f"unknown unit {self.units!r}", "units", f"there are {', '.join(METERS)}")

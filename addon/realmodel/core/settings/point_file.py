@@ -14,8 +14,8 @@ from .method_options import OptionRefused
 
 @dataclass(frozen=True)
 class PointFile:
-    """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, or a file of shapes: GeoJSON, well-known
-    text, a shapefile or a layer of a GeoPackage.
+    """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, a file of shapes (GeoJSON, well-known text, a
+    shapefile or a layer of a GeoPackage), or an object of an OMF or geoh5 file.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
@@ -24,9 +24,9 @@ class PointFile:
     nodata: no-data values: a number, a text or a list of them; such points are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     z_axis: "up", or "down" where z is a depth.
-    height: the attribute of features that holds their height; None: the z of their positions.
-    layer: of a GeoPackage, needed where it has several.
-    columns, separator and decimal are for tables only, height and layer for shapes.
+    height: the attribute of features or points that holds their height; None: the z of their positions.
+    layer: of a GeoPackage, or the object of an OMF or geoh5 file; needed where there are several.
+    columns, separator and decimal are for tables only, height and layer for shapes and objects.
     """
 
     file: str | Path
@@ -85,24 +85,24 @@ class PointFile:
         if not all(_is_value(value) for value in self.nodata_values):
             raise OptionRefused(f"'nodata' must be a number or text, not {self.nodata!r}", "nodata")
         for key in ("height", "layer"):
-            name = getattr(self, key)
-            if name is not None and not (isinstance(name, str) and name.strip()):
-                raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
+            check_name(key, getattr(self, key))
         check_units(self.units)
         check_z_axis(self.z_axis)
 
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the
-    model."""
+    """A file of a ready mesh with its own `units` and `z_axis`, as of a PointFile; None: units of the model.
+    layer: the name of the surface in a file of several objects (OMF, geoh5)."""
 
     file: str | Path
     units: str | Mapping | None = None
     z_axis: str = "up"
+    layer: str | None = None
 
     def check(self) -> None:
-        """Raises OptionRefused for a unit or an axis that is not known."""
+        """Raises OptionRefused for a unit, an axis or a name that makes no sense."""
+        check_name("layer", self.layer)
         check_units(self.units)
         check_z_axis(self.z_axis)
 
@@ -138,6 +138,12 @@ def check_where(where) -> None:
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'where' must give a number or text for '{column}', not {values!r}"
             raise OptionRefused(what, "where", advice)
+
+
+def check_name(key: str, name: object) -> None:
+    """Raises OptionRefused for a name that is none; None is no name."""
+    if name is not None and not (isinstance(name, str) and name.strip()):
+        raise OptionRefused(f"'{key}' must be a name, not {name!r}", key)
 
 
 def check_units(units) -> None:

@@ -3,6 +3,7 @@
 Those of kind "other" are read, checked and shown by code of their own; so are parts of some more."""
 
 from ..base.units import METERS, UNIT_NAMES
+from .crs import checked_crs
 from .directions import checked_direction
 from .mesh_sizes import edge_length_fault, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
@@ -31,7 +32,18 @@ def _without(fault):
 
 _UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METERS}
 
-PROJECT = dict.fromkeys(("format", "name", "units", "library", "rock", "fault", "body"), _OTHER)
+PROJECT = {
+    **dict.fromkeys(("format", "name", "units", "library"), _OTHER),
+    "crs": Setting(
+        kind="text",
+        label="CRS",
+        tip="Coordinate reference system of the model by its code, such as EPSG:25832; empty: not known",
+        check=checked_crs,
+        more="A projected system, in the unit of the model. Nothing is converted: IFC, GeoJSON, geoh5 and "
+        "OMF files name it, GeoTIFF and GeoPackage the codes of EPSG",
+    ),
+    **dict.fromkeys(("rock", "fault", "body"), _OTHER),
+}
 
 ROCK = {
     "name": Setting(kind="text", label="Name", tip="Name of the rock mass"),
@@ -161,10 +173,14 @@ READING = {
         tip="Attribute with the elevation of each feature, as of a contour line; empty: z of its coordinates",
         name="height_attribute",
     ),
-    "layer": Setting(kind="layer", label="Layer", tip="Layer of a GeoPackage with several layers"),
+    "layer": Setting(
+        kind="layer",
+        label="Layer",
+        tip="Layer of a GeoPackage, or object of an OMF or geoh5 file; needed where there are several",
+    ),
 }
 
-MESH_READING = ("units", "z_axis")  # of READING, for meshes too
+MESH_READING = ("units", "z_axis", "layer")  # of READING, for meshes too
 
 SURFACE = {
     "name": Setting(kind="text", label="Name", tip="Name of the surface"),

@@ -53,7 +53,7 @@ def read_field_data(project: Project, rock: Rock) -> FieldData:
             observed, not_used = read_observed_places(rock.observation_file, units, project.units)
             found.append(observed)
             left_out += not_used
-    observations = Observations.joined(found) if found else None
+    observations = Observations.joined(found).along_holes() if found else None
     derived = None if observations is None else derive(rock, observations, _of_bodies(project, rock))
     surfaces = [
         _with_points(surface, number, picks.points.pop(surface.name, None), derived)

@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from ..base.build_warning import BuildWarning
-from ..base.errors import InputRefused, number_list
+from ..base.errors import InputRefused, naming, number_list
 from ..base.mapped_arrays import StoreArray, as_it_is
 from ..base.sheet import Sheet
 from ..base.text import no_step
 from ..base.work import Work, run
 from ..project.plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
-from ..project.project import Project, Rock
+from ..project.project import Project, Rock, surface_item
+from ..readers import read_dips
 from ..settings.mesh_sizes import AUTO
 from .distant_points import require_points_near
 from .doubtful_heights import doubtful_heights
@@ -84,7 +85,7 @@ def _unnamed(rock: Rock, field: FieldData) -> list[BuildWarning]:
 
 def with_arrays(project: Project) -> Project:
     """A project for a scene, which stores one path for each input: its files stay, but for regions of layers
-    or of text, boreholes and observations, which are read into arrays. Raises InputRefused."""
+    or of text, boreholes, observations and dips, which are read into arrays. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
@@ -98,6 +99,9 @@ def with_arrays(project: Project) -> Project:
             field = read_field_data(project, rock)
             surfaces = []
             for surface, met in field.surfaces:
+                if surface.dip_file is not None:
+                    with naming(surface_item(rock, surface)):
+                        surface = replace(surface, dips=read_dips(surface.dip_file, project.units))
                 if met is not None:
                     surface = SurfaceInput.of(rock, surface, met, project.units).read(no_step).surface
                 surfaces.append(surface)
@@ -170,29 +174,25 @@ def _density_points(rock: Rock) -> np.ndarray:
     return np.concatenate(given) if given else np.empty((0, 2))
 
 
-def settle_methods(work: Work, entry: RockInput, start: float, end: float) -> None:
-    """Replaces the method "auto" of surfaces by the one that it chooses. Progress goes from `start` to
-    `end`."""
+def settle_methods(work: Work, entry: RockInput) -> None:
+    """Replaces the method "auto" of surfaces by the one that it chooses."""
     waiting = [n for n, surface in enumerate(entry.rock.surfaces) if surface.method == "auto"]
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"choosing the method of {entry.rock.surfaces[number].name}"):
+    for number in work.share_out(waiting):
+        with work.phase(0.0, 1.0, f"choosing the method of {entry.rock.surfaces[number].name}"):
             settle_method(work, entry, number)
 
 
 def interpolate_rock(
     work: Work,
     entry: RockInput,
-    start: float,
-    end: float,
     stage: int | None = None,
     keep: StoreArray = as_it_is,
     flat: Collection[int] = (),
 ) -> None:
-    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. Progress goes from
-    `start` to `end`. keep: stores the finished surfaces; unless it is as_it_is, their interpolations and
-    attributes are dropped. flat: the numbers of surfaces that are left at height 0: the caller interpolates
-    these, and looks for points on wrong sides, too."""
+    """Interpolates the surfaces of a rock mass; for a stage only those that it needs. keep: stores the
+    finished surfaces; unless it is as_it_is, their interpolations and attributes are dropped. flat: the
+    numbers of surfaces that are left at height 0: the caller interpolates these, and looks for points on
+    wrong sides, too."""
     waiting = [number for number in interpolation_order(entry.rock, stage) if number not in flat]
     if flat:
         nodes, triangles = entry.planar_mesh()
@@ -201,9 +201,8 @@ def interpolate_rock(
             entry.surfaces[number] = plan
     if not flat and entry.draws is None:
         entry.warnings += points_above_younger(entry.rock, waiting)
-    for at, number in enumerate(waiting):
-        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
-        with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
+    for number in work.share_out(waiting):
+        with work.phase(0.0, 1.0, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number)
         if keep is not as_it_is:
             entry.surfaces[number] = Sheet(*map(keep, entry.surface(number)))

@@ -108,12 +108,11 @@ class SurfaceInput:
         surface = self.surface
         if surface.mesh_file is None:
             return *checked_triangulation(surface.vertices, surface.triangles), None, []
-        file = surface.mesh_file.file
         if arrays is None:
-            mesh = read_mesh(file, step)
+            mesh = read_mesh(surface.mesh_file, step)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units)
         else:
-            mesh = read_mesh(file, step, arrays.rows)
+            mesh = read_mesh(surface.mesh_file, step, arrays.rows)
             vertices, warnings = mesh.in_model(surface.mesh_file, self.units, arrays.gather)
         return vertices, mesh.triangles, mesh.face_of_triangle, warnings
 

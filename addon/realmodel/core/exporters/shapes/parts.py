@@ -20,7 +20,8 @@ class Part:
     closed shape counter-clockwise seen from outside.
 
     name: no other part of the list has it. property: id of the library, 0: none. material: the name of what
-    it is made of. color: red, green, blue from 0 to 1, sRGB.
+    it is made of. color: red, green, blue from 0 to 1, sRGB. divided: the polygons as triangles, where these
+    are known already.
     """
 
     name: str
@@ -30,25 +31,64 @@ class Part:
     property: int = 0
     material: str = ""
     color: tuple[float, float, float] = field(default=_PLAIN)
+    divided: np.ndarray | None = None
 
     @cached_property
     def triangles(self) -> np.ndarray:
         """(T, 3) int32: the polygons divided; what they close is closed."""
+        if self.divided is not None:
+            return self.divided
         if (np.diff(self.offsets) == 3).all():
             return np.ascontiguousarray(self.corners, np.int32).reshape(-1, 3)
         offsets = np.ascontiguousarray(self.offsets, np.int64)
         return native_module().triangulate_faces(self.vertices, offsets, self.corners)[0]
 
 
+@dataclass(frozen=True, eq=False)
+class FaceTriangles:
+    """The faces around blocks, each divided into triangles once, so that the blocks on both of its sides have
+    the same ones.
+
+    corners (T, 3) int32: vertices of the model, counter-clockwise seen from outside the first block. face
+    (T,) int64: the face of each. blocks (T, 2) int32: the block on each side, -1 outside.
+    """
+
+    corners: np.ndarray
+    face: np.ndarray
+    blocks: np.ndarray
+
+    @classmethod
+    def of(cls, model) -> FaceTriangles:
+        """Those of all blocks of a model."""
+        blocks = model.face_blocks
+        faces = np.flatnonzero(blocks[:, 0] != blocks[:, 1])
+        offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+        triangles, begins = native_module().triangulate_faces(model.vertices, offsets, corners)
+        face = np.repeat(faces, np.diff(begins))
+        return cls(triangles.reshape(-1, 3), face, blocks[face])
+
+    def around(self, block: int) -> tuple[np.ndarray, np.ndarray]:
+        """Of one block the numbers of its triangles, and their corners (N, 3), counter-clockwise seen from
+        outside of it."""
+        own = np.flatnonzero((self.blocks == block).any(axis=1))
+        corners = self.corners[own]
+        turned = self.blocks[own, 1] == block
+        corners[turned] = corners[turned, ::-1]
+        return own, corners
+
+
 def model_parts(model) -> list[Part]:
-    """The closed boundary of each existing block, named after it."""
+    """The closed boundary of each existing block, named after it. Blocks share the triangles between them."""
     names = distinct_names(block.name for block in model.blocks)
     materials, colors = block_materials(model), model.block_colors.tolist()
     parts = []
+    triangles = FaceTriangles.of(model)
     for number, block in enumerate(model.blocks):
         if not block.cells:
             continue
         shape = model.block_boundary(number)
+        used = np.unique(model.face_corners(shape.faces, np.zeros(len(shape.faces), bool))[1])
+        divided = np.searchsorted(used, triangles.around(number)[1]).astype(np.int32)
         parts.append(
             Part(
                 names[number],
@@ -58,6 +98,7 @@ def model_parts(model) -> list[Part]:
                 block.property,
                 materials[block.property],
                 tuple(colors[number]),
+                divided,
             )
         )
     return parts

@@ -12,6 +12,9 @@ from pathlib import Path
 from ...base.errors import InputRefused
 from ...base.mapped_arrays import MakeRows, Rows
 from ...base.text import Step, no_step
+from ...settings.point_file import MeshFile
+from ..objects.geo_object import SURFACE
+from ..objects.object_file import OBJECT_ENDINGS, OBJECT_NAMES, is_object_file, read_object
 from .dxf_mesh import begins_as_dxf, read_dxf
 from .gmsh_mesh import begins_as_msh, read_msh
 from .landxml import begins_as_landxml, read_landxml
@@ -19,7 +22,7 @@ from .off import begins_as_off, read_off
 from .ply_mesh import begins_as_ply, read_ply
 from .stl_mesh import begins_as_stl, read_stl
 from .surface_meshes import begins_as_obj, read_obj, read_tsurf
-from .triangle_mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh, mesh_of_faces
 from .vtk_mesh import begins_as_vtk_xml, read_vtk_xml
 
 _HEAD = 4096
@@ -62,13 +65,22 @@ def is_mesh_file(file: str | Path) -> bool:
     return bool(_formats_of(Path(file)))
 
 
-def read_mesh(file: str | Path, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
-    """Reads a mesh in any format that is known. rows: where it is kept, if its format is read in pieces; else
-    it is in memory. Raises InputRefused naming file and line."""
-    file = Path(file)
+def read_mesh(file: str | Path | MeshFile, step: Step = no_step, rows: MakeRows = Rows) -> TriangleMesh:
+    """Reads a mesh in any format that is known. A MeshFile may name the object in a file of several. rows:
+    where it is kept, if its format is read in pieces; else it is in memory. Raises InputRefused naming file
+    and line."""
+    layer = file.layer if isinstance(file, MeshFile) else None
+    file = Path(file.file if isinstance(file, MeshFile) else file)
+    if is_object_file(file):
+        found_object = read_object(file, layer, (SURFACE,))
+        assert found_object.triangles is not None
+        return mesh_of_faces(file, found_object.vertices, found_object.triangles)
+    if layer is not None:
+        what = f"it is not a file of objects ({', '.join(OBJECT_ENDINGS)}), so it has no '{layer}'"
+        raise InputRefused(what, file=file, advice="take 'layer' out")
     found = _formats_of(file)
     if not found:
-        names = ", ".join(known.name for known in MESH_FORMATS)
+        names = ", ".join((*(known.name for known in MESH_FORMATS), *OBJECT_NAMES))
         raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
     if found[0].read_in_pieces is not None:
         return found[0].read_in_pieces(file, step, rows)

@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ...base.errors import InputRefused
-from ...base.text import Step, no_step
-from ...base.units import MODEL_UNIT, factor
+from ...base.text import Step
 from ...settings.boreholes import Boreholes
 from .hole_tables import COLLARS, NO_VALUE, Row, rows
 from .holes import Holes
@@ -33,15 +31,11 @@ class Picks:
     left_out: list[LeftOut] = field(default_factory=list)
 
 
-def read_boreholes(
-    given: Boreholes,
-    model_unit: str = MODEL_UNIT,
-    step: Step = no_step,
-    units: UnitNames | None = None,
-    plan_step: float | None = None,
+def read_borehole_tables(
+    given: Boreholes, step: Step, scale: np.ndarray, units: UnitNames, plan_step: float | None
 ) -> Picks:
-    """The points of every surface that the picks name, in the model's unit and the order of the table, and
-    what intervals say.
+    """The points of every surface that the picks name, in the order of the table, and what intervals say.
+    scale (3,): the factors to the model's unit.
 
     Holes of which a survey, or the table of collars, has the directions go their way by minimum curvature
     (WellTrajectory); all others are vertical, with a warning where a table says otherwise. Rows without a
@@ -49,10 +43,7 @@ def read_boreholes(
     mean. plan_step: as of read_intervals.
     Raises InputRefused naming file and line.
     """
-    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
-    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
     holes = Holes(given)
-    units = units or UnitNames()
     found = Picks() if given.picks is None else _picks(holes, units, scale, step)
     if given.intervals is not None:
         logged = read_intervals(holes, units, scale, plan_step, step)

@@ -71,7 +71,7 @@ OBSERVED = {
     "y": PICKS["y"],
     "z": ("z", "elevation", "elev", "altitude", "rl", "height"),
     "block": _BLOCK,
-    "hole": _HOLE,
+    "hole": _HOLE[:-2],  # names and ids are of the places
     "depth": ("depth", "md"),
 }
 # What stands in a column where there is no value; in small letters.

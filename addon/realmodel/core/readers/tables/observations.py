@@ -63,6 +63,17 @@ class Observations(ShortRepr):
         """Some of them. chosen: (N,) bool, or numbers of rows."""
         return Observations(self.places[chosen], self.blocks[chosen], self.holes[chosen], self.depths[chosen])
 
+    def along_holes(self) -> Observations:
+        """The same with the places of each hole one after another downward along it: by their depths, or by
+        their heights where some have none."""
+        names, first, number = np.unique(self.holes, return_index=True, return_inverse=True)
+        without = np.bincount(number.ravel(), np.isnan(self.depths), len(names)) > 0
+        along = np.where(without[number.ravel()], -self.places[:, 2], self.depths)
+        has_hole = self.holes != ""
+        rows = np.arange(len(self))
+        at = np.where(has_hole, first[number.ravel()] if len(names) else 0, rows)
+        return self.some(np.lexsort((rows, np.where(has_hole, along, 0.0), at)))
+
     def source(self, row: int) -> str:
         """Where one of them comes from, for messages."""
         return source_text(str(self.holes[row]), float(self.depths[row]), self.places[row])

@@ -149,7 +149,7 @@ def _mesh_of(entry: Fault | Body, units: str, warnings: list[BuildWarning]) -> S
     if entry.mesh_file is None:
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
-        mesh = read_mesh(entry.mesh_file.file)
+        mesh = read_mesh(entry.mesh_file)
         vertices, texts = mesh.in_model(entry.mesh_file, units)
         warnings += [BuildWarning(text, "mesh_file") for text in texts]
         triangles = mesh.triangles

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Boreholes from files; their format is detected from the content."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..base.errors import InputRefused
+from ..base.text import Step, no_step
+from ..base.units import MODEL_UNIT, factor
+from ..settings.boreholes import Boreholes
+from .objects.object_file import is_object_file
+from .objects.object_holes import read_hole_objects
+from .point_input import refuse_keys
+from .tables.boreholes import Picks, read_borehole_tables
+from .tables.unit_names import UnitNames
+
+
+def read_boreholes(
+    given: Boreholes,
+    model_unit: str = MODEL_UNIT,
+    step: Step = no_step,
+    units: UnitNames | None = None,
+    plan_step: float | None = None,
+) -> Picks:
+    """The points of every surface that the picks name, in the model's unit, and what intervals say: of
+    tables, or of the objects of an OMF or geoh5 file. units: what the names in them mean. plan_step: as of
+    read_intervals. Raises InputRefused naming file and line, or object."""
+    unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
+    scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
+    units = units or UnitNames()
+    of_objects = [file for file in given.files if is_object_file(file)]
+    if not of_objects and given.layer is not None:
+        what = f"it is a table, so it has no object '{given.layer}'"
+        raise InputRefused(what, file=given.files[-1], advice="take 'layer' out")
+    if not of_objects:
+        return read_borehole_tables(given, step, scale, units, plan_step)
+    refuse_keys(of_objects[0], "has objects", given.only_for_tables)
+    if len(of_objects) < len(given.files):
+        advice = "give tables, or files of objects"
+        raise InputRefused("it has objects, and the other file is a table", file=of_objects[0], advice=advice)
+    found = read_hole_objects(given, scale, units, plan_step)
+    step(1.0)
+    return found

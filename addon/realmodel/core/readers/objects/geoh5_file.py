@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""geoh5, the files of Geoscience ANALYST, by the library geoh5py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...base.packages import extra, quiet
+from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject, ObjectName, OpenFile, Values, texts
+
+_MAGIC = b"\x89HDF\r\n\x1a\n"
+_ENDING = ".geoh5"  # the library takes no other
+_DEPTHS = ("FROM", "TO", "DEPTH")  # data that say where others are
+
+
+def begins_as_geoh5(head: bytes) -> bool:
+    """Whether a file that begins so is one, or another of HDF5."""
+    return head.startswith(_MAGIC)
+
+
+@contextmanager
+def open_geoh5(file: Path) -> Iterator[OpenFile]:
+    """A file, while it is open. Raises UsageError where the library is missing."""
+    library = extra("geoh5py", "reading geoh5", "geoh5")
+    if file.suffix != _ENDING:
+        raise ValueError(f"its name does not end in {_ENDING}")
+    with quiet(), library.Workspace(file, mode="r") as workspace:
+        yield _Geoh5File(workspace)
+
+
+class _Geoh5File:
+    def __init__(self, workspace: Any):
+        self._workspace = workspace
+
+    def names(self) -> list[ObjectName]:
+        """As OpenFile."""
+        found = [(each, _kind(each)) for each in self._workspace.objects]
+        return [ObjectName(each.name, kind, each.uid) for each, kind in found if kind is not None]
+
+    def read(self, wanted: ObjectName) -> GeoObject:
+        """As OpenFile."""
+        (item,) = self._workspace.get_entity(wanted.key)
+        if wanted.kind == HOLE:
+            return _hole(item, wanted)
+        vertices = np.array(item.vertices, np.float64)
+        values = [Values(vertices, _columns(item, "VERTEX"))]
+        if wanted.kind == LINES:
+            values.append(_along(item, vertices))
+        triangles = np.array(item.cells) if wanted.kind == SURFACE else None
+        return GeoObject(wanted.name, wanted.kind, vertices, triangles, values)
+
+
+def _kind(item: Any) -> str | None:
+    from geoh5py.objects import Curve, Drillhole, Points, Surface
+
+    if isinstance(item, Drillhole):
+        return HOLE
+    if isinstance(item, Surface):
+        return SURFACE
+    if isinstance(item, Curve):
+        return LINES
+    return POINTS if type(item) is Points else None
+
+
+def _hole(item: Any, wanted: ObjectName) -> GeoObject:
+    collar = np.array(item.collar.tolist(), np.float64)
+    values = []
+    if item.vertices is not None:
+        vertices = np.array(item.vertices, np.float64)
+        values.append(Values(vertices, _columns(item, "VERTEX")))
+        if item.cells is not None:
+            values.append(_along(item, vertices))
+    else:
+        vertices = collar[None]
+        values = list(_tables(item))
+    return GeoObject(wanted.name, HOLE, vertices, None, values, collar)
+
+
+def _along(item: Any, vertices: np.ndarray) -> Values:
+    """The intervals between vertices, with the depths that a drillhole says."""
+    begins, ends = (vertices[np.array(item.cells)[:, end]] for end in (0, 1))
+    columns = _columns(item, "CELL")
+    known = [columns.pop(name) for name in ("FROM", "TO") if name in columns]
+    depths = np.column_stack(known) if len(known) == 2 else None
+    return Values(begins, columns, ends, depths)
+
+
+def _tables(item: Any) -> Iterator[Values]:
+    """The tables of a drillhole in a group of drillholes, each with depths of its own."""
+    for group in item.property_groups or ():
+        limits = [getattr(group, name, None) for name in ("from_", "to_")]
+        depths = [each.values for each in limits if each is not None and each.values is not None]
+        point = getattr(group, "depth_", None)
+        known = [item.workspace.get_entity(uid)[0] for uid in group.properties or ()]
+        known = [each for each in known if each is not None and each.name.upper() not in _DEPTHS]
+        columns = {each.name: column for each in known if (column := _column(each)) is not None}
+        if len(depths) == 2:
+            yield Values(item.desurvey(depths[0]), columns, item.desurvey(depths[1]), np.column_stack(depths))
+        elif point is not None and point.values is not None:
+            yield Values(item.desurvey(point.values), columns)
+
+
+def _columns(item: Any, where: str) -> dict[str, np.ndarray]:
+    """The data of an object's vertices or cells, as texts or numbers."""
+    found = {}
+    for child in item.children:
+        if getattr(getattr(child, "association", None), "name", None) == where:
+            column = _column(child)
+            if column is not None:
+                found[child.name] = column
+    return found
+
+
+def _column(data: Any) -> np.ndarray | None:
+    from geoh5py.data import NumericData, ReferencedData, TextData
+
+    values = data.values
+    if values is None:
+        return None
+    if isinstance(data, ReferencedData):
+        names = {} if data.value_map is None else dict(data.value_map.map.tolist())
+        named = {number: _plain(name) for number, name in names.items() if number}
+        return texts(np.asarray(values), named)
+    if isinstance(data, TextData):
+        return np.array([_plain(each) for each in np.atleast_1d(values)], object)
+    return np.asarray(values) if isinstance(data, NumericData) else None
+
+
+def _plain(text: Any) -> str:
+    return text.decode() if isinstance(text, bytes) else str(text)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points with heights from the objects of a file: sets of points, and the vertices of lines and surfaces."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...base.errors import InputRefused
+from ...base.mapped_arrays import JoinPieces
+from ...settings.point_file import PointFile, list_of
+from ..tables.table_layout import names_shown
+from .geo_object import HOLE, LINES, POINTS, SURFACE, GeoObject
+from .object_file import read_object
+
+OF_POINTS = (POINTS, LINES, SURFACE, HOLE)
+
+
+def read_object_points(given: PointFile, gather: JoinPieces) -> tuple[np.ndarray, list[str]]:
+    """(P, 3) float64, in the file's unit, and warnings, sentences. gather: where the points are kept. Raises
+    InputRefused naming the file and the object."""
+    file = Path(given.file)
+    found = read_object(file, given.layer, OF_POINTS)
+    item = f"object '{found.name}'"
+    places = np.array(found.vertices, np.float64)
+    if given.height is not None:
+        heights = _attribute(found, given.height, file)
+        if heights.dtype.kind not in "iufb":
+            raise InputRefused(f"its attribute '{given.height}' has texts, no heights", file=file, item=item)
+        places[:, 2] = heights
+    chosen = np.ones(len(places), bool)
+    for name, wanted in given.where.items():
+        chosen &= _equal(_attribute(found, name, file), list_of(wanted))
+    if not chosen.any():
+        what = "it has no points" if not len(places) else f"no point of it has {_shown(given.where)}"
+        raise InputRefused(what, file=file, item=item, advice=_values_there(found, given))
+    places = places[chosen]
+    missing = [float(value) for value in given.nodata_values if not isinstance(value, str)]
+    if not np.isfinite(places[:, :2]).all():
+        raise InputRefused("a place in plan is not finite", file=file, item=item)
+    known = np.isfinite(places[:, 2]) & ~np.isin(places[:, 2], missing)
+    if not known.any():
+        raise InputRefused("none of its points has a value", file=file, item=item)
+    left_out = int((~known).sum())
+    warnings = [f"{file}: {left_out} points have no value and are left out"] if left_out else []
+    return gather([places[known]], np.empty((0, 3))), warnings
+
+
+def _attribute(found: GeoObject, name: str, file: Path) -> np.ndarray:
+    columns = found.columns
+    if name not in columns:
+        there = f"it has {names_shown(list(columns))}" if columns else "its points have none"
+        what = f"it has no attribute '{name}'"
+        raise InputRefused(what, file=file, item=f"object '{found.name}'", advice=there)
+    return columns[name]
+
+
+def _equal(column: np.ndarray, wanted: list) -> np.ndarray:
+    """(N,) bool: where values are one of some; numbers as numbers, others as texts."""
+    if column.dtype.kind in "iufb":
+        numbers = [float(value) for value in wanted if not isinstance(value, str)]
+        return np.isin(np.asarray(column, np.float64), numbers)
+    return np.isin(column.astype(str), [str(value) for value in wanted])
+
+
+def _shown(where) -> str:
+    return " and ".join(f"{name} = {value!r}" for name, value in where.items())
+
+
+def _values_there(found: GeoObject, given: PointFile) -> str | None:
+    for name in given.where:
+        values = list(dict.fromkeys(str(value) for value in found.columns[name].tolist()))
+        return f"{name} is {names_shown(values)}"
+    return None
