@@ -12,7 +12,7 @@ namespace realmodel::booleans {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 12;
+constexpr std::size_t kPiecesAtOnce = 1 << 12;
 constexpr std::size_t kMany = 1 << 6;  ///< so many pieces of one triangle are found by a tree
 
 void check(const TriangleView& mesh, int surface) {
@@ -61,10 +61,11 @@ Pieces::Pieces(const std::array<TriangleView, 2>& surfaces, const Execution& exe
             largest_ = std::max(largest_, std::abs(x));
     }
     std::vector<spatial::Box> boxes(whole_.size());
-    parallel_ranges(whole_.size(), kChunk, execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            boxes[i] = box(whole_[i].corners);
-    });
+    parallel_ranges(whole_.size(), kPiecesAtOnce, execution,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i)
+                            boxes[i] = box(whole_[i].corners);
+                    });
     tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes), execution.progress);
 }
 
